@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::escaped::{MOST_SHOWN, OneLine, Quoted};
+use crate::escaped::{MAX_SHOWN, OneLine, Quoted};
 
 /// The most names that a message lists.
 const MOST_LISTED: usize = 12;
@@ -251,7 +251,7 @@ impl From<farsa_view::Error> for Error {
 /// the other case count least. Of a name
 /// longer than any, the beginning is compared. With it comes how many letters that are.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(usize, &'a str)> {
-    let name: String = name.chars().take(MOST_SHOWN).collect();
+    let name: String = name.chars().take(MAX_SHOWN).collect();
     let lower = name.to_lowercase();
     let length = lower.chars().count();
     let distance = strsim::damerau_levenshtein;
@@ -274,7 +274,7 @@ fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(
 
 /// Whether one may have been meant by the other, so many letters apart: half of the longer one is right, or one is in the other.
 fn is_near(name: &str, valid: &str, letters: usize) -> bool {
-    let [name, valid] = [name, valid].map(|text| text.chars().take(MOST_SHOWN).collect::<String>().to_lowercase());
+    let [name, valid] = [name, valid].map(|text| text.chars().take(MAX_SHOWN).collect::<String>().to_lowercase());
     let longest = name.chars().count().max(valid.chars().count());
     2 * letters <= longest || !name.is_empty() && (valid.contains(&name) || name.contains(&valid))
 }
@@ -454,7 +454,7 @@ mod tests {
             assert_eq!(error.to_string(), message);
         }
         let long = Error::unknown("", "key", &"k".repeat(1 << 20), ["a"]).to_string();
-        assert_eq!(long, format!("unknown key `{}...`; the only one is `a`", "k".repeat(MOST_SHOWN)));
+        assert_eq!(long, format!("unknown key `{}...`; the only one is `a`", "k".repeat(MAX_SHOWN)));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// The most characters of a name or a value that a message repeats.
-pub(crate) const MOST_SHOWN: usize = 200;
+pub(crate) const MAX_SHOWN: usize = 200;
 
 /// How a text ends that was shortened.
 pub(crate) const CUT: &str = "...";
@@ -42,7 +42,7 @@ fn with_escapes(text: &str, which: impl Fn(char) -> bool) -> Cow<'_, str> {
 
 /// The beginning of a text, with dots if that is not all of it.
 pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
-    match text.char_indices().nth(MOST_SHOWN) {
+    match text.char_indices().nth(MAX_SHOWN) {
         Some((end, _)) => Cow::Owned(format!("{}{CUT}", text.get(..end).unwrap_or_default())),
         None => Cow::Borrowed(text),
     }
@@ -86,7 +86,7 @@ mod tests {
         assert!(matches!(escaped("plain\n"), Cow::Borrowed("plain\n")));
         assert_eq!(OneLine("a\nerror: b\t\u{1b}").to_string(), "a\\nerror: b\\t\\u{1b}");
         assert_eq!(Quoted("a\nb").to_string(), "`a\\nb`");
-        let (long, longer) = ("é".repeat(MOST_SHOWN), "é".repeat(MOST_SHOWN + 1));
+        let (long, longer) = ("é".repeat(MAX_SHOWN), "é".repeat(MAX_SHOWN + 1));
         assert_eq!(
             (Quoted(&long).to_string(), Quoted(&longer).to_string()),
             (format!("`{long}`"), format!("`{long}...`"))

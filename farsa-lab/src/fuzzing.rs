@@ -26,15 +26,15 @@ use crate::experiment::parameter::Parameter;
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
+use crate::run::record_file::RunRecord;
 use crate::run::records::{Champions, Checkpoint, imported, write_imported};
-use crate::run::told::Told;
+use crate::store::append_log::Mark;
+use crate::store::checksummed;
 use crate::store::directory::Directory;
 use crate::store::failures::Failures;
-use crate::store::growing::Mark;
 use crate::store::lineage::{HEADER, Lineage};
 use crate::store::log::{Log, header};
 use crate::store::manifest::Manifest;
-use crate::store::sealed;
 use crate::store::toml_tokens::toml_tokens;
 use crate::strategy::search::{Genome, Search};
 use crate::sweep::SweepFile;
@@ -215,7 +215,7 @@ impl<'l> RunReader<'l> {
     pub fn record_head(&self) -> Result<Vec<u8>, Error> {
         let strategy = self.plan.definition().name().to_owned();
         let head = crate::run::records::RecordHead { identity: self.plan.identity()?, strategy };
-        sealed::to_bytes(Path::new("record.bin"), &head)
+        checksummed::to_bytes(Path::new("record.bin"), &head)
     }
 
     /// Reads a checkpoint, goes on from its state for a generation, and writes it.
@@ -228,9 +228,9 @@ impl<'l> RunReader<'l> {
     pub fn checkpoint(&self, bytes: &[u8]) -> Result<Vec<u8>, Error> {
         let path = Path::new("checkpoint.bin");
         let damaged = |error: EvoError| Error::damaged(path, error);
-        let checkpoint: Checkpoint = sealed::open(bytes).map_err(|why| Error::damaged(path, why))?;
+        let checkpoint: Checkpoint = checksummed::open(bytes).map_err(|why| Error::damaged(path, why))?;
         self.plan.same_run(&checkpoint.identity, Path::new("."))?;
-        let written = sealed::to_bytes(path, &checkpoint)?;
+        let written = checksummed::to_bytes(path, &checkpoint)?;
         let mut search = self.plan.strategy()?;
         if let (Some(state), Some(strategy)) = (&checkpoint.state, search.snapshot()) {
             strategy.restore(state).map_err(damaged)?;
@@ -254,7 +254,7 @@ impl<'l> RunReader<'l> {
         let record = Mark::of(content);
         let identity = self.plan.identity()?;
         let checkpoint = Checkpoint { identity, generation, record, lineage: nothing, failures: nothing, state: None };
-        let told = Told::from_content(&self.plan, &directory, &checkpoint, content.into())?;
+        let told = RunRecord::from_content(&self.plan, &directory, &checkpoint, content.into())?;
         let damaged = |error: EvoError| Error::damaged(&directory.record(), error);
         let mut search = self.plan.strategy()?;
         let mut again = self.plan.strategy()?.record().map_err(damaged)?;

@@ -289,7 +289,7 @@ impl<'e> Invocation<'e, '_> {
     /// A run that exists, with the plan in its configuration.
     pub(super) fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
-        let plan = Plan::from_file(self.laboratory, &ConfigFile::read_own(&directory.config())?)?;
+        let plan = Plan::from_file(self.laboratory, &ConfigFile::read_regular(&directory.config())?)?;
         Ok((directory, plan))
     }
 
@@ -316,7 +316,7 @@ impl<'e> Invocation<'e, '_> {
         let (_, plan) = self.planned_from_file(args)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
         let pool = |plan: &Plan<'e>| self.pool(args, plan);
-        let which = replications::Which { count, only };
+        let which = replications::Selection { count, only };
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
@@ -357,7 +357,7 @@ impl<'e> Invocation<'e, '_> {
             self.make_room(args.force, &plan, &path)?;
             begin::create(&plan, &path)?
         };
-        evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+        evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
     }
 
     /// Moves a run aside that is where another is to be, if that was asked for and the other can begin.

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::escaped::OneLine;
 use crate::evaluation::import;
 use crate::json::pretty;
-use crate::run::laboratory::{FILE, MOST_BYTES};
+use crate::run::laboratory::{FILE, MAX_BYTES};
 use crate::run::{ImportedFile, LeftOut};
 use crate::store::bounded;
 use crate::store::replace::create_results;
@@ -71,7 +71,7 @@ impl Invocation<'_, '_> {
             let why = "a configuration has its own settings and seeds: --condition, --set, --ir-tables and --seed are for genotypes";
             return Err(Error::Usage(why.into()));
         }
-        let text = bounded::read_text(path, MOST_BYTES)?;
+        let text = bounded::read_stream_text(path, MAX_BYTES)?;
         let out = args.out.clone().unwrap_or_else(|| file_of(path));
         let name = out.display().to_string();
         if !name.ends_with(FILE) {
@@ -129,7 +129,7 @@ fn is_configuration(path: &Path) -> bool {
         let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with(['#', ';']));
         line.is_some_and(|line| line.starts_with('['))
     };
-    has_ending(path) || (path.is_file() && bounded::read_text(path, MOST_BYTES).is_ok_and(begins))
+    has_ending(path) || (path.is_file() && bounded::read_stream_text(path, MAX_BYTES).is_ok_and(begins))
 }
 
 /// The file here for a configuration: its name in letters that names of experiments have.

@@ -60,7 +60,7 @@ impl Invocation<'_, '_> {
                 None => Ok(Cow::Borrowed(module)),
             };
         };
-        let module = bounded::read(path, MOST_MODULE)?;
+        let module = bounded::read_stream(path, MOST_MODULE)?;
         if !COMPRESSED.iter().any(|begin| module.starts_with(begin)) {
             return Err(Error::Usage("the module is not compressed by gzip or xz".into()));
         }

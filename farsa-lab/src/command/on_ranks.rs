@@ -6,12 +6,12 @@ use crate::command::arguments::subcommands::{Command, RunArgs};
 use crate::command::interrupt::stop_on_signals;
 use crate::command::invocation::Invocation;
 use crate::error::Error;
-use crate::ranks::exchange::{Exchange, Order};
+use crate::ranks::exchange::{Exchange, WorkerCommand};
 use crate::ranks::facts::Facts;
-use crate::run::following::Following;
-use crate::run::leading;
+use crate::run::coordinator;
 use crate::run::plan::Plan;
 use crate::run::replications::Replications;
+use crate::run::worker::Worker;
 
 /// What a rank does after all have agreed to begin.
 pub(crate) enum Part {
@@ -57,18 +57,18 @@ impl Invocation<'_, '_> {
         ];
         let (_, plan) = self.planned_from_file(args)?;
         self.pool(args, &plan)?;
-        facts.extend(leading::facts(&plan)?);
+        facts.extend(coordinator::facts(&plan)?);
         Ok(facts)
     }
 
     /// Follows rank 0 through its runs, and returns its exit code.
     fn follow(&self, args: &RunArgs) -> Result<u8, Error> {
-        let following = Following {
+        let worker = Worker {
             plan: &|file| Plan::from_file(self.laboratory, file),
             pool: &|plan| self.pool(args, plan),
             stop: stop_on_signals(),
         };
-        following.follow(&self.exchange)
+        worker.follow(&self.exchange)
     }
 
     /// Tells the other ranks that the command is over.
@@ -76,7 +76,7 @@ impl Invocation<'_, '_> {
     /// # Errors
     /// Those of the ranks' messages.
     pub(crate) fn dismiss(&self, code: u8) -> Result<(), Error> {
-        if self.exchange.is_alone() { Ok(()) } else { self.exchange.order(Some(&Order::End(code))).map(drop) }
+        if self.exchange.is_alone() { Ok(()) } else { self.exchange.command(Some(&WorkerCommand::End(code))).map(drop) }
     }
 
     /// Replications in groups of ranks side by side: each group makes every so manieth of them. None on the ranks that say nothing

@@ -133,7 +133,7 @@ impl Shape {
     /// # Errors
     /// [`Error::Io`], [`Error::Damaged`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
-        self.words(path, &bounded::read_text(path, MOST_BYTES)?)
+        self.words(path, &bounded::read_stream_text(path, MOST_BYTES)?)
     }
 
     /// The same where genes may also be reals, as [`written_reals`] writes them.
@@ -141,7 +141,7 @@ impl Shape {
     /// # Errors
     /// As [`read`](Self::read).
     pub(crate) fn read_genomes(self, path: &Path) -> Result<Vec<Genome>, Error> {
-        self.genomes(path, &bounded::read_text(path, MOST_BYTES)?)
+        self.genomes(path, &bounded::read_stream_text(path, MOST_BYTES)?)
     }
 
     /// The genomes in the text of a file.

@@ -9,10 +9,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
-use crate::store::bounded::read_own_text;
-use crate::store::draft;
+use crate::store::bounded::read_regular_text;
 use crate::store::lock::Lock;
 use crate::store::replace::replace;
+use crate::store::temporary_file;
 
 /// Bytes of the largest table and of the largest record that are read.
 const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
@@ -36,9 +36,9 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
         return Ok(None);
     }
     for attempt in 1..=ATTEMPTS {
-        let text = read_own_text(table, LARGEST[0])?;
+        let text = read_regular_text(table, LARGEST[0])?;
         let found: Option<R> = if record.is_file() {
-            let text = read_own_text(record, LARGEST[1])?;
+            let text = read_regular_text(record, LARGEST[1])?;
             Some(serde_json::from_str(&text).map_err(|error| Error::damaged(record, error))?)
         } else {
             None
@@ -67,8 +67,8 @@ pub(crate) fn write<R: TableRecord>(
     let (place, bytes) = table;
     let text = serde_json::to_string_pretty(&make(crc32(bytes))).map_err(|error| Error::Other(error.to_string()))?;
     let _lock = Lock::of_tests(directory)?;
-    draft::sweep_of(place);
-    draft::sweep_of(path);
+    temporary_file::sweep_of(place);
+    temporary_file::sweep_of(path);
     replace(place, bytes)?;
     replace(path, format!("{text}\n").as_bytes())
 }

@@ -20,9 +20,9 @@ use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::outcome::Outcome;
 use crate::figures::significant::significant;
-use crate::run::contained::caught;
+use crate::run::catch_panic::catch_printed_panic;
 use crate::run::plan::Plan;
-use crate::run::told::history;
+use crate::run::record_file::history;
 use crate::store::directory::Directory;
 use crate::strategy::history::History;
 use crate::strategy::opponents;
@@ -227,7 +227,7 @@ impl Replayable {
         let evaluation = Evaluation { opponents: &opponents, normalisation, intervention, ..plain };
         let (generation, individual) = (self.generation, self.individual);
         let panicked = |()| Error::TrialPanicked { generation, individual, trial };
-        caught(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
+        catch_printed_panic(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
     }
 
     /// The fitness of the replayed trials.

@@ -17,7 +17,7 @@ use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;
-use crate::run::evaluations::Unfinished;
+use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::Progress;

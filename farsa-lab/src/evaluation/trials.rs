@@ -6,13 +6,13 @@ use farsa_view::readable;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::outcome::{Note, Outcome};
-use crate::run::plan::LARGEST_SEED;
+use crate::run::plan::MAX_SEED;
 
 /// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
 pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
     let kinds = kinds.max(1);
     let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
-    EpisodeId { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
+    EpisodeId { seed: seed | !MAX_SEED, generation, individual: 0, trial }
 }
 
 /// The fitness of trials; that of a failed one is the worst.

@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::escaped::{OneLine, shortened};
 use crate::export::files::ModelFormat;
-use crate::store::bounded::read_text;
+use crate::store::bounded::read_stream_text;
 
 /// What was read.
 #[derive(Serialize)]
@@ -48,7 +48,7 @@ pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error
     // A pipe is waited for, but not for ever.
     let piped = fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let read = if piped {
-        let text = read_text(file, u64::try_from(options.limits.bytes).unwrap_or(u64::MAX))?;
+        let text = read_stream_text(file, u64::try_from(options.limits.bytes).unwrap_or(u64::MAX))?;
         Imported::from_text(&text, options)
     } else {
         Imported::from_file(file, options)

@@ -11,9 +11,9 @@ use crate::live::bytes::Bytes;
 use crate::live::script::Evolved;
 use crate::live::standing::Standing;
 use crate::ranks::wire::Outcomes;
-use crate::run::evaluations::{Evaluations, Heard, TaskOf, Unfinished, round};
+use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinished, round};
 use crate::run::plan::Plan;
-use crate::run::progression::{Evaluated, Progression};
+use crate::run::search_state::{GenerationResult, SearchState};
 use crate::store::log::Line;
 use crate::strategy::opponents::Hall;
 use crate::strategy::search::Search;
@@ -32,7 +32,7 @@ pub(crate) struct Bred {
 
 /// A search that goes on.
 pub(crate) struct Evolution {
-    progression: Progression,
+    progression: SearchState,
     genotype: Genotype,
     /// The champions so far, and what the first of them earned.
     champions: Option<(Fitness, Vec<Evolved>)>,
@@ -65,7 +65,7 @@ impl Evolution {
             }
             None => None,
         };
-        let progression = Progression::new(search, hall, observed, plan.seed);
+        let progression = SearchState::new(search, hall, observed, plan.seed);
         Ok(Self { progression, genotype: plan.genotype(evaluator), champions: None })
     }
 
@@ -103,7 +103,7 @@ impl Evolution {
         let generation = self.progression.search.generation();
         let mut session = Session { evaluator, genotype: &self.genotype, part: Part::Known(all) };
         let found = self.progression.generation(&mut session, &|| {}, Search::tell_unrecorded);
-        let Evaluated { fitness, statistics, each, best, met, normalisation, .. } =
+        let GenerationResult { fitness, statistics, each, best, met, normalisation, .. } =
             found.map_err(|error| match error {
                 Unfinished::Error(error) => error,
                 Unfinished::Stopped => wrong("they are not those of a whole generation"),
@@ -138,7 +138,7 @@ struct Session<'s> {
     part: Part,
 }
 
-impl Evaluations for Session<'_> {
+impl EvaluationBackend for Session<'_> {
     fn evaluator(&self) -> &dyn Evaluator {
         self.evaluator
     }

@@ -8,7 +8,7 @@ use crate::live::champion::champions;
 use crate::live::row::Row;
 use crate::live::script::Evolved;
 use crate::run::plan::Plan;
-use crate::store::bounded::read_own_text;
+use crate::store::bounded::read_regular_text;
 use crate::store::directory::Directory;
 
 /// Most bytes of a log that is read.
@@ -43,7 +43,7 @@ impl Known {
         if bytes == self.log {
             return Ok(Vec::new());
         }
-        let text = read_own_text(&path, MOST_LOG)?;
+        let text = read_regular_text(&path, MOST_LOG)?;
         // The last line may be written at this moment.
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         let known = self.generations;

@@ -14,11 +14,11 @@ use crate::live::script::{Evolved, Script};
 use crate::live::session::{LiveSession, json};
 use crate::live::standing::Standing;
 use crate::run::begin;
-use crate::run::config_file::MOST_BYTES;
+use crate::run::config_file::MAX_BYTES;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
+use crate::run::record_file::RunRecord;
 use crate::run::records::Checkpoint;
-use crate::run::told::Told;
 use crate::store::bounded;
 use crate::store::directory::Directory;
 use crate::store::replace::write_page;
@@ -139,7 +139,7 @@ pub(crate) fn html(
         from_above = view == View::Top;
         individuals.push(individual);
     }
-    let config = bounded::read_own_text(&directory.config(), MOST_BYTES)?;
+    let config = bounded::read_regular_text(&directory.config(), MAX_BYTES)?;
     let generations = individuals.iter().map(|individual| individual.generation).collect();
     let (history, standing) = run_so_far(plan, directory)?;
     let standing = match used {
@@ -170,14 +170,14 @@ fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Resul
         return Ok((Vec::new(), Err("no evolution has made these genotypes".into())));
     }
     let checkpoint = Checkpoint::read(plan, directory)?;
-    let told = Told::read(plan, directory, &checkpoint)?;
+    let told = RunRecord::read(plan, directory, &checkpoint)?;
     let stride = told.lines.len().div_ceil(MOST_HISTORY).max(1);
     let last = told.lines.len().saturating_sub(1);
     let lines = told.lines.iter().enumerate().filter(|(at, _)| at % stride == 0 || *at == last);
     let lines = lines.map(|(at, line)| Row::new(at, line.row)).collect();
     let evaluator = plan.evaluator()?;
     let genotype = plan.genotype(evaluator.as_ref());
-    let mut progression = begin::progression(plan, directory, &checkpoint, &told, &genotype)?;
+    let mut progression = begin::search_state(plan, directory, &checkpoint, &told, &genotype)?;
     let standing = Standing::of(&mut progression).ok_or("the strategy cannot save its state".to_owned());
     let bounded = |standing: Standing| match standing.size() {
         bytes if bytes > MOST_STANDING => {

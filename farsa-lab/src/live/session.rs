@@ -21,7 +21,7 @@ use crate::live::hands::hands;
 use crate::live::request::{Added, Earned, Film, Filmed, Request, Shared, Trial};
 use crate::live::script::{Evolved, Script};
 use crate::run::config_file::ConfigFile;
-use crate::run::evaluations::round;
+use crate::run::evaluation_backend::round;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 

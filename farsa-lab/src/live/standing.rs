@@ -4,7 +4,7 @@ use farsa_evo::Snapshot as _;
 use serde::{Deserialize, Serialize};
 
 use crate::live::bytes::Bytes;
-use crate::run::progression::Progression;
+use crate::run::search_state::SearchState;
 
 /// Where a run stands, with all that its next generations depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ pub(crate) struct Standing {
 
 impl Standing {
     /// Where a search stands; none of a strategy that cannot save its state.
-    pub(crate) fn of(progression: &mut Progression) -> Option<Self> {
+    pub(crate) fn of(progression: &mut SearchState) -> Option<Self> {
         let state = Bytes(progression.search.snapshot()?.save());
         let hall = Bytes::from_floats(progression.hall().champions().iter().flatten().flatten());
         let observed = progression.observed.as_ref().map(|observed| Bytes(observed.save()));

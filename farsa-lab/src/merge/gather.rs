@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
+use crate::run::record_file::RunRecord;
 use crate::run::records::Checkpoint;
-use crate::run::told::Told;
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Line;
@@ -41,10 +41,11 @@ impl<'e> Gathered<'e> {
     /// Reads a run, also one that is under way: its finished generations up to the last checkpoint.
     ///
     /// # Errors
-    /// Those of [`Plan::from_file`], [`Checkpoint::read`] and [`Told::read`].
+    /// Those of [`Plan::from_file`], [`Checkpoint::read`] and [`RunRecord::read`].
     pub(crate) fn read(laboratory: &Laboratory<'e>, directory: Directory, name: PathBuf) -> Result<Self, Error> {
-        let plan = Plan::from_file(laboratory, &ConfigFile::read_own(&directory.config())?)?;
-        let Told { identity, lines, .. } = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
+        let plan = Plan::from_file(laboratory, &ConfigFile::read_regular(&directory.config())?)?;
+        let RunRecord { identity, lines, .. } =
+            RunRecord::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
         let asked = plan.generations()? as usize;
         Ok(Self { directory, name, plan, identity, lines, asked })
     }
@@ -228,7 +229,7 @@ mod tests {
         let plan = Plan::new(&toy, None, "").unwrap();
         let directory = begin::create(&plan, path).unwrap();
         let pool = Pool::new(&plan, 1, Wanted::ONE).unwrap();
-        evolve::go_on(&plan, &directory, pool, &AtomicBool::new(false), "farsa", true).unwrap();
+        evolve::continue_run(&plan, &directory, pool, &AtomicBool::new(false), "farsa", true).unwrap();
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
-use crate::ranks::numbers::{Given, Numbers};
+use crate::ranks::numbers::{AssignedBlocks, Numbers};
 use crate::ranks::port::Ranks;
 
 /// A rank wants a block: how many evaluations it takes at once. The answer is the first number of the block and the one after it;
@@ -53,7 +53,12 @@ pub(crate) fn give(ranks: &dyn Ranks, numbers: &Numbers, ended: &dyn Fn() -> boo
 
 /// Another rank takes blocks of at most `most` evaluations until rank 0 has no more, or `ended` says that the round cannot be
 /// finished.
-pub(crate) fn take(ranks: &dyn Ranks, given: &Given, most: usize, ended: &dyn Fn() -> bool) -> Result<(), Error> {
+pub(crate) fn take(
+    ranks: &dyn Ranks,
+    given: &AssignedBlocks,
+    most: usize,
+    ended: &dyn Fn() -> bool,
+) -> Result<(), Error> {
     while !ended() {
         if !given.wants(LOOK) {
             continue;

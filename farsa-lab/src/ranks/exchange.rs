@@ -17,7 +17,7 @@ use crate::ranks::wire::{Outcomes, from_bytes, to_bytes};
 /// Ranks, and where they will meet next.
 pub(crate) struct Exchange<'r> {
     ranks: &'r dyn Ranks,
-    next: Cell<Meeting>,
+    next: Cell<SyncPoint>,
     /// A fingerprint of what this rank evaluates, to be compared when outcomes are exchanged.
     fingerprint: Cell<Option<u64>>,
     /// Whether nothing was compared yet in this run.
@@ -26,9 +26,9 @@ pub(crate) struct Exchange<'r> {
 
 /// Where ranks meet next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Meeting {
+pub(crate) enum SyncPoint {
     /// They wait for an order of rank 0.
-    Order,
+    WorkerCommand,
     Status,
     Outcomes,
 }
@@ -55,7 +55,7 @@ impl Status {
 
 /// What rank 0 wants of the others.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) enum Order {
+pub(crate) enum WorkerCommand {
     /// A run from where its files say that it is.
     Run {
         /// The run's directory, for messages.
@@ -91,7 +91,7 @@ impl Default for Exchange<'_> {
 impl<'r> Exchange<'r> {
     /// Ranks that have not begun anything.
     pub(crate) fn new(ranks: &'r dyn Ranks) -> Self {
-        Self { ranks, next: Cell::new(Meeting::Order), fingerprint: Cell::new(None), fresh: Cell::new(true) }
+        Self { ranks, next: Cell::new(SyncPoint::WorkerCommand), fingerprint: Cell::new(None), fresh: Cell::new(true) }
     }
 
     pub(crate) fn ranks(&self) -> &'r dyn Ranks {
@@ -109,7 +109,7 @@ impl<'r> Exchange<'r> {
     }
 
     /// Where the others are expected next.
-    pub(crate) fn next(&self) -> Meeting {
+    pub(crate) fn next(&self) -> SyncPoint {
         self.next.get()
     }
 
@@ -141,7 +141,7 @@ impl<'r> Exchange<'r> {
         if self.is_alone() {
             return own.map(drop);
         }
-        let next = self.next.replace(Meeting::Order);
+        let next = self.next.replace(SyncPoint::WorkerCommand);
         let (status, facts) = match &own {
             Ok(facts) => (Status::GoOn, facts.clone()),
             Err(error) => (Status::failed(error), Facts::new()),
@@ -156,12 +156,16 @@ impl<'r> Exchange<'r> {
     }
 
     /// Gives everybody the order of rank 0.
-    pub(crate) fn order(&self, own: Option<&Order>) -> Result<Order, Error> {
+    pub(crate) fn command(&self, own: Option<&WorkerCommand>) -> Result<WorkerCommand, Error> {
         let bytes = own.map(to_bytes).transpose()?.unwrap_or_default();
         let all = self.ranks.all_gather(&bytes)?;
         let order = from_bytes(0, all.first().map_or(&[], Vec::as_slice))?;
         self.fresh.set(true);
-        self.next.set(if matches!(order, Order::Run { .. }) { Meeting::Status } else { Meeting::Order });
+        self.next.set(if matches!(order, WorkerCommand::Run { .. }) {
+            SyncPoint::Status
+        } else {
+            SyncPoint::WorkerCommand
+        });
         Ok(order)
     }
 
@@ -170,13 +174,13 @@ impl<'r> Exchange<'r> {
     /// # Errors
     /// [`Error::Rank`] for the first rank that failed. Then, and unless all go on, everybody waits for an order.
     pub(crate) fn status(&self, own: &Status) -> Result<Status, Error> {
-        self.next.set(Meeting::Order);
+        self.next.set(SyncPoint::WorkerCommand);
         let all = self.gather(own)?;
         first_failed(&all)?;
         let said = |status: Status| all.contains(&status).then_some(status);
         let found = said(Status::Over).or_else(|| said(Status::Stop)).unwrap_or(Status::GoOn);
         if found == Status::GoOn {
-            self.next.set(Meeting::Outcomes);
+            self.next.set(SyncPoint::Outcomes);
         }
         Ok(found)
     }
@@ -198,7 +202,7 @@ impl<'r> Exchange<'r> {
         own: Result<Vec<Numbered>, Error>,
         stop: bool,
     ) -> Result<Option<Vec<Numbered>>, Error> {
-        self.next.set(Meeting::Status);
+        self.next.set(SyncPoint::Status);
         let status = match &own {
             Ok(_) if stop => Status::Stop,
             Ok(_) => Status::GoOn,
@@ -232,7 +236,7 @@ impl<'r> Exchange<'r> {
     /// # Errors
     /// Those of the ranks' messages.
     pub(crate) fn no_outcomes(&self, status: &Status) -> Result<(), Error> {
-        self.next.set(Meeting::Status);
+        self.next.set(SyncPoint::Status);
         let report =
             Report { status: status.clone(), fingerprint: self.fingerprint.take(), outcomes: Outcomes::default() };
         self.ranks.all_gather(&to_bytes(&report)?).map(drop)

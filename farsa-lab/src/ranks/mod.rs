@@ -1,25 +1,23 @@
-//! Ranks: processes that evaluate the trials of one run together. Each holds the whole search and asks it itself, so genomes
-//! never travel.
-//!
-//! - `port`: what is asked of a library that passes messages, [`Ranks`], and one process, [`Alone`]
-//! - `numbers`: which evaluations a rank does: all that are left, or the blocks that rank 0 gives it
-//! - `dealing`: blocks between rank 0 and the others, asked for and given
-//! - `exchange`: what all ranks tell each other in a generation, in an order that none can leave
-//! - `wire`: the bytes of what they tell
-//! - `facts`: what must be the same on all ranks, compared by name
+//! Ranks: processes that evaluate the trials of one run together. Each rank holds the whole search, so genomes are never sent.
 
+/// Blocks of evaluations, requested by workers and assigned by rank 0.
 #[cfg(feature = "command")]
 pub(crate) mod dealing;
+/// The messages of all ranks in a generation, in a fixed order.
 #[cfg(feature = "command")]
 pub(crate) mod exchange;
+/// Values that must be equal on all ranks.
 #[cfg(feature = "command")]
 pub(crate) mod facts;
+/// The evaluations of a rank: all that are left, or the blocks assigned by rank 0.
 #[cfg(feature = "command")]
 pub(crate) mod numbers;
 mod port;
+/// Ranks that are threads of a test.
 #[cfg(test)]
 #[cfg(feature = "command")]
 pub(crate) mod threads;
+/// The bytes of messages.
 pub(crate) mod wire;
 
 pub use port::{Alone, Ranks};

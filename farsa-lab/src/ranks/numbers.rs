@@ -10,12 +10,12 @@ pub(crate) enum Numbers {
     /// From 0 to a count: in one process, and on rank 0, where blocks of them are given away.
     Counted { count: usize, drawn: AtomicUsize },
     /// Those of the blocks that rank 0 has given.
-    Given(Given),
+    Assigned(AssignedBlocks),
 }
 
 /// Two blocks, and who waits for them.
 #[derive(Default)]
-pub(crate) struct Given {
+pub(crate) struct AssignedBlocks {
     blocks: Mutex<Blocks>,
     /// A block has come, or none will.
     filled: Condvar,
@@ -44,7 +44,7 @@ impl Numbers {
             Self::Counted { count, drawn } => {
                 Some(drawn.fetch_add(1, Ordering::Relaxed)).filter(|number| number < count)
             }
-            Self::Given(given) => given.draw(),
+            Self::Assigned(given) => given.draw(),
         }
     }
 
@@ -62,7 +62,7 @@ impl Numbers {
     pub(crate) fn close(&self) {
         match self {
             Self::Counted { count, drawn } => drawn.store(*count, Ordering::Relaxed),
-            Self::Given(given) => {
+            Self::Assigned(given) => {
                 let mut blocks = given.lock();
                 *blocks = Blocks { last: true, ..Blocks::default() };
                 drop(blocks);
@@ -72,7 +72,7 @@ impl Numbers {
     }
 }
 
-impl Given {
+impl AssignedBlocks {
     fn lock(&self) -> MutexGuard<'_, Blocks> {
         // Blocks are whole at any time.
         self.blocks.lock().unwrap_or_else(PoisonError::into_inner)
@@ -160,17 +160,17 @@ mod tests {
 
     #[test]
     fn what_is_given_is_drawn_and_then_asked_for() {
-        let given = Given::default();
+        let given = AssignedBlocks::default();
         assert!(given.wants(Duration::ZERO));
         given.fill(4..7);
         // Another one in reserve.
         assert!(given.wants(Duration::ZERO));
         given.fill(8..9);
         assert!(!given.wants(Duration::ZERO));
-        let numbers = Numbers::Given(given);
+        let numbers = Numbers::Assigned(given);
         let drawn = thread::scope(|scope| {
             let thread = scope.spawn(|| std::iter::from_fn(|| numbers.draw()).collect::<Vec<_>>());
-            let Numbers::Given(given) = &numbers else { unreachable!() };
+            let Numbers::Assigned(given) = &numbers else { unreachable!() };
             while !given.wants(Duration::from_millis(1)) {}
             given.fill(9..10);
             while !given.wants(Duration::from_millis(1)) {}
@@ -178,7 +178,7 @@ mod tests {
             thread.join().unwrap()
         });
         assert_eq!(drawn, [4, 5, 6, 8, 9]);
-        let closed = Numbers::Given(Given::default());
+        let closed = Numbers::Assigned(AssignedBlocks::default());
         closed.close();
         assert_eq!(closed.draw(), None);
     }

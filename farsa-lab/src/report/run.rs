@@ -13,8 +13,8 @@ use crate::report::tested_protocol::TestedProtocol;
 use crate::run::begin::resumed;
 use crate::run::collection::CollectionTable;
 use crate::run::plan::Plan;
+use crate::run::record_file::RunRecord;
 use crate::run::records::{Checkpoint, evolved};
-use crate::run::told::Told;
 use crate::store::directory::Directory;
 use crate::store::log::Line;
 use crate::store::manifest::Manifest;
@@ -60,7 +60,7 @@ impl<'e> Run<'e> {
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
         let checkpoint = Checkpoint::read(&plan, &directory)?;
-        let told = Told::read(&plan, &directory, &checkpoint)?;
+        let told = RunRecord::read(&plan, &directory, &checkpoint)?;
         let manifest = Manifest::read_or_new(&directory.manifest(), &told.identity)?;
         let Some(champion) = told.champion() else {
             return Err(Error::damaged(&directory.record(), "no generation is finished yet"));
@@ -80,7 +80,7 @@ impl<'e> Run<'e> {
             Ok(None)
         };
         let kept = kept.map_err(|why| Error::damaged(Path::new("the picture of what is kept"), why))?;
-        let Told { lines, diagnostics, .. } = told;
+        let RunRecord { lines, diagnostics, .. } = told;
         let (populations, terms) = (evaluator.populations(), evaluator.terms());
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };

@@ -7,11 +7,11 @@ use farsa_evo::{EvoError, Fitness, Record};
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
 use crate::run::plan::Plan;
-use crate::run::progression::Progression;
+use crate::run::record_file::{RunRecord, RunRecordWriter};
 use crate::run::records::{Best, Champions, Checkpoint};
-use crate::run::told::{Told, ToldFile};
+use crate::run::search_state::SearchState;
+use crate::store::append_log::Mark;
 use crate::store::directory::Directory;
-use crate::store::growing::Mark;
 use crate::store::lineage::{HEADER, Lineage, rows};
 use crate::store::log;
 use crate::store::manifest::Manifest;
@@ -45,7 +45,7 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
         } else {
             Mark::default()
         };
-        let record = ToldFile::create(&directory.record(), &identity, plan.definition().name())?;
+        let record = RunRecordWriter::create(&directory.record(), &identity, plan.definition().name())?;
         let failures = Mark::default();
         Checkpoint { identity, generation: 0, record, lineage, failures, state }.write(&directory.checkpoint())
     })
@@ -78,21 +78,21 @@ pub(crate) fn resumed(
 ///
 /// # Errors
 /// Those of [`resumed`] and of [`Hall::before`].
-pub(crate) fn progression(
+pub(crate) fn search_state(
     plan: &Plan<'_>,
     directory: &Directory,
     checkpoint: &Checkpoint,
-    told: &Told,
+    run_record: &RunRecord,
     genotype: &Genotype,
-) -> Result<Progression, Error> {
-    let search = resumed(plan, directory, checkpoint, &told.record)?;
-    let hall = match told.record.populations() {
+) -> Result<SearchState, Error> {
+    let search = resumed(plan, directory, checkpoint, &run_record.record)?;
+    let hall = match run_record.record.populations() {
         1 => Hall::default(),
         _ if search.opponents().is_some() => Hall::default(),
-        _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), genotype)?,
+        _ => Hall::before(&History::new(directory.record(), run_record.record.clone(), plan.fresh()), genotype)?,
     };
-    let observed = told.observed.last().cloned().or(plan.no_observations()?);
-    Ok(Progression::new(search, hall, observed, checkpoint.identity.seed))
+    let observed = run_record.observed.last().cloned().or(plan.no_observations()?);
+    Ok(SearchState::new(search, hall, observed, checkpoint.identity.seed))
 }
 
 /// Opens the lineage of a run that goes on, where its strategy has one.
@@ -127,19 +127,20 @@ pub(crate) fn champions(
     plan: &Plan<'_>,
     directory: &Directory,
     checkpoint: &Checkpoint,
-    told: &Told,
+    run_record: &RunRecord,
 ) -> Result<Option<Champions>, Error> {
-    let Some(generation) = told.champion() else { return Ok(None) };
+    let Some(generation) = run_record.champion() else { return Ok(None) };
     // What cannot be read is made again, too.
     if Champions::read(plan, directory).is_ok_and(|champions| champions.generation == generation) {
         return Ok(None);
     }
     let missing = || Error::damaged(&directory.record(), format!("has no champion of generation {generation}"));
-    let individuals = (0..told.record.populations()).map(|population| told.record.champion(population, generation));
+    let individuals =
+        (0..run_record.record.populations()).map(|population| run_record.record.champion(population, generation));
     let individuals: Vec<usize> = individuals.collect::<Option<_>>().ok_or_else(missing)?;
     let wanted: Vec<(u32, usize)> = individuals.iter().map(|&individual| (generation, individual)).collect();
-    let genomes = History::new(directory.record(), told.record.clone(), plan.fresh()).genomes(&wanted)?;
-    let line = told.lines.get(generation as usize).ok_or_else(missing)?;
+    let genomes = History::new(directory.record(), run_record.record.clone(), plan.fresh()).genomes(&wanted)?;
+    let line = run_record.lines.get(generation as usize).ok_or_else(missing)?;
     // Of a single population there is nothing but the whole.
     let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
     let best = individuals.into_iter().zip(genomes).zip(rows).map(|((individual, genes), [best, ..])| Best {
@@ -147,7 +148,7 @@ pub(crate) fn champions(
         fitness: Fitness::nan_as_failed(*best),
         genes,
     });
-    let before = (generation as usize).checked_sub(1).and_then(|before| told.observed.get(before)).cloned();
-    let normalisation = if told.observed.is_empty() { None } else { before.or(plan.no_observations()?) };
+    let before = (generation as usize).checked_sub(1).and_then(|before| run_record.observed.get(before)).cloned();
+    let normalisation = if run_record.observed.is_empty() { None } else { before.or(plan.no_observations()?) };
     Ok(Some(Champions { identity: checkpoint.identity.clone(), generation, best: best.collect(), normalisation }))
 }

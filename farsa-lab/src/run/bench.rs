@@ -11,11 +11,11 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::LanesInfo;
 use crate::experiment::outcome::Outcome;
-use crate::run::evaluations::Unfinished;
-use crate::run::fitness::{Generation, Opponents, evaluate_all};
+use crate::run::evaluation_backend::Unfinished;
+use crate::run::fitness::{Generation, Opponents, run_generation};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
-use crate::run::told::history;
+use crate::run::record_file::history;
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
 use crate::strategy::opponents::{Hall, Meeting};
@@ -169,7 +169,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
             }
         };
         let of = Generation { parameters, opponents, normalisation: None, id };
-        match evaluate_all(&mut pool.until(&stop), of, done) {
+        match run_generation(&mut pool.until(&stop), of, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
             Err(Unfinished::Error(error)) => return Err(error),

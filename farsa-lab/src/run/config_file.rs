@@ -7,17 +7,17 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::Error;
-use crate::escaped::{CUT, MOST_SHOWN, OneLine, Quoted, shortened};
+use crate::escaped::{CUT, MAX_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
 use crate::store::{bounded, limit_toml_tokens};
 use crate::strategy::settings::STRATEGY;
 
 /// The most bytes that are read of a configuration.
-pub(crate) const MOST_BYTES: u64 = 16_000_000;
+pub(crate) const MAX_BYTES: u64 = 16_000_000;
 /// More than any experiment has settings: among as many keys one is unknown.
-const MOST_KEYS: usize = 10_000;
+const MAX_KEYS: usize = 10_000;
 /// The most values of a list that a [`Found`] gives.
-const MOST_LISTED: usize = 10_000;
+const MAX_LISTED: usize = 10_000;
 /// The keys that are no settings.
 const RESERVED: [&str; 4] = ["experiment", "definition", "condition", "seed"];
 
@@ -52,7 +52,7 @@ impl ConfigFile {
     /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         // What is wrong with it is wrong with what was asked for.
-        let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+        let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
             error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
             other => other,
         })?;
@@ -63,8 +63,8 @@ impl ConfigFile {
     ///
     /// # Errors
     /// As [`read`](Self::read), and [`Error::Damaged`].
-    pub(crate) fn read_own(path: &Path) -> Result<Self, Error> {
-        Self::parse(&path.display().to_string(), &bounded::read_own_text(path, MOST_BYTES)?)
+    pub(crate) fn read_regular(path: &Path) -> Result<Self, Error> {
+        Self::parse(&path.display().to_string(), &bounded::read_regular_text(path, MAX_BYTES)?)
     }
 
     /// Reads a text; errors name it.
@@ -111,7 +111,7 @@ impl ConfigFile {
         };
         for found in &keys.found {
             let reserved = found.table.is_none() && found.value.is_some() && RESERVED.contains(&found.name);
-            if file.entries.len() == MOST_KEYS && !reserved {
+            if file.entries.len() == MAX_KEYS && !reserved {
                 file.beyond.get_or_insert_with(|| place(found.offset));
                 continue;
             }
@@ -181,8 +181,8 @@ impl Found<'_> {
         let Some(DeValue::Array(items)) = self.value.map(Spanned::get_ref) else {
             return Err(wrong(self.place.into(), "is not a list of values"));
         };
-        if items.len() > MOST_LISTED {
-            return Err(wrong(self.place.into(), &format!("is a list of more than {MOST_LISTED}")));
+        if items.len() > MAX_LISTED {
+            return Err(wrong(self.place.into(), &format!("is a list of more than {MAX_LISTED}")));
         }
         let values = items.iter().map(|item| {
             let place = (self.places)(item.span().start);
@@ -274,7 +274,7 @@ impl<'t> Keys<'t> {
             if number > 0 {
                 path.push('.');
             }
-            path.extend(name.chars().take(MOST_SHOWN + 1));
+            path.extend(name.chars().take(MAX_SHOWN + 1));
         }
         shortened(&path).into_owned()
     }
@@ -381,12 +381,12 @@ mod tests {
         use std::fmt::Write as _;
         // Each name of the table in each of its keys would be 2e10 bytes.
         let mut text = format!("[{}]\n", "a".repeat(1_000_000));
-        for number in 0..2 * MOST_KEYS {
+        for number in 0..2 * MAX_KEYS {
             writeln!(text, "k{number} = {number}").unwrap();
         }
         let file = ConfigFile::parse("my.toml", &text).unwrap();
-        assert_eq!(file.entries.len(), MOST_KEYS);
-        assert!(file.entries.iter().all(|(key, _)| key.len() == MOST_SHOWN + CUT.len()));
+        assert_eq!(file.entries.len(), MAX_KEYS);
+        assert!(file.entries.iter().all(|(key, _)| key.len() == MAX_SHOWN + CUT.len()));
         assert_eq!(file.beyond.as_deref(), Some("my.toml line 10002"));
     }
 
@@ -398,10 +398,10 @@ mod tests {
         assert_eq!(wrong(&"[a.a.a]\n".repeat(25_001)[..200_001]), why);
         // As many as a configuration has keys, each with a value, a unit of blanks and a comment, are read.
         let mut keys = String::new();
-        for number in 0..MOST_KEYS {
+        for number in 0..MAX_KEYS {
             writeln!(keys, "k{number} = 0.5  # [m]").unwrap();
         }
-        assert_eq!(ConfigFile::parse("my.toml", &keys).unwrap().entries.len(), MOST_KEYS);
+        assert_eq!(ConfigFile::parse("my.toml", &keys).unwrap().entries.len(), MAX_KEYS);
     }
 
     #[test]
@@ -409,7 +409,7 @@ mod tests {
         let path = std::env::temp_dir().join(format!("farsa config {}", std::process::id()));
         std::fs::write(&path, b"seed = 1\ncondition = \"\xff\"\n").unwrap();
         let wrong = |found: Result<ConfigFile, Error>| found.map(|_| ()).unwrap_err();
-        let (given, own) = (wrong(ConfigFile::read(&path)), wrong(ConfigFile::read_own(&path)));
+        let (given, own) = (wrong(ConfigFile::read(&path)), wrong(ConfigFile::read_regular(&path)));
         let why = format!("{}: line 2: the byte 0xff is no text (UTF-8)", path.display());
         assert_eq!((given.to_string(), given.exit_code()), (why.clone(), 2));
         assert_eq!((own.to_string(), own.exit_code()), (why, 1));
@@ -418,7 +418,7 @@ mod tests {
             let endless = wrong(ConfigFile::read("/dev/zero".as_ref())).to_string();
             assert_eq!(endless, "/dev/zero: has more than 16000000 bytes, the most that is read of it");
             assert_eq!(
-                wrong(ConfigFile::read_own("/dev/zero".as_ref())).to_string(),
+                wrong(ConfigFile::read_regular("/dev/zero".as_ref())).to_string(),
                 "/dev/zero: is not a regular file"
             );
         }

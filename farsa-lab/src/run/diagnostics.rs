@@ -7,8 +7,8 @@ use crate::error::Error;
 use crate::figures::plot;
 use crate::figures::plot::{Chart, Curve};
 use crate::figures::series::Series;
+use crate::store::append_log::AppendLog;
 use crate::store::directory::Directory;
-use crate::store::growing::Growing;
 use crate::store::replace::replace;
 use crate::strategy::definition::Diagnostics;
 use crate::strategy::search::Search;
@@ -18,7 +18,7 @@ pub(crate) struct DiagnosticsTable(Option<Table>);
 
 struct Table {
     diagnostics: Diagnostics,
-    file: Growing,
+    file: AppendLog,
     picture: PathBuf,
     generations: usize,
     /// A curve for each column.
@@ -45,7 +45,7 @@ impl DiagnosticsTable {
         for (generation, row) in rows.iter().enumerate() {
             text.push_str(&line(generation, row, &mut curves));
         }
-        let file = Growing::new(&table, text.as_bytes())?;
+        let file = AppendLog::new(&table, text.as_bytes())?;
         Ok(Self(Some(Table { diagnostics, file, picture, generations: rows.len(), curves })))
     }
 

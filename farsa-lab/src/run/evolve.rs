@@ -8,41 +8,41 @@ use farsa_evo::RecordWriter;
 
 use crate::error::Error;
 use crate::figures::log_curves::LogCurves;
-use crate::run::begin::{champions, lineage, progression};
+use crate::run::begin::{champions, lineage, search_state};
+use crate::run::catch_panic::catch_panic;
 use crate::run::collection::CollectionTable;
-use crate::run::contained::contained;
+use crate::run::coordinator::{barrier, coordinate, facts, run_command};
 use crate::run::diagnostics::DiagnosticsTable;
-use crate::run::evaluations::Unfinished;
-use crate::run::leading::{facts, lead, meet, order};
+use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::Progress;
-use crate::run::progression::{Evaluated, Progression};
+use crate::run::record_file::{RunRecord, RunRecordWriter};
 use crate::run::records::{Champions, Checkpoint, evolved};
+use crate::run::search_state::{GenerationResult, SearchState};
 use crate::run::summary::{Summary, Winner};
-use crate::run::told::{Told, ToldFile};
-use crate::store::bounded::read_own_text;
+use crate::store::append_log::Mark;
+use crate::store::bounded::read_regular_text;
 use crate::store::directory::Directory;
-use crate::store::draft;
 use crate::store::failures::{FailedEvaluation, Failures};
-use crate::store::growing::Mark;
 use crate::store::identity::Identity;
 use crate::store::lineage::{Lineage, rows};
 use crate::store::lock::Lock;
 use crate::store::log::{Line, Log};
 use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
+use crate::store::temporary_file;
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
 /// Bytes of the largest configuration that is compared with what is written.
-const LARGEST_CONFIG: u64 = 16 << 20;
+const MAX_CONFIG_BYTES: u64 = 16 << 20;
 
 /// Evolves the run in a directory up to its last generation and says what came of it.
 ///
 /// # Errors
 /// [`Error::Interrupted`] after `stop` became true; all finished generations are then kept.
-pub(crate) fn go_on(
+pub(crate) fn continue_run(
     plan: &Plan<'_>,
     directory: &Directory,
     pool: Pool<'_>,
@@ -53,14 +53,14 @@ pub(crate) fn go_on(
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
     let lock = Lock::of_run(directory.path())?;
-    go_on_holding(&lock, plan, directory, pool, stop, program, quiet)
+    continue_locked(&lock, plan, directory, pool, stop, program, quiet)
 }
 
 /// The same with a run whose lock is held already.
 ///
 /// # Errors
-/// As [`go_on`].
-pub(crate) fn go_on_holding(
+/// As [`continue_run`].
+pub(crate) fn continue_locked(
     _lock: &Lock,
     plan: &Plan<'_>,
     directory: &Directory,
@@ -76,17 +76,17 @@ pub(crate) fn go_on_holding(
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
-    let (order, facts) = (order(plan, directory, &pool, &checkpoint)?, facts(plan)?);
+    let (command, facts) = (run_command(plan, directory, &pool, &checkpoint)?, facts(plan)?);
     let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
     let individuals =
-        |generations: u32| u64::from(generations).saturating_mul(run.progression.search.individuals() as u64);
+        |generations: u32| u64::from(generations).saturating_mul(run.search_state.search.individuals() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.kept {
         let (log, kept) = (directory.log(), kept.display());
         progress
             .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
     }
-    lead(&mut pool, order, facts, |pool| {
+    coordinate(&mut pool, command, facts, |pool| {
         let ended = run.evolve(last, pool, stop, &progress);
         if let Some(total) = run.told_of_failures() {
             progress.note(&total);
@@ -106,9 +106,9 @@ struct Run<'d> {
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    progression: Progression,
+    search_state: SearchState,
     record: RecordWriter,
-    told: ToldFile,
+    record_file: RunRecordWriter,
     log: Log,
     /// What `fitness.svg` shows of it.
     curves: LogCurves,
@@ -137,28 +137,28 @@ impl<'d> Run<'d> {
         pool: &Pool<'_>,
         program: &'d str,
     ) -> Result<Self, Error> {
-        let mut told = Told::read(plan, directory, &checkpoint)?;
-        let progression = progression(plan, directory, &checkpoint, &told, pool.genotype())?;
+        let mut run_record = RunRecord::read(plan, directory, &checkpoint)?;
+        let search_state = search_state(plan, directory, &checkpoint, &run_record, pool.genotype())?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
-        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), search_state.search.generation()));
         let text = plan.to_toml()?;
-        draft::sweep(directory.path());
-        if read_own_text(&directory.config(), LARGEST_CONFIG).ok().as_ref() != Some(&text) {
+        temporary_file::sweep(directory.path());
+        if read_regular_text(&directory.config(), MAX_CONFIG_BYTES).ok().as_ref() != Some(&text) {
             replace(&directory.config(), text.as_bytes())?;
         }
-        let file = told.file(directory)?;
-        let collection = CollectionTable::new(&progression.search, pool.evaluator());
-        let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
-        let mut champions = champions(plan, directory, &checkpoint, &told)?;
+        let record_file = run_record.writer(directory)?;
+        let collection = CollectionTable::new(&search_state.search, pool.evaluator());
+        let lineage = lineage(plan, directory, &checkpoint, &run_record.record, &search_state.search)?;
+        let mut champions = champions(plan, directory, &checkpoint, &run_record)?;
         if let Some(champions) = &champions {
             champions.write(&directory.champion())?;
         }
-        if !told.keeps_champion {
+        if !run_record.keeps_champion {
             champions = None;
-        } else if champions.is_none() && told.champion().is_some() {
+        } else if champions.is_none() && run_record.champion().is_some() {
             champions = Some(Champions::read(plan, directory)?);
         }
-        let Told { lines, diagnostics, record, .. } = told;
+        let RunRecord { lines, diagnostics, record, .. } = run_record;
         let (log, kept) = Log::resume(&directory.log(), &lines, record.populations())?;
         let curves = LogCurves::from_lines(&lines, record.populations());
         Ok(Self {
@@ -167,9 +167,9 @@ impl<'d> Run<'d> {
             title: plan.name(),
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
-            progression,
+            search_state,
             record: record.writer(),
-            told: file,
+            record_file,
             log,
             curves,
             kept,
@@ -188,15 +188,15 @@ impl<'d> Run<'d> {
     fn evolve(&mut self, last: u32, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Error> {
         let mut saved = Instant::now();
         let mut ended = Ok(());
-        while self.progression.search.generation() < last {
-            let generation = self.progression.search.generation();
-            if let Err(full) = self.told.room() {
+        while self.search_state.search.generation() < last {
+            let generation = self.search_state.search.generation();
+            if let Err(full) = self.record_file.check_space() {
                 let why = format!("{full}; the run ends after {generation} generations, which are kept");
                 ended = Err(Error::Other(why));
                 break;
             }
             // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
-            let result = contained(|| meet(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
+            let result = catch_panic(|| barrier(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
             match result.map_err(|why| Error::Panicked { generation, why })? {
                 Ok(()) => {}
                 Err(Unfinished::Error(error)) => return Err(error),
@@ -217,14 +217,14 @@ impl<'d> Run<'d> {
 
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
-        let generation = self.progression.search.generation();
-        let Evaluated { fitness, failed, statistics, each, best, normalisation, .. } =
-            self.progression.generation(&mut pool.until(stop), &|| progress.advance(), |search, judgements| {
+        let generation = self.search_state.search.generation();
+        let GenerationResult { fitness, failed, statistics, each, best, normalisation, .. } =
+            self.search_state.generation(&mut pool.until(stop), &|| progress.advance(), |search, judgements| {
                 search.tell(&mut self.record, judgements)
             })?;
-        let search = &self.progression.search;
+        let search = &self.search_state.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.record, &line, search, self.progression.observed.as_ref())?;
+        self.record_file.append(&self.record, &line, search, self.search_state.observed.as_ref())?;
         self.log.append(&line)?;
         self.curves.push(&line);
         self.failures.append(&failed, self.program)?;
@@ -271,7 +271,7 @@ impl<'d> Run<'d> {
     fn save(&mut self) -> Result<(), Error> {
         let (directory, identity) = (self.directory, &self.identity);
         self.log.sync()?;
-        let record = self.told.sync()?;
+        let record = self.record_file.sync()?;
         let lineage = self.lineage.as_mut().map_or(Ok(Mark::default()), Lineage::sync)?;
         let failures = self.failures.sync()?;
         if let Some(champions) = &self.champions {
@@ -279,10 +279,10 @@ impl<'d> Run<'d> {
         }
         self.diagnostics.save(&self.title)?;
         if let Some(collection) = &self.collection {
-            collection.write(&self.progression.search, directory, &self.title)?;
+            collection.write(&self.search_state.search, directory, &self.title)?;
         }
-        let generation = self.progression.search.generation();
-        let state = self.progression.search.snapshot().map(|strategy| strategy.save());
+        let generation = self.search_state.search.generation();
+        let state = self.search_state.search.snapshot().map(|strategy| strategy.save());
         Checkpoint { identity: identity.clone(), generation, record, lineage, failures, state }
             .write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
@@ -304,7 +304,7 @@ impl<'d> Run<'d> {
             experiment,
             condition,
             seed,
-            generations: self.progression.search.generation(),
+            generations: self.search_state.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),
@@ -394,7 +394,7 @@ mod tests {
 
     fn finish(toy: Toy, directory: &Directory) -> Result<Summary, Error> {
         let plan = Plan::new(&toy, None, "")?;
-        go_on(&plan, directory, pool(&plan, 2), &AtomicBool::new(false), "farsa", true)
+        continue_run(&plan, directory, pool(&plan, 2), &AtomicBool::new(false), "farsa", true)
     }
 
     #[test]
@@ -450,7 +450,8 @@ mod tests {
         let toy = Toy { version: 1, panics: false };
         let mut plan = Plan::new(&toy, None, "").unwrap();
         let directory = create(&plan, &root).unwrap();
-        let stopped = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
+        let stopped =
+            continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
         assert_eq!(stopped.exit_code(), 130);
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
         // Nobody is best yet.
@@ -463,7 +464,7 @@ mod tests {
         let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
         assert!(replayed.to_string().contains("record.bin: no generation is finished"), "{replayed}");
         plan.settings.set("", GENERATIONS, Value::Whole(2)).unwrap();
-        go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
+        continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
         fs::remove_dir_all(root).unwrap();
     }

@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::outcome::Outcome;
-use crate::run::contained::contained;
-use crate::run::evaluations::{Evaluations, Unfinished};
+use crate::run::catch_panic::catch_panic;
+use crate::run::evaluation_backend::{EvaluationBackend, Unfinished};
 use crate::store::failures::FailedEvaluation;
 
 /// The opponents of a generation's evaluations, in their order, so many for each.
@@ -72,7 +72,7 @@ impl<'g> Opponents<'g> {
 ///
 /// A trial that failed makes its individual the worst, whatever comes of the others.
 pub(crate) fn judgements_of_all(
-    by: &mut dyn Evaluations,
+    by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
     shape: JudgementShape,
     advance: &(dyn Fn() + Sync),
@@ -109,13 +109,13 @@ pub(crate) fn judgements_of_all(
 /// Evaluates all trials of all individuals and says what each comes to, by as many numbers as are asked for, with its trials, or
 /// its first trial that failed and why. `done` hears of every trial that ends.
 pub(crate) fn individuals(
-    by: &mut dyn Evaluations,
+    by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
     shape: JudgementShape,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
     let count = of.parameters.len();
-    let mut outcomes = evaluate_all(by, of, done)?;
+    let mut outcomes = run_generation(by, of, done)?;
     let evaluator = by.evaluator();
     let names = evaluator.terms();
     let row = |outcomes: &[Outcome]| row(evaluator, shape, of.opponents.told_apart, outcomes);
@@ -209,7 +209,7 @@ fn judged(
         }
         outcomes.push(outcome);
     }
-    match contained(|| row(&outcomes)) {
+    match catch_panic(|| row(&outcomes)) {
         Ok(row) => row.map(|row| (row, outcomes)).map_err(|why| (None, why)),
         Err(why) => Err((None, format!("its fitness panicked: {why}"))),
     }
@@ -220,8 +220,8 @@ fn judged(
 ///
 /// Episodes side by side cost least when they are alike. What an individual has left after the first of its trials that failed is
 /// left out; those before it never are, so that it is the first on any number of threads.
-pub(crate) fn evaluate_all(
-    by: &mut dyn Evaluations,
+pub(crate) fn run_generation(
+    by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {

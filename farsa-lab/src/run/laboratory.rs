@@ -76,7 +76,7 @@ pub struct Template {
 /// What names of files end with that describe an experiment.
 pub(crate) const FILE: &str = ".toml";
 /// The most bytes of such a file.
-pub(crate) const MOST_BYTES: u64 = 1_000_000;
+pub(crate) const MAX_BYTES: u64 = 1_000_000;
 
 impl<'e> Laboratory<'e> {
     /// These experiments, in the order in which they are listed, with the strategies of this crate.
@@ -154,7 +154,7 @@ impl<'e> Laboratory<'e> {
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if name.ends_with(FILE) {
             let path = Path::new(name);
-            let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+            let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
                 error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
                 other => other,
             })?;

@@ -1,72 +1,71 @@
-//! Runs: from a configuration to a champion, on all processors, to be gone on with at any time.
-//!
-//! - `begin`: how a run begins, and how it is taken up where its checkpoint left it
-//! - `bench`: `farsa bench`: how fast trials run here, and how long a whole study would take
-//! - `best_of_run`: the best of a run, for comparisons that the command does not make
-//! - `collection`: what a strategy keeps beyond a generation, as a table and a picture
-//! - `config_file`: a configuration file, and the settings of a command line
-//! - `contained`: code of an experiment that panics, caught
-//! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
-//! - `evaluations`: who evaluates a generation: the threads and ranks of a run, or the workers of a page
-//! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
-//! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
-//! - `imported_file`: a file in another format as one that describes an experiment
-//! - `laboratory`: the experiments and strategies that a command knows by name, [`Laboratory`]
-//! - `following`: what a rank other than the first does in a run: it holds the same search and writes nothing
-//! - `leading`: what ranks do around the generations of a run
-//! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
-//! - `pool`: trials on several threads, with the same results on any number of them
-//! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
-//! - `queue`: runs that any number of processes work at: each takes the next one that nobody has
-//! - `records`: the sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere
-//! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
-//! - `progression`: a search in progress, the same on every rank of a run
-//! - `summary`: what came of a run, for the command to tell
-//! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
-//! - `text_table`: tables for a terminal
-//! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
-//! - `world_choice`: which world an experiment runs in, where there is a choice
+//! Runs: from a configuration to a champion, on all processors. A run can be interrupted and resumed at any time.
 
+/// Creates the directory of a run and restores a search from its checkpoint.
 #[cfg(feature = "command")]
 pub(crate) mod begin;
+/// `farsa bench`: measures trials per second and estimates the duration of a study.
 #[cfg(feature = "command")]
 pub(crate) mod bench;
+/// The best individual of a run, for programs that analyze runs.
 mod best_of_run;
+/// Panics of an experiment's code, caught.
+pub(crate) mod catch_panic;
+/// The archive or front of a strategy, as a table and a picture.
 #[cfg(feature = "command")]
 pub(crate) mod collection;
+/// A configuration file, and the settings of a command line.
 pub(crate) mod config_file;
-pub(crate) mod contained;
+/// Rank 0 of a run: it sends commands to the workers and synchronizes all ranks.
+#[cfg(feature = "command")]
+pub(crate) mod coordinator;
+/// The diagnostics of a strategy for each generation, as a table and a picture.
 #[cfg(feature = "command")]
 mod diagnostics;
-pub(crate) mod evaluations;
+/// The interface to what evaluates a generation: threads and ranks, or the workers of a page.
+pub(crate) mod evaluation_backend;
+/// The loop over generations, with saves.
 #[cfg(feature = "command")]
 pub(crate) mod evolve;
+/// The fitness of a generation from the trials of all individuals.
 pub(crate) mod fitness;
-#[cfg(feature = "command")]
-pub(crate) mod following;
+/// A file in another format, converted to a file that describes an experiment.
 mod imported_file;
+/// The experiments and strategies that a command finds by name.
 pub(crate) mod laboratory;
-#[cfg(feature = "command")]
-pub(crate) mod leading;
+/// The experiment, condition, seed and settings of a run.
 pub(crate) mod plan;
+/// A pool of threads that run trials.
 #[cfg(feature = "command")]
 pub(crate) mod pool;
+/// Progress on a terminal or in plain lines.
 #[cfg(feature = "command")]
 pub(crate) mod progress;
-pub(crate) mod progression;
+/// Runs shared by any number of processes. Each process takes the next unclaimed run.
 #[cfg(feature = "command")]
 pub(crate) mod queue;
+/// `record.bin`: the reported fitness of every generation.
+#[cfg(feature = "command")]
+pub(crate) mod record_file;
+/// The checksummed files of a run: checkpoint, champions and imported genotypes.
 pub(crate) mod records;
+/// `farsa run --replications`: one plan under consecutive seeds.
 #[cfg(feature = "command")]
 pub(crate) mod replications;
+/// The state of a search, equal on every rank.
+pub(crate) mod search_state;
+/// The result of a run.
 #[cfg(feature = "command")]
 pub(crate) mod summary;
+/// Tests of whole runs with every strategy.
 #[cfg(all(test, feature = "command"))]
 mod tests;
+/// Tables for a terminal.
 #[cfg(feature = "command")]
 pub(crate) mod text_table;
+/// Ranks except the first: they evaluate the same search and write no files.
 #[cfg(feature = "command")]
-pub(crate) mod told;
+pub(crate) mod worker;
+/// The choice of world, where an experiment offers one.
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;

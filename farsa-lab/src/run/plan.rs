@@ -21,10 +21,10 @@ use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
 /// The largest seed of a run; bit 63 marks the trials of a test.
-pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
+pub(crate) const MAX_SEED: u64 = i64::MAX as u64;
 
 /// The most bytes that are read of a file that an experiment names.
-const MOST_BYTES: u64 = 1_000_000_000;
+const MAX_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
 #[derive(Clone)]
@@ -247,7 +247,7 @@ impl<'e> Plan<'e> {
             .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
             .collect();
         for path in self.experiment.files(&self.condition, &self.settings)? {
-            let bytes = bounded::read_own(&path, MOST_BYTES)?;
+            let bytes = bounded::read_regular(&path, MAX_BYTES)?;
             settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
         }
         if let Some(text) = self.experiment.definition() {
@@ -475,7 +475,7 @@ mod tests {
         fs::remove_file(&path).unwrap();
         let said = plan.identity().unwrap_err().to_string();
         assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
-        fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+        fs::File::create(&path).unwrap().set_len(MAX_BYTES + 1).unwrap();
         let said = plan.identity().unwrap_err().to_string();
         assert_eq!(said, format!("{name}: has more than 1000000000 bytes, the most that is read of it"));
         fs::remove_file(&path).unwrap();

@@ -15,9 +15,9 @@ use crate::experiment::outcome::Outcome;
 use crate::experiment::settings::Settings;
 use crate::ranks::dealing::{give, take};
 use crate::ranks::exchange::{Exchange, Numbered, Status};
-use crate::ranks::numbers::{Given, Numbers};
-use crate::run::contained::contained;
-use crate::run::evaluations::{Evaluations, Heard, TaskOf, Unfinished, round};
+use crate::ranks::numbers::{AssignedBlocks, Numbers};
+use crate::run::catch_panic::catch_panic;
+use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinished, round};
 use crate::run::plan::Plan;
 
 /// An experiment made ready for every thread.
@@ -142,7 +142,8 @@ impl<'e> Pool<'e> {
     ) -> Result<Vec<Numbered>, Error> {
         let (maker, exchange, all) = (&self.maker, &self.exchange, self.evaluators.len());
         let at_once = all * maker.lanes.count();
-        let numbers = if exchange.is_follower() { Numbers::Given(Given::default()) } else { Numbers::counted(count) };
+        let numbers =
+            if exchange.is_follower() { Numbers::Assigned(AssignedBlocks::default()) } else { Numbers::counted(count) };
         let work = &Work { numbers, ended: AtomicBool::new(false), stop, task, done, maker };
         thread::scope(|scope| {
             let mut threads = Vec::with_capacity(all);
@@ -164,7 +165,7 @@ impl<'e> Pool<'e> {
                 told || threads.iter().any(thread::ScopedJoinHandle::is_finished)
             };
             let shared = match &work.numbers {
-                Numbers::Given(given) => take(exchange.ranks(), given, at_once, &ended),
+                Numbers::Assigned(given) => take(exchange.ranks(), given, at_once, &ended),
                 numbers @ Numbers::Counted { .. } => give(exchange.ranks(), numbers, &ended),
             };
             if shared.is_err() {
@@ -185,7 +186,7 @@ impl<'e> Pool<'e> {
     pub(crate) fn withdraw(&self, status: &Status) -> Result<(), Error> {
         let ranks = self.exchange.ranks();
         if self.exchange.is_follower() {
-            take(ranks, &Given::default(), 0, &|| true)?;
+            take(ranks, &AssignedBlocks::default(), 0, &|| true)?;
         } else {
             give(ranks, &Numbers::counted(0), &|| true)?;
         }
@@ -202,7 +203,7 @@ pub(crate) struct Stoppable<'p, 'e> {
 /// After so many generations ranks compare again what they evaluate.
 const COMPARED: u32 = 10;
 
-impl Evaluations for Stoppable<'_, '_> {
+impl EvaluationBackend for Stoppable<'_, '_> {
     fn evaluator(&self) -> &dyn Evaluator {
         self.pool.evaluator()
     }
@@ -277,7 +278,7 @@ where
             running.borrow_mut().retain(|evaluation| evaluation.number != number);
             put(number, Some(outcome));
         };
-        while let Err(why) = contained(|| round(evaluator.as_mut(), &mut next, &mut end)) {
+        while let Err(why) = catch_panic(|| round(evaluator.as_mut(), &mut next, &mut end)) {
             let broken = running.take();
             self.renew(evaluator)?;
             if self.maker.lanes.count() == 1 {
@@ -288,7 +289,7 @@ where
             }
             // One of those side by side has panicked: alone each comes to what it would have come to.
             for evaluation in broken {
-                let outcome = contained(|| evaluator.evaluate(evaluation, None));
+                let outcome = catch_panic(|| evaluator.evaluate(evaluation, None));
                 if outcome.is_err() {
                     self.renew(evaluator)?;
                 }
@@ -300,11 +301,11 @@ where
 
     /// Puts a new evaluator in the place of one in which a trial panicked.
     fn renew(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<(), Error> {
-        let made = contained(|| self.maker.make());
+        let made = catch_panic(|| self.maker.make());
         let made = made.unwrap_or_else(|why| Err(Error::Other(format!("the experiment cannot be prepared: {why}"))));
         // What is left of the old one may panic once more while it is dropped.
         let old = std::mem::replace(evaluator, made.inspect_err(|_| self.ended.store(true, Ordering::Relaxed))?);
-        let _ = contained(|| drop(old));
+        let _ = catch_panic(|| drop(old));
         Ok(())
     }
 }

@@ -62,7 +62,7 @@ impl Queue<'_, '_> {
     /// Begins, goes on with or skips each run, until all are finished or the others are at the rest; in their order.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] after `stop` became true, and what [`evolve::go_on`] says about the run that failed. The runs
+    /// [`Error::Interrupted`] after `stop` became true, and what [`evolve::continue_run`] says about the run that failed. The runs
     /// before it are kept, those after it not begun.
     pub(crate) fn work(&self, stop: &AtomicBool) -> Result<Vec<State>, Error> {
         let mut states: Vec<State> = Vec::new();
@@ -107,7 +107,7 @@ impl Queue<'_, '_> {
         }
         self.tell(&format!("{name}: {place}{}", if new { "" } else { ": goes on" }));
         let pool = (self.pool)(&plan)?;
-        let summary = evolve::go_on_holding(&lock, &plan, &directory, pool, stop, self.program, self.quiet);
+        let summary = evolve::continue_locked(&lock, &plan, &directory, pool, stop, self.program, self.quiet);
         let summary = summary.map_err(|error| match error {
             Error::Interrupted { .. } => Error::Interrupted { resume: again(self.program) },
             error => error,

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::run::plan::Plan;
+use crate::store::append_log::Mark;
+use crate::store::checksummed;
+use crate::store::checksummed::Checksummed;
 use crate::store::directory::Directory;
-use crate::store::growing::Mark;
 use crate::store::identity::Identity;
-use crate::store::sealed;
-use crate::store::sealed::Sealed;
 use crate::strategy::search::{Genome, LARGEST_STATE};
 
 /// `checkpoint.bin`: where to go on; it does not grow.
@@ -127,10 +127,10 @@ struct ChampionsNormalised {
 /// Gives records their first bytes, their names, their largest sizes and their owner.
 macro_rules! sealed {
     ($($record:ty: $magic:literal, $kind:literal, $largest:expr;)*) => {$(
-        impl Sealed for $record {
+        impl Checksummed for $record {
             const MAGIC: [u8; 8] = *$magic;
             const KIND: &'static str = $kind;
-            const LARGEST: u64 = $largest;
+            const MAX_BYTES: u64 = $largest;
         }
 
         impl Owned for $record {
@@ -153,13 +153,13 @@ sealed! {
 }
 
 /// A record that says which run it belongs to.
-trait Owned: Sealed {
+trait Owned: Checksummed {
     fn identity(&self) -> &Identity;
 }
 
 /// Reads a record of the run that a plan describes, as it lies in `directory`.
 fn read<T: Owned>(path: &Path, plan: &Plan<'_>, directory: &Directory) -> Result<T, Error> {
-    let record: T = sealed::read(path)?;
+    let record: T = checksummed::read(path)?;
     plan.same_run(record.identity(), directory.path())?;
     Ok(record)
 }
@@ -204,7 +204,7 @@ impl Checkpoint {
 
     /// Writes the file.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
-        sealed::write(path, self)
+        checksummed::write(path, self)
     }
 }
 
@@ -214,7 +214,7 @@ impl Checkpoint {
 /// As [`Checkpoint::read`].
 pub(crate) fn imported(plan: &Plan<'_>, directory: &Directory) -> Result<(Identity, Vec<Vec<u16>>, usize), Error> {
     let path = directory.genotypes();
-    if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
+    if checksummed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
         let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
         return Ok((identity, genomes, populations));
     }
@@ -233,9 +233,9 @@ pub(crate) fn write_imported(
     populations: usize,
 ) -> Result<(), Error> {
     if populations == 1 {
-        sealed::write(path, &Imported { identity, genomes })
+        checksummed::write(path, &Imported { identity, genomes })
     } else {
-        sealed::write(path, &ImportedSeveral { identity, genomes, populations })
+        checksummed::write(path, &ImportedSeveral { identity, genomes, populations })
     }
 }
 
@@ -260,16 +260,19 @@ impl Champions {
         }
         if let Some(statistics) = normalisation {
             let normalisation = statistics.save();
-            return sealed::write(path, &ChampionsNormalised { identity, generation, words, reals, normalisation });
+            return checksummed::write(
+                path,
+                &ChampionsNormalised { identity, generation, words, reals, normalisation },
+            );
         }
         if !reals.is_empty() {
-            return sealed::write(path, &ChampionsOfReals { identity, generation, best: reals });
+            return checksummed::write(path, &ChampionsOfReals { identity, generation, best: reals });
         }
         if words.len() == 1 {
             let BestOf { individual, fitness, genes } = words.swap_remove(0);
-            return sealed::write(path, &ChampionOfOne { identity, generation, individual, fitness, genes });
+            return checksummed::write(path, &ChampionOfOne { identity, generation, individual, fitness, genes });
         }
-        sealed::write(path, &ChampionsOfSeveral { identity, generation, best: words })
+        checksummed::write(path, &ChampionsOfSeveral { identity, generation, best: words })
     }
 
     /// Reads the champions of the run that a plan describes.
@@ -278,7 +281,7 @@ impl Champions {
     /// As [`Checkpoint::read`].
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         let path = directory.champion();
-        let magic = sealed::magic(&path)?;
+        let magic = checksummed::magic(&path)?;
         if magic == Some(ChampionsNormalised::MAGIC) {
             let ChampionsNormalised { identity, generation, words, reals, normalisation } =
                 read(&path, plan, directory)?;

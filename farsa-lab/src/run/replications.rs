@@ -10,15 +10,15 @@ use crate::error::Error;
 use crate::escaped::OneLine;
 use crate::figures::significant::significant;
 use crate::figures::statistics::{Quartiles, median};
-use crate::run::plan::{LARGEST_SEED, Plan};
+use crate::run::plan::{MAX_SEED, Plan};
 use crate::run::pool::Pool;
 use crate::run::queue::{Member, Queue, State};
 use crate::run::summary::Summary;
 use crate::run::text_table::text_table;
 
-/// Which replications of a plan.
+/// Selection replications of a plan.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Which {
+pub(crate) struct Selection {
     /// How many there are, at least one; the first has the seed of the plan, and each one more than the one before.
     pub(crate) count: u32,
     /// The number of the only one that is wanted, from 1.
@@ -45,16 +45,16 @@ struct Replication {
     skipped: bool,
 }
 
-impl Which {
+impl Selection {
     /// The seeds that are wanted, each with the number of its replication.
     ///
     /// # Errors
     /// [`Error::Usage`] for a number beyond the last, and for seeds beyond the largest.
     pub(crate) fn seeds(self, first: u64) -> Result<Vec<(u32, u64)>, Error> {
         let Self { count, only } = self;
-        if first.checked_add(u64::from(count) - 1).is_none_or(|last| last > LARGEST_SEED) {
+        if first.checked_add(u64::from(count) - 1).is_none_or(|last| last > MAX_SEED) {
             return Err(Error::Usage(format!(
-                "{count} replications from seed {first}: the largest seed is {LARGEST_SEED}"
+                "{count} replications from seed {first}: the largest seed is {MAX_SEED}"
             )));
         }
         let numbers = match only {
@@ -72,10 +72,10 @@ impl Which {
 /// made sure that every place has such a run or none.
 ///
 /// # Errors
-/// Those of [`Which::seeds`], [`Queue::check`] and [`Queue::work`].
+/// Those of [`Selection::seeds`], [`Queue::check`] and [`Queue::work`].
 pub(crate) fn run<'e>(
     plan: &Plan<'e>,
-    which: Which,
+    which: Selection,
     root: &Path,
     pool: &dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
     stop: impl FnOnce() -> &'static AtomicBool,
@@ -135,16 +135,16 @@ mod tests {
 
     #[test]
     fn a_number_names_the_seed_that_all_would_give_it() {
-        let seeds = |count, only, first| Which { count, only }.seeds(first);
+        let seeds = |count, only, first| Selection { count, only }.seeds(first);
         let all = seeds(4, None, 7).unwrap();
         assert_eq!(all, [(1, 7), (2, 8), (3, 9), (4, 10)]);
         for number in 1..=4 {
             assert_eq!(seeds(4, Some(number), 7).unwrap(), [all[number as usize - 1]]);
         }
         assert_eq!(seeds(4, Some(5), 7).unwrap_err().to_string(), "--replication 5: there are 4");
-        assert_eq!(seeds(2, None, LARGEST_SEED - 1).unwrap().len(), 2);
+        assert_eq!(seeds(2, None, MAX_SEED - 1).unwrap().len(), 2);
         // Also where the one that is asked for would still have a seed.
-        for first in [LARGEST_SEED, u64::MAX] {
+        for first in [MAX_SEED, u64::MAX] {
             assert!(seeds(2, Some(1), first).unwrap_err().to_string().contains("the largest seed is"));
         }
     }

@@ -1,7 +1,7 @@
 //! Files read with a bound on their bytes and on the time waited for them.
 //!
-//! A user may name a pipe or a device ([`read`]); a run directory may be a stranger's, and holds only regular files
-//! ([`read_own`]).
+//! A user may name a pipe or a device ([`read_stream`]); a run directory may be a stranger's, and holds only regular files
+//! ([`read_regular`]).
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
@@ -22,23 +22,23 @@ const CHUNK: usize = 1 << 16;
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Damaged`] for more bytes than the limit, and for a pipe that gives nothing for ten seconds.
-pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+pub(crate) fn read_stream(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     read_within(path, limit, PATIENCE)
 }
 
 /// The same as text.
 ///
 /// # Errors
-/// As [`read`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
-pub(crate) fn read_text(path: &Path, limit: u64) -> Result<String, Error> {
-    text(path, read(path, limit)?)
+/// As [`read_stream`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
+pub(crate) fn read_stream_text(path: &Path, limit: u64) -> Result<String, Error> {
+    text(path, read_stream(path, limit)?)
 }
 
 /// The bytes of a file of a run directory, which has to be a regular one, or a link to one.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Damaged`] for more bytes than the limit, and for a pipe, a device or a directory.
-pub(crate) fn read_own(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+pub(crate) fn read_regular(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     let regular = |found: Metadata| {
         if found.is_file() { Ok(found) } else { Err(Error::damaged(path, "is not a regular file")) }
     };
@@ -53,8 +53,8 @@ pub(crate) fn read_own(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 /// [`Error::Io`] for a regular file that cannot be read: what it holds may still be wanted.
-pub(crate) fn read_own_if_any(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, Error> {
-    match read_own(path, limit) {
+pub(crate) fn read_regular_if_present(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, Error> {
+    match read_regular(path, limit) {
         Err(error @ Error::Io { .. }) if path.symlink_metadata().is_ok_and(|found| found.is_file()) => Err(error),
         read => Ok(read.ok()),
     }
@@ -63,9 +63,9 @@ pub(crate) fn read_own_if_any(path: &Path, limit: u64) -> Result<Option<Vec<u8>>
 /// The same as text.
 ///
 /// # Errors
-/// As [`read_own`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
-pub(crate) fn read_own_text(path: &Path, limit: u64) -> Result<String, Error> {
-    text(path, read_own(path, limit)?)
+/// As [`read_regular`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
+pub(crate) fn read_regular_text(path: &Path, limit: u64) -> Result<String, Error> {
+    text(path, read_regular(path, limit)?)
 }
 
 /// The text of a file that a setting names, of at most `limit` bytes: for [`Experiment::prepare`](crate::Experiment::prepare).
@@ -76,7 +76,7 @@ pub(crate) fn read_own_text(path: &Path, limit: u64) -> Result<String, Error> {
 /// [`Error::Io`]; [`Error::Damaged`] for more bytes than the limit, for a pipe, a device or a directory, and with the line of
 /// the first byte that is not UTF-8.
 pub fn read_text_file(path: &Path, limit: u64) -> Result<String, Error> {
-    read_own_text(path, limit)
+    read_regular_text(path, limit)
 }
 
 fn read_within(path: &Path, limit: u64, patience: Duration) -> Result<Vec<u8>, Error> {
@@ -208,12 +208,12 @@ mod tests {
     fn what_cannot_be_read_is_not_taken_for_lost() {
         let place = Place::new("any");
         let file = place.file("some", b"abc");
-        assert_eq!(read_own_if_any(&file, 3).unwrap(), Some(b"abc".into()));
-        assert_eq!(read_own_if_any(&place.0.join("none"), 3).unwrap(), None);
-        assert_eq!(read_own_if_any(&place.0, 3).unwrap(), None);
+        assert_eq!(read_regular_if_present(&file, 3).unwrap(), Some(b"abc".into()));
+        assert_eq!(read_regular_if_present(&place.0.join("none"), 3).unwrap(), None);
+        assert_eq!(read_regular_if_present(&place.0, 3).unwrap(), None);
         // A regular file by its kind, whose first byte nothing can read.
         if cfg!(target_os = "linux") {
-            let unread = read_own_if_any(Path::new("/proc/self/mem"), 3).unwrap_err();
+            let unread = read_regular_if_present(Path::new("/proc/self/mem"), 3).unwrap_err();
             assert!(unread.to_string().starts_with("cannot read "), "{unread}");
         }
     }
@@ -222,7 +222,7 @@ mod tests {
     fn a_file_is_read_up_to_the_limit() {
         let place = Place::new("limit");
         let path = place.file("a", &vec![7; 3 * CHUNK]);
-        for read in [read, read_own] {
+        for read in [read_stream, read_regular] {
             assert_eq!(read(&path, 3 * CHUNK as u64).unwrap(), vec![7; 3 * CHUNK]);
             let said = read(&path, 3 * CHUNK as u64 - 1).unwrap_err().to_string();
             assert_eq!(said, format!("{}: has more than 196607 bytes, the most that is read of it", path.display()));
@@ -232,9 +232,9 @@ mod tests {
             assert!(said.ends_with("hole: has more than 1073741824 bytes, the most that is read of it"), "{said}");
             assert!(matches!(read(&place.0.join("none"), 1), Err(Error::Io { .. })));
         }
-        let said = read(&place.0, 9).unwrap_err().to_string();
+        let said = read_stream(&place.0, 9).unwrap_err().to_string();
         assert_eq!(said, format!("cannot read {}: it is a directory", place.0.display()));
-        assert!(read_own(&place.0, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
+        assert!(read_regular(&place.0, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
     }
 
     #[test]
@@ -242,11 +242,11 @@ mod tests {
         let place = Place::new("text");
         let path = place.file("a", "é\n\nb\u{ff}".as_bytes());
         assert_eq!(
-            (read_text(&path, 99).unwrap(), read_own_text(&path, 99).unwrap()),
+            (read_stream_text(&path, 99).unwrap(), read_regular_text(&path, 99).unwrap()),
             ("é\n\nbÿ".into(), "é\n\nbÿ".into())
         );
         let path = place.file("b", b"a = 1\nb = \xff\nc = \xfe");
-        for read in [read_text, read_own_text] {
+        for read in [read_stream_text, read_regular_text] {
             let said = read(&path, 99).unwrap_err().to_string();
             assert_eq!(said, format!("{}: line 2: the byte 0xff is no text (UTF-8)", path.display()));
         }
@@ -256,11 +256,11 @@ mod tests {
     #[test]
     fn devices_end_or_are_cut_off() {
         let (zero, null) = (Path::new("/dev/zero"), Path::new("/dev/null"));
-        let said = read(zero, 100_000).unwrap_err().to_string();
+        let said = read_stream(zero, 100_000).unwrap_err().to_string();
         assert_eq!(said, "/dev/zero: has more than 100000 bytes, the most that is read of it");
-        assert_eq!(read(null, 0).unwrap(), b"");
+        assert_eq!(read_stream(null, 0).unwrap(), b"");
         for device in [zero, null] {
-            assert!(read_own(device, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
+            assert!(read_regular(device, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
         }
     }
 
@@ -272,7 +272,7 @@ mod tests {
         let path = place.pipe();
         let said = read_within(&path, 9, 2 * PAUSE).unwrap_err().to_string();
         assert_eq!(said, format!("{}: gave nothing for 0.02 s", path.display()));
-        assert!(read_own(&path, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
+        assert!(read_regular(&path, 9).unwrap_err().to_string().ends_with(": is not a regular file"));
 
         let late = |content: &'static [u8]| {
             let path = path.clone();
@@ -283,15 +283,15 @@ mod tests {
             })
         };
         let writer = late(b"a = 1\n");
-        assert_eq!(read(&path, 9).unwrap(), b"a = 1\n");
+        assert_eq!(read_stream(&path, 9).unwrap(), b"a = 1\n");
         writer.join().unwrap();
         let writer = late(b"0123456789");
-        assert!(read(&path, 9).unwrap_err().to_string().contains("more than 9 bytes"));
+        assert!(read_stream(&path, 9).unwrap_err().to_string().contains("more than 9 bytes"));
         writer.join().unwrap();
 
         let link = place.0.join("link");
         std::os::unix::fs::symlink(place.file("a", b"here"), &link).unwrap();
-        assert_eq!((read(&link, 9).unwrap(), read_own(&link, 9).unwrap()), (b"here".into(), b"here".into()));
+        assert_eq!((read_stream(&link, 9).unwrap(), read_regular(&link, 9).unwrap()), (b"here".into(), b"here".into()));
     }
 
     /// A source that gives these, and then nothing for ever.

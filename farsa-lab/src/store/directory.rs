@@ -5,9 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::store::draft;
 use crate::store::lock::Lock;
 use crate::store::replace::sync_directory;
+use crate::store::temporary_file;
 
 /// A run's directory.
 #[derive(Debug, Clone)]
@@ -39,10 +39,10 @@ impl Directory {
         if path.file_name().is_none() {
             return Err(occupied(path, "cannot be the directory of a run"));
         }
-        let parent = draft::parent(path);
+        let parent = temporary_file::parent(path);
         fs::create_dir_all(parent).map_err(Error::io("make", parent))?;
-        draft::sweep_of(path);
-        let (draft, _lock) = draft::directory(path).map_err(Error::io("make", path))?;
+        temporary_file::sweep_of(path);
+        let (draft, _lock) = temporary_file::directory(path).map_err(Error::io("make", path))?;
         fill(&Self::at(draft.path().into()))?;
         // Windows moves nothing onto a directory, even an empty one; a full one is in nobody's way by now.
         if fs::remove_dir(path).is_err() {
@@ -81,7 +81,7 @@ impl Directory {
                 fs::remove_dir(&other).map_err(Error::io("move", path))?;
             }
             fs::rename(path, &other).map_err(Error::io("move", path))?;
-            sync_directory(draft::parent(path))?;
+            sync_directory(temporary_file::parent(path))?;
             return Ok(Some(other));
         }
         Ok(None)

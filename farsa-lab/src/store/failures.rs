@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::store::bounded::read_own_if_any;
-use crate::store::growing::{Growing, Mark};
+use crate::store::append_log::{AppendLog, Mark};
+use crate::store::bounded::read_regular_if_present;
 
 const HEADER: &str = "generation,individual,trial,why,command\n";
 /// Bytes of the largest file that is read.
-const LARGEST: u64 = 1 << 32;
+const MAX_BYTES: u64 = 1 << 32;
 
 /// An evaluation that failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,14 +44,14 @@ impl FailedEvaluation {
 }
 
 /// The file, with so much in it, which stays one that is read.
-fn growing(path: &Path, content: &[u8]) -> Result<Growing, Error> {
-    Growing::new(path, content).map(|file| file.with_most(LARGEST))
+fn growing(path: &Path, content: &[u8]) -> Result<AppendLog, Error> {
+    AppendLog::new(path, content).map(|file| file.with_most(MAX_BYTES))
 }
 
 /// The failures of a run in progress; there is no file before the first.
 pub(crate) struct Failures {
     path: PathBuf,
-    file: Option<Growing>,
+    file: Option<AppendLog>,
 }
 
 impl Failures {
@@ -59,10 +59,10 @@ impl Failures {
     ///
     /// Nothing else says what they were: a file that somebody has changed stays as it is, and grows.
     pub(crate) fn resume(path: &Path, mark: Mark) -> Result<Self, Error> {
-        let content = read_own_if_any(path, LARGEST)?.unwrap_or_default();
+        let content = read_regular_if_present(path, MAX_BYTES)?.unwrap_or_default();
         let file = match mark.within(&content) {
             Some([]) if content.is_empty() || content.starts_with(HEADER.as_bytes()) => {
-                Growing::remove(path)?;
+                AppendLog::remove(path)?;
                 None
             }
             Some(kept) if !kept.is_empty() => Some(growing(path, kept)?),
@@ -87,7 +87,7 @@ impl Failures {
 
     /// Brings everything to the disk and says how far it has come.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
-        self.file.as_mut().map_or(Ok(Mark::default()), Growing::sync)
+        self.file.as_mut().map_or(Ok(Mark::default()), AppendLog::sync)
     }
 }
 

@@ -4,18 +4,18 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::error::Error;
-use crate::store::bounded::read_own;
-use crate::store::growing::{Growing, Mark};
+use crate::store::append_log::{AppendLog, Mark};
+use crate::store::bounded::read_regular;
 use crate::strategy::search::Search;
 
 /// The first line. Individuals are counted through all populations; parents are of the generation before, with blanks
 /// between them.
 pub(crate) const HEADER: &str = "generation,individual,parents\n";
 /// Bytes of the largest lineage that is read.
-const LARGEST: u64 = 1 << 32;
+const MAX_BYTES: u64 = 1 << 32;
 
 /// The lineage of a run in progress.
-pub(crate) struct Lineage(Growing);
+pub(crate) struct Lineage(AppendLog);
 
 /// The lines of the generation that waits for its fitness; none for one without parents.
 pub(crate) fn rows(strategy: &Search) -> String {
@@ -40,12 +40,12 @@ impl Lineage {
         mark: Mark,
         rebuild: impl FnOnce(&mut dyn FnMut(&str) -> Result<(), Error>) -> Result<(), Error>,
     ) -> Result<Self, Error> {
-        let content = read_own(path, LARGEST).unwrap_or_default();
+        let content = read_regular(path, MAX_BYTES).unwrap_or_default();
         if let Some(kept) = mark.within(&content).filter(|_| !mark.is_empty()) {
-            return Ok(Self(Growing::new(path, kept)?));
+            return Ok(Self(AppendLog::new(path, kept)?));
         }
         drop(content);
-        let mut lineage = Self(Growing::new(path, HEADER.as_bytes())?);
+        let mut lineage = Self(AppendLog::new(path, HEADER.as_bytes())?);
         rebuild(&mut |rows| lineage.append(rows))?;
         Ok(lineage)
     }

@@ -8,13 +8,13 @@ use farsa_evo::Statistics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::store::bounded::read_own_if_any;
-use crate::store::growing::Growing;
+use crate::store::append_log::AppendLog;
+use crate::store::bounded::read_regular_if_present;
 
 /// The first line where there is one population.
 const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
 /// Bytes of the largest log that is compared with what is written anew: no record that is read has as long a log.
-const LARGEST: u64 = 1 << 32;
+const MAX_BYTES: u64 = 1 << 32;
 
 /// The first line: with several populations three more columns for each of them.
 pub(crate) fn header(populations: usize) -> String {
@@ -63,7 +63,7 @@ impl Line {
 
 /// The log of a running run. Its lines are in the file alone: a run may have any number of them.
 pub(crate) struct Log {
-    file: Growing,
+    file: AppendLog,
     generations: usize,
 }
 
@@ -77,7 +77,7 @@ impl Log {
         lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
         let kept =
             if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text)? { Some(keep(path)?) } else { None };
-        Ok((Self { file: Growing::new(path, text.as_bytes())?, generations: lines.len() }, kept))
+        Ok((Self { file: AppendLog::new(path, text.as_bytes())?, generations: lines.len() }, kept))
     }
 
     /// Appends a generation.
@@ -107,7 +107,7 @@ impl Log {
 /// # Errors
 /// [`Error::Io`].
 fn says_the_same(path: &Path, text: &str) -> Result<bool, Error> {
-    let Some(bytes) = read_own_if_any(path, LARGEST)? else { return Ok(false) };
+    let Some(bytes) = read_regular_if_present(path, MAX_BYTES)? else { return Ok(false) };
     // A cut may fall into the middle of anything; from there on it is none of ours.
     let found = String::from_utf8_lossy(&bytes);
     let found = found.strip_prefix('\u{feff}').unwrap_or(&found).replace("\r\n", "\n").replace('\r', "\n");

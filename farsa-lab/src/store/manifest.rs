@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::lanes::LanesInfo;
-use crate::store::bounded::read_own_text;
+use crate::store::bounded::read_regular_text;
 use crate::store::identity::Identity;
 use crate::store::replace::replace;
 
 /// The version of the format.
 const FORMAT: u32 = 1;
 /// Bytes of the largest file that is read: a session takes some five hundred.
-const LARGEST: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,7 +90,7 @@ impl Manifest {
     /// # Errors
     /// [`Error::Io`]; [`Error::Damaged`] for another format or none.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        Self::from_text(path, &read_own_text(path, LARGEST)?)
+        Self::from_text(path, &read_regular_text(path, MAX_BYTES)?)
     }
 
     /// The manifest in the text of a file.

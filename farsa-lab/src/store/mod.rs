@@ -1,31 +1,30 @@
 //! The files of a run.
-//!
-//! - `bounded`: files that are read with a bound on bytes and on waiting
-//! - `directory`: the files of a run by name, and how a run's directory is made
-//! - `draft`: files and directories before they have their names, and what processes that died have left of them
-//! - `failures`: `failures.csv`: the evaluations that failed
-//! - `growing`: files that grow at their end as a run goes on
-//! - `identity`: what a run is: all that its results depend on
-//! - `lineage`: `lineage.csv`: the parents of every individual, appended generation by generation
-//! - `lock`: locks that keep processes out of each other's files
-//! - `log`: `fitness.csv`: one line per finished generation
-//! - `manifest`: `manifest.json`: what made a run, when and how fast; nothing in it changes a result
-//! - `replace`: how files are written without ever being half written
-//! - `sealed`: Files that tell whether they are whole: a kind, a format version, a length, the content and a checksum
-//! - `toml_tokens`: how many tokens a TOML text has, and how many are read
 
+/// Files that grow at their end.
+pub(crate) mod append_log;
+/// Reads with a limit on bytes and on waiting time.
 pub(crate) mod bounded;
+/// Files with a kind, a format version, a length and a checksum.
+pub(crate) mod checksummed;
+/// The directory of a run and the names of its files.
 pub(crate) mod directory;
-pub(crate) mod draft;
+/// `failures.csv`: the failed evaluations.
 pub(crate) mod failures;
-pub(crate) mod growing;
+/// Everything that the results of a run depend on.
 pub(crate) mod identity;
+/// `lineage.csv`: the parents of every individual.
 pub(crate) mod lineage;
+/// Locks between processes.
 pub(crate) mod lock;
+/// `fitness.csv`: one line for each finished generation.
 pub(crate) mod log;
+/// `manifest.json`: program version, machine and timings. No result depends on it.
 pub(crate) mod manifest;
+/// Atomic replacement of files.
 pub(crate) mod replace;
-pub(crate) mod sealed;
+/// Locked temporary files and directories.
+pub(crate) mod temporary_file;
+/// The limit on the number of TOML tokens.
 pub(crate) mod toml_tokens;
 
 pub use bounded::read_text_file;

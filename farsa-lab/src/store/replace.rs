@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use farsa_view::Page;
 
 use crate::error::Error;
-use crate::store::draft;
+use crate::store::temporary_file;
 
 /// Puts new content in place of a file's: written beside it, brought to the disk, then renamed.
 ///
@@ -18,7 +18,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 
 /// The same, and keeps the file open at its end.
 pub(crate) fn replace_and_keep(path: &Path, bytes: &[u8]) -> Result<File, Error> {
-    let written = draft::file(path).and_then(|mut draft| {
+    let written = temporary_file::file(path).and_then(|mut draft| {
         draft.as_file_mut().write_all(bytes)?;
         draft.as_file().sync_all()?;
         let file = draft.persist(path).map_err(|error| error.error)?;
@@ -27,7 +27,7 @@ pub(crate) fn replace_and_keep(path: &Path, bytes: &[u8]) -> Result<File, Error>
         Ok(file)
     });
     let file = written.map_err(Error::io("write", path))?;
-    sync_directory(draft::parent(path))?;
+    sync_directory(temporary_file::parent(path))?;
     Ok(file)
 }
 
@@ -77,8 +77,8 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
             // A pipe, a device, or something in the way.
             return create_result(path)?.write_all(content).map_err(Error::io("write", path));
         }
-        draft::sweep_of(path);
-        let whole = draft::file(path).and_then(|mut draft| {
+        temporary_file::sweep_of(path);
+        let whole = temporary_file::file(path).and_then(|mut draft| {
             draft.as_file_mut().write_all(content)?;
             draft.as_file().sync_all()?;
             Ok(draft)
@@ -89,7 +89,7 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
             _ => Error::io("write", path)(error.error),
         })?;
         made.push(path);
-        sync_directory(draft::parent(path))
+        sync_directory(temporary_file::parent(path))
     });
     if written.is_err() {
         for path in made {
@@ -108,7 +108,7 @@ pub(crate) fn write_page(path: &Path, html: &str) -> Result<(), Error> {
     if !is_page(path) {
         return create_results(&[(path.to_owned(), html)]);
     }
-    draft::sweep_of(path);
+    temporary_file::sweep_of(path);
     replace(path, html.as_bytes())
 }
 

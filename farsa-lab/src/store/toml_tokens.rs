@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::escaped::OneLine;
 
 /// The most tokens that are read: ten thousand keys with their values have less than half as many.
-const MOST_TOKENS: usize = 200_000;
+const MAX_TOKENS: usize = 200_000;
 
 /// Refuses a TOML text of more than 200 000 tokens: names, values, signs and the gaps between them. A string or a comment is
 /// one, a number with a point is three.
@@ -15,12 +15,12 @@ const MOST_TOKENS: usize = 200_000;
 /// [`Error::Usage`] with the name of the file, the limit and the number.
 pub fn limit_toml_tokens(file: &str, text: &str) -> Result<(), Error> {
     let count = toml_tokens(text);
-    if count <= MOST_TOKENS {
+    if count <= MAX_TOKENS {
         return Ok(());
     }
     let file = OneLine(file);
     Err(Error::Usage(format!(
-        "{file}: has {count} names, values, signs and gaps; at most {MOST_TOKENS} are read of TOML"
+        "{file}: has {count} names, values, signs and gaps; at most {MAX_TOKENS} are read of TOML"
     )))
 }
 
@@ -131,12 +131,12 @@ mod tests {
     fn texts_of_many_tokens_are_refused_by_number() {
         // A list, tables within tables, and signs that are no TOML.
         for (part, tokens) in [("1,", 2), ("[a.a.a]\n", 8), ("=", 1)] {
-            let most = part.repeat(MOST_TOKENS / tokens);
+            let most = part.repeat(MAX_TOKENS / tokens);
             assert!(limit_toml_tokens("a.toml", &most).is_ok());
             let why = limit_toml_tokens("a\n.toml", &format!("{most}=")).unwrap_err().to_string();
             assert_eq!(why, "a\\n.toml: has 200001 names, values, signs and gaps; at most 200000 are read of TOML");
         }
         // What a run keeps of an experiment and of its files is one.
-        assert!(limit_toml_tokens("a.toml", &format!("definition = '''{}'''", "[a]\n".repeat(MOST_TOKENS))).is_ok());
+        assert!(limit_toml_tokens("a.toml", &format!("definition = '''{}'''", "[a]\n".repeat(MAX_TOKENS))).is_ok());
     }
 }

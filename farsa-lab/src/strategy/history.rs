@@ -24,7 +24,7 @@ pub(crate) struct History<'h> {
 /// What genomes are rebuilt from.
 enum Past<'h> {
     /// What the strategy was told.
-    Told { record: Record, fresh: Fresh<'h> },
+    RunRecord { record: Record, fresh: Fresh<'h> },
     /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
     Imported { genomes: Vec<Vec<u16>>, populations: usize },
 }
@@ -32,7 +32,7 @@ enum Past<'h> {
 impl<'h> History<'h> {
     /// The generations that a strategy was told of.
     pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
-        Self { path, past: Past::Told { record, fresh }, observations: Vec::new(), champion: None }
+        Self { path, past: Past::RunRecord { record, fresh }, observations: Vec::new(), champion: None }
     }
 
     /// The same with what was observed before each generation.
@@ -64,7 +64,7 @@ impl<'h> History<'h> {
     /// Number of finished generations.
     pub(crate) fn finished(&self) -> u32 {
         match &self.past {
-            Past::Told { record, .. } => record.generations(),
+            Past::RunRecord { record, .. } => record.generations(),
             Past::Imported { .. } => 1,
         }
     }
@@ -72,7 +72,7 @@ impl<'h> History<'h> {
     /// Populations that evolve beside each other.
     pub(crate) fn populations(&self) -> usize {
         match &self.past {
-            Past::Told { record, .. } => record.populations(),
+            Past::RunRecord { record, .. } => record.populations(),
             Past::Imported { populations, .. } => *populations,
         }
     }
@@ -80,7 +80,7 @@ impl<'h> History<'h> {
     /// Individuals of each population.
     pub(crate) fn size(&self) -> usize {
         match &self.past {
-            Past::Told { record, .. } => record.size(),
+            Past::RunRecord { record, .. } => record.size(),
             Past::Imported { genomes, populations } => genomes.len() / populations,
         }
     }
@@ -88,7 +88,7 @@ impl<'h> History<'h> {
     /// The best individual of a population in a finished generation, counted through all populations.
     pub(crate) fn champion(&self, population: usize, generation: u32) -> Option<usize> {
         match &self.past {
-            Past::Told { record, .. } => record.champion(population, generation),
+            Past::RunRecord { record, .. } => record.champion(population, generation),
             Past::Imported { .. } => {
                 (generation == 0 && population < self.populations()).then_some(population * self.size())
             }
@@ -107,7 +107,7 @@ impl<'h> History<'h> {
     ) -> Result<(), Error> {
         let damaged = |error| Error::damaged(&self.path, error);
         match &self.past {
-            Past::Told { record, fresh } => {
+            Past::RunRecord { record, fresh } => {
                 let mut strategy = fresh()?;
                 for generation in generations {
                     let population = strategy.genomes(record, generation).map_err(damaged)?;
@@ -163,7 +163,7 @@ impl<'h> History<'h> {
         individual: usize,
         trials: Range<u32>,
     ) -> Result<Option<Vec<Vec<Genome>>>, Error> {
-        let Past::Told { record, fresh } = &self.past else { return Ok(None) };
+        let Past::RunRecord { record, fresh } = &self.past else { return Ok(None) };
         let mut search = fresh()?;
         if search.opponents().is_none() {
             return Ok(None);

@@ -13,10 +13,10 @@ use crate::strategy::settings::STRATEGY;
 use crate::sweep::sweep_file::{Axis, SweepFile};
 
 /// The most points, and runs of all points.
-const MOST_POINTS: usize = 10_000;
-const MOST_RUNS: usize = 100_000;
+const MAX_POINTS: usize = 10_000;
+const MAX_RUNS: usize = 100_000;
 /// Bytes of the longest name that is not cut: 255 are allowed, and drafts add some.
-const LONGEST: usize = 160;
+const MAX_NAME_BYTES: usize = 160;
 
 /// The points of a file, each with a name of its own and settings that are allowed.
 pub(crate) struct Points<'f, 'e> {
@@ -32,15 +32,15 @@ impl<'f, 'e> Points<'f, 'e> {
     /// [`Error::Usage`] for too many points, and for two that are the same; those of [`Plan::from_file`], with the line.
     pub(crate) fn new(file: &'f SweepFile, laboratory: &'f Laboratory<'e>) -> Result<Self, Error> {
         let rows = file.axes.iter().map(|axis| axis.rows.len());
-        let count = rows.clone().try_fold(1_usize, usize::checked_mul).filter(|count| *count <= MOST_POINTS);
+        let count = rows.clone().try_fold(1_usize, usize::checked_mul).filter(|count| *count <= MAX_POINTS);
         let name = &file.base.name;
         let Some(count) = count else {
             let rows: Vec<String> = rows.map(|rows| rows.to_string()).collect();
-            return Err(Error::Usage(format!("{name}: more than {MOST_POINTS} points: {}", rows.join(" x "))));
+            return Err(Error::Usage(format!("{name}: more than {MAX_POINTS} points: {}", rows.join(" x "))));
         };
         let seeds = file.seeds.len();
-        if count * seeds > MOST_RUNS {
-            return Err(Error::Usage(format!("{name}: more than {MOST_RUNS} runs: {count} points of {seeds}")));
+        if count * seeds > MAX_RUNS {
+            return Err(Error::Usage(format!("{name}: more than {MAX_RUNS} runs: {count} points of {seeds}")));
         }
         let mut points = Self { file, laboratory, names: Vec::new() };
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
@@ -136,7 +136,7 @@ fn folder(name: &str) -> String {
     let kept: String = name
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || "._,=+-".contains(letter) { letter } else { '_' })
-        .take(LONGEST)
+        .take(MAX_NAME_BYTES)
         .collect();
     // A list of numbers is joined by the letter that stands for others.
     if kept == name { kept } else { format!("{kept}-{:08x}", crc32(name.as_bytes())) }
@@ -223,7 +223,7 @@ mod tests {
         assert!(found[0].starts_with("map=a_b_c-") && found[3].starts_with("map=a_b-"), "{found:?}");
         let long = "x".repeat(400);
         let found = names(&format!("[grid]\nworld.map = [\"{long}\", \"{long}y\"]\n")).unwrap();
-        assert!(found[0] != found[1] && found.iter().all(|name| name.len() == LONGEST + 9), "{found:?}");
+        assert!(found[0] != found[1] && found.iter().all(|name| name.len() == MAX_NAME_BYTES + 9), "{found:?}");
     }
 
     #[test]

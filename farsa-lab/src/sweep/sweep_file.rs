@@ -4,15 +4,15 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
-use crate::run::config_file::{ConfigFile, Entry, Found, MOST_BYTES};
-use crate::run::plan::LARGEST_SEED;
+use crate::run::config_file::{ConfigFile, Entry, Found, MAX_BYTES};
+use crate::run::plan::MAX_SEED;
 use crate::store::bounded;
 use crate::strategy::settings::STRATEGY;
 
 /// The most replications of a point; a list is not longer either.
-const MOST_SEEDS: i64 = 10_000;
+const MAX_SEEDS: i64 = 10_000;
 /// The most settings that vary.
-const MOST_VARYING: usize = 64;
+const MAX_VARYING: usize = 64;
 
 /// A configuration, in which some settings have many values.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl SweepFile {
     /// # Errors
     /// As [`ConfigFile::read`], with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+        let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
             error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
             other => other,
         })?;
@@ -99,10 +99,10 @@ impl Added {
             }
             None if found.key == "replications" => {
                 let count = match found.value()? {
-                    Value::Whole(count @ 1..=MOST_SEEDS) => u32::try_from(count).ok(),
+                    Value::Whole(count @ 1..=MAX_SEEDS) => u32::try_from(count).ok(),
                     _ => None,
                 };
-                let why = format!("is not a whole number from 1 to {MOST_SEEDS}");
+                let why = format!("is not a whole number from 1 to {MAX_SEEDS}");
                 let value = count.ok_or_else(|| wrong(&key(found.key), &why))?;
                 self.replications = Some(Entry { value, place: found.place.into() });
                 Ok(true)
@@ -128,8 +128,8 @@ impl Added {
                 if values.is_empty() {
                     return Err(wrong(&key, "has no value"));
                 }
-                if self.grid.len() + self.list.len() == MOST_VARYING {
-                    return Err(wrong(&key, &format!("is one setting too many: at most {MOST_VARYING} vary")));
+                if self.grid.len() + self.list.len() == MAX_VARYING {
+                    return Err(wrong(&key, &format!("is one setting too many: at most {MAX_VARYING} vary")));
                 }
                 if table == "grid" { &mut self.grid } else { &mut self.list }.push((key, values));
                 Ok(true)
@@ -200,9 +200,9 @@ fn seeds_of(
     }
     let first = base.seed.as_ref().map_or(1, |seed| seed.value);
     let (count, place) = replications.map_or((1, String::new()), |entry| (u64::from(entry.value), entry.place));
-    let Some(last) = first.checked_add(count - 1).filter(|last| *last <= LARGEST_SEED) else {
+    let Some(last) = first.checked_add(count - 1).filter(|last| *last <= MAX_SEED) else {
         let key = Entry { value: "replications".to_owned(), place };
-        return Err(wrong(&key, &format!("{count} from seed {first}: the largest seed is {LARGEST_SEED}")));
+        return Err(wrong(&key, &format!("{count} from seed {first}: the largest seed is {MAX_SEED}")));
     };
     Ok((first..=last).collect())
 }

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand, ValueEnum, ValueHint, value_parser};
 
 use crate::command::arguments::shared::VariantArgs;
 use crate::export::files::{ControllerFormat, ModelFormat};
-use crate::run::plan::LARGEST_SEED;
+use crate::run::plan::MAX_SEED;
 
 #[derive(Args)]
 pub(crate) struct ExportArgs {
@@ -65,7 +65,7 @@ pub(crate) struct ExportStartsArgs {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
     /// The test's seed
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
     /// Of which kind the file is
     #[arg(long, value_enum)]

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::evaluation::evaluate::GivenGenes;
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
-use crate::run::plan::{LARGEST_SEED, Plan};
+use crate::run::plan::{MAX_SEED, Plan};
 
 /// The setting that `--ir-tables` is short for.
 const INFRARED_TABLES: &str = "robot.infrared_tables";
@@ -83,7 +83,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
     pub(crate) trials: u32,
     /// Where the random numbers come from, as in a test; never those of a run, except with --stdin
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
@@ -112,7 +112,7 @@ pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
     /// Where the random numbers of replayed trials come from [default: 1]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: Option<u64>,
     /// The new directory; of a configuration the new file [default: its name with .toml, here]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::AnyPath)]

@@ -18,7 +18,7 @@ use crate::evaluation::protocols::chosen::Choice;
 use crate::evaluation::protocols::sheet::Wish;
 use crate::evaluation::replay::{Which, WhichTrial};
 use crate::report::outcome::Success;
-use crate::run::plan::LARGEST_SEED;
+use crate::run::plan::MAX_SEED;
 
 /// Evolve robots, test the champions, and replay any trial of a run.
 #[derive(Parser)]
@@ -125,7 +125,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) strategy: Option<String>,
     /// Where all random numbers come from [default: 1]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: Option<u64>,
     /// Generations to evaluate (evolution.generations)
     #[arg(long, value_name = "G")]
@@ -212,7 +212,7 @@ pub(crate) struct TestArgs {
     #[arg(long, value_name = "LIST")]
     pub(crate) lesion: Vec<String>,
     /// Where the test's random numbers come from; never those of a run
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
@@ -309,7 +309,7 @@ pub(crate) struct CaseArgs {
     #[arg(id = "case", long = "case", value_name = "CASE", requires = "protocol")]
     cases: Vec<String>,
     /// The seed of that test
-    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     seed: u64,
 }
 

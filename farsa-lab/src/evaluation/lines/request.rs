@@ -8,7 +8,7 @@ use crate::escaped::{OneLine, Quoted, shortened};
 use crate::evaluation::lines::given::{Given, Vectors};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::parameter::Parameter;
-use crate::run::plan::LARGEST_SEED;
+use crate::run::plan::MAX_SEED;
 
 /// The most vectors of a population in one line.
 const MOST_VECTORS: usize = 65_536;
@@ -83,8 +83,8 @@ impl Request {
         };
         let id = id.map(read_id).transpose()?;
         let seed = seed.unwrap_or(wanted.seed);
-        if seed > LARGEST_SEED {
-            return Err(format!("seed: {seed} is above {LARGEST_SEED}"));
+        if seed > MAX_SEED {
+            return Err(format!("seed: {seed} is above {MAX_SEED}"));
         }
         let individual = individual.unwrap_or(0);
         if individual > LARGEST_INDIVIDUAL {

@@ -7,7 +7,7 @@ use crate::evaluation::trials::episode;
 use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;
-use crate::run::contained::caught;
+use crate::run::catch_panic::catch_printed_panic;
 
 /// Which trial of a test by a protocol.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +36,6 @@ impl CaseTrial {
         let normalisation = tested.normalisation;
         let case = Some(self.case);
         let evaluation = Evaluation { opponents: &opponents, normalisation, case, ..Evaluation::new(parameters, id) };
-        caught(|| evaluator.evaluate(evaluation, Some(recorder)))
+        catch_printed_panic(|| evaluator.evaluate(evaluation, Some(recorder)))
     }
 }

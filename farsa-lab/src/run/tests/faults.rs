@@ -19,7 +19,7 @@ use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings, Value};
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
+use crate::run::evolve::continue_run;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
@@ -147,7 +147,7 @@ fn expected(generation: u32, individual: u32) -> Option<(u32, Fault)> {
 fn run(generations: i64, threads: usize, directory: &Directory) {
     let (experiment, stop) = (faulty(), false.into());
     let plan = plan(&experiment, generations);
-    go_on(&plan, directory, pool(&plan, threads), &stop, "farsa", true).unwrap();
+    continue_run(&plan, directory, pool(&plan, threads), &stop, "farsa", true).unwrap();
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::evaluation::test;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
+use crate::run::evolve::continue_run;
 use crate::run::tests::{CHASE, LEARNER, Numbers, STEADY, plan, pool, run, scratch};
 use crate::store::directory::Directory;
 use crate::strategy::Truncation;
@@ -26,7 +26,7 @@ fn a_run_knows_the_files_that_it_was_made_with() {
     let refused = |words: &str| {
         let (five, directory) = (plan(5), Directory::open(&root.join("run")).unwrap());
         let errors = [
-            go_on(&five, &directory, pool(&five, 1), &AtomicBool::new(false), "farsa", true).unwrap_err(),
+            continue_run(&five, &directory, pool(&five, 1), &AtomicBool::new(false), "farsa", true).unwrap_err(),
             replay(&five, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err(),
             test::test(&five, &directory, None, 1, 1, 1, Wanted::ONE, true).unwrap_err(),
         ];
@@ -59,7 +59,7 @@ fn a_lineage_that_was_cut_is_written_again() {
             Some(bytes) => fs::write(directory.lineage(), &whole[..bytes]).unwrap(),
             None => fs::remove_file(directory.lineage()).unwrap(),
         }
-        go_on(&plan(&STEADY, 5), &directory, pool(&plan(&STEADY, 5), 1), &AtomicBool::new(false), "farsa", true)
+        continue_run(&plan(&STEADY, 5), &directory, pool(&plan(&STEADY, 5), 1), &AtomicBool::new(false), "farsa", true)
             .unwrap();
         assert_eq!(fs::read_to_string(directory.lineage()).unwrap(), whole);
     }
@@ -78,7 +78,7 @@ fn a_run_of_an_earlier_version_is_refused_by_name() {
     run(&plan(&STEADY, 2), &directory, 1);
     fs::rename(directory.record(), directory.earlier_lineage()).unwrap();
     let plan = plan(&STEADY, 4);
-    let resumed = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    let resumed = continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
     for error in [resumed, replayed] {
         let said = error.to_string();
@@ -96,7 +96,7 @@ fn a_record_shorter_than_its_checkpoint_is_refused() {
     run(&plan(&STEADY, 2), &directory, 1);
     fs::write(directory.record(), short).unwrap();
     let plan = plan(&STEADY, 4);
-    let said = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    let said = continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     assert!(said.to_string().contains("record.bin: truncated: "), "{said}");
     fs::remove_dir_all(root).unwrap();
 }
@@ -110,7 +110,7 @@ fn the_strategy_of_a_run_stays_what_it_was() {
     for other in [Numbers { strategy: &Truncation, populations: 1 }, CHASE] {
         let mut plan = plan(&other, 5);
         plan.settings.set("", "evolution.mutation", Value::Word("flip".into())).unwrap();
-        let error = go_on(&plan, &steady, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+        let error = continue_run(&plan, &steady, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
         assert!(error.to_string().contains("record.bin: was made by the strategy `one-plus-one`"), "{error}");
     }
     let steady_populations = Numbers { populations: 2, ..STEADY };
@@ -189,7 +189,8 @@ fn a_manifest_of_another_format_is_refused_and_kept() {
         assert_ne!(changed, text);
         fs::write(directory.manifest(), &changed).unwrap();
         let plan = plan(&STEADY, 2);
-        let error = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+        let error =
+            continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
         assert!(error.to_string().contains(words), "{error}");
         assert_eq!(fs::read_to_string(directory.manifest()).unwrap(), changed);
     }
@@ -206,11 +207,13 @@ fn a_log_that_disappears_is_noticed_at_once() {
         while fs::read_to_string(&log).unwrap().lines().count() < 20 {}
         fs::remove_file(log).unwrap();
     });
-    let error = go_on(&endless, &directory, pool(&endless, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    let error =
+        continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     removed.join().unwrap();
     assert!(error.to_string().contains("fitness.csv: was removed while the run went on"), "{error}");
     // What was saved before goes on.
-    let error = go_on(&endless, &directory, pool(&endless, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
+    let error =
+        continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
     assert!(error.to_string().contains("interrupted") && directory.log().is_file(), "{error}");
     fs::remove_dir_all(root).unwrap();
 }
@@ -270,7 +273,7 @@ fn links_in_a_strangers_run_are_not_followed() {
     fs::remove_file(directory.path().join(".run.lock")).unwrap();
     symlink(root.join("made"), directory.path().join(".run.lock")).unwrap();
     let plan = plan(&STEADY, 6);
-    let error = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    let error = continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     assert!(error.to_string().contains("is no regular file") && !root.join("made").exists(), "{error}");
     fs::remove_dir_all(root).unwrap();
 }

@@ -7,7 +7,7 @@ use crate::evaluation::replay::Which;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::plan::Plan;
-use crate::run::told::history;
+use crate::run::record_file::history;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::search::Genome;
 use crate::strategy::settings::{GENERATIONS, POPULATION};

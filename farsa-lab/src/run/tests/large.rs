@@ -9,7 +9,7 @@ use crate::evaluation::replay::{Which, replay};
 use crate::experiment::settings::Value;
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
+use crate::run::evolve::continue_run;
 use crate::strategy::settings::POPULATION;
 use crate::strategy::strategies;
 
@@ -27,7 +27,7 @@ fn a_run_ends_before_its_record_is_too_large_to_be_read() {
     plan.settings.set("", POPULATION, Value::Whole(10_000)).unwrap();
     let directory = create(&plan, &root.join("alone")).unwrap();
     let never = AtomicBool::new(false);
-    let go = || go_on(&plan, &directory, pool(&plan, 2), &never, "farsa", true).unwrap_err().to_string();
+    let go = || continue_run(&plan, &directory, pool(&plan, 2), &never, "farsa", true).unwrap_err().to_string();
     let said = go();
     let expected = "record.bin: would have ";
     // All that was finished is kept, and can be looked at.

@@ -43,7 +43,7 @@ use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings, Value};
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
+use crate::run::evolve::continue_run;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::records::Best;
@@ -206,7 +206,7 @@ fn pool<'e>(plan: &Plan<'e>, threads: usize) -> Pool<'e> {
 }
 
 fn run(plan: &Plan<'_>, directory: &Directory, threads: usize) -> String {
-    go_on(plan, directory, pool(plan, threads), &AtomicBool::new(false), "farsa", true).unwrap().text()
+    continue_run(plan, directory, pool(plan, threads), &AtomicBool::new(false), "farsa", true).unwrap().text()
 }
 
 /// A whole run, and one of other threads that was stopped twice, which must have the same files; returns the first.

@@ -26,10 +26,10 @@ use crate::experiment::settings::{Setting, Settings, Value};
 use crate::export::files::genotype;
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
+use crate::run::evolve::continue_run;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
-use crate::run::told::{Told, history};
+use crate::run::record_file::{RunRecord, history};
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, NORMALISE, POPULATION};
 use crate::strategy::strategies;
@@ -242,9 +242,9 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     assert!(error.to_string().contains("`strategy.normalise_observations`") && error.exit_code() == 2, "{error}");
     // A record that lacks what was observed, or has it of other channels.
     let checkpoint = crate::run::records::Checkpoint::read(&plan, &directory).unwrap();
-    let content = Told::content(&directory, &checkpoint).unwrap();
+    let content = RunRecord::content(&directory, &checkpoint).unwrap();
     for short in [1, 24, 40] {
-        let error = Told::from_content(&plan, &directory, &checkpoint, content[..content.len() - short].to_vec());
+        let error = RunRecord::from_content(&plan, &directory, &checkpoint, content[..content.len() - short].to_vec());
         let error = error.map(|_| ()).unwrap_err().to_string();
         assert!(error.contains("generation 5: what was observed: "), "{error}");
     }
@@ -283,7 +283,7 @@ fn what_cannot_be_normalised_is_refused_before_there_is_a_folder() {
     let forgets = Scales { says: false, ..SCALES };
     let plan = plan(&forgets, 2);
     let directory = create(&plan, &root).unwrap();
-    let ended = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    let ended = continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     assert!(ended.to_string().ends_with("an outcome does not say what was observed"), "{ended}");
     fs::remove_dir_all(root).unwrap();
 }

@@ -13,7 +13,7 @@ use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings};
-use crate::run::evaluations::Unfinished;
+use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 

@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::{CHASE, CHASE_ALONE, LEARNER, Numbers, STEADY, plan, pool, scratch};
 use crate::error::Error;
 use crate::ranks::Ranks;
-use crate::ranks::exchange::{Exchange, Order};
+use crate::ranks::exchange::{Exchange, WorkerCommand};
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
-use crate::run::evolve::go_on;
-use crate::run::following::Following;
+use crate::run::evolve::continue_run;
 use crate::run::plan::Plan;
+use crate::run::worker::Worker;
 use crate::store::directory::Directory;
 
 const GENERATIONS: i64 = 12;
@@ -29,7 +29,7 @@ pub(super) fn part(
 ) -> Result<String, Error> {
     let exchange = Rc::new(Exchange::new(ranks));
     if ranks.rank() > 0 {
-        let follow = Following {
+        let follow = Worker {
             plan: &|file| {
                 let mut found = Plan::new(plan.experiment, None, "")?;
                 found.apply(file)?;
@@ -41,9 +41,9 @@ pub(super) fn part(
         return follow.follow(&exchange).map(|code| code.to_string());
     }
     let directory = Directory::open(directory).or_else(|_| create(plan, directory))?;
-    let found = go_on(plan, &directory, pool(plan, threads).on(exchange.clone()), stop, "farsa", true);
+    let found = continue_run(plan, &directory, pool(plan, threads).on(exchange.clone()), stop, "farsa", true);
     let code = found.as_ref().map_or_else(Error::exit_code, |_| 0);
-    exchange.order(Some(&Order::End(code)))?;
+    exchange.command(Some(&WorkerCommand::End(code)))?;
     found.map(|summary| summary.text())
 }
 
@@ -112,7 +112,7 @@ fn a_rank_with_another_run_ends_all_with_its_number() {
     let results = on_ranks(3, |ranks| {
         let exchange = Exchange::new(ranks);
         let own = if ranks.rank() == 2 { plan_of(12) } else { plan_of(11) };
-        exchange.begin(crate::run::leading::facts(&own))
+        exchange.begin(crate::run::coordinator::facts(&own))
     });
     for result in results {
         let error = result.unwrap_err();
@@ -125,11 +125,11 @@ fn a_rank_with_another_run_ends_all_with_its_number() {
         let plan = plan_of(11);
         if ranks.rank() == 0 {
             let directory = create(&plan, &root.join("run")).unwrap();
-            let result = go_on(&plan, &directory, pool(&plan, 1).on(exchange.clone()), &NEVER, "farsa", true);
-            exchange.order(Some(&Order::End(9))).unwrap();
+            let result = continue_run(&plan, &directory, pool(&plan, 1).on(exchange.clone()), &NEVER, "farsa", true);
+            exchange.command(Some(&WorkerCommand::End(9))).unwrap();
             return result.map(|_| 0);
         }
-        let follow = Following {
+        let follow = Worker {
             plan: &|_| Ok(if ranks.rank() == 1 { plan_of(11) } else { plan_of(12) }),
             pool: &|plan| Ok(pool(plan, 1).on(exchange.clone())),
             stop: &NEVER,

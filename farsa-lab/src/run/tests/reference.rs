@@ -11,12 +11,12 @@ use crate::experiment::lanes::Wanted;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::bench::{Sample, bench};
+use crate::run::record_file::history;
 use crate::run::records::Champions;
 use crate::run::tests::{
     CHASE, LEARNER, Numbers, SIZE, STEADY, TRIALS, genes_of, lineage, plain, plan, pool, replayed, rows, run, scratch,
     twice, words,
 };
-use crate::run::told::history;
 use crate::strategy::settings::POPULATION;
 
 #[test]

@@ -4,7 +4,7 @@ use farsa_evo::{EvoError, Fitness, Judgements, ObservationStatistics, Statistics
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-use crate::run::evaluations::{Evaluations, Unfinished};
+use crate::run::evaluation_backend::{EvaluationBackend, Unfinished};
 use crate::run::fitness::{Generation, Judged, Opponents, judgements_of_all};
 use crate::run::records::Best;
 use crate::store::failures::FailedEvaluation;
@@ -12,7 +12,7 @@ use crate::strategy::opponents::{Hall, Meeting, chosen};
 use crate::strategy::search::Search;
 
 /// What a run evolves.
-pub(crate) struct Progression {
+pub(crate) struct SearchState {
     pub(crate) search: Search,
     /// Whom several populations still have to meet.
     hall: Hall,
@@ -22,7 +22,7 @@ pub(crate) struct Progression {
 }
 
 /// What came of a generation.
-pub(crate) struct Evaluated {
+pub(crate) struct GenerationResult {
     /// Of every individual, as the strategy was told.
     pub(crate) fitness: Vec<Fitness>,
     pub(crate) failed: Vec<FailedEvaluation>,
@@ -37,7 +37,7 @@ pub(crate) struct Evaluated {
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
-impl Progression {
+impl SearchState {
     /// A search in progress.
     pub(crate) fn new(search: Search, hall: Hall, observed: Option<ObservationStatistics>, seed: u64) -> Self {
         Self { search, hall, observed, seed }
@@ -55,10 +55,10 @@ impl Progression {
     /// [`Unfinished`]; the search is then as it was.
     pub(crate) fn generation(
         &mut self,
-        by: &mut dyn Evaluations,
+        by: &mut dyn EvaluationBackend,
         advance: &(dyn Fn() + Sync),
         tell: impl FnOnce(&mut Search, &Judgements) -> Result<(), EvoError>,
-    ) -> Result<Evaluated, Unfinished> {
+    ) -> Result<GenerationResult, Unfinished> {
         let generation = self.search.generation();
         let individuals = self.search.individuals();
         let (seed, populations) = (self.seed, self.search.populations());
@@ -94,14 +94,14 @@ impl Progression {
         let met = met.collect();
         let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = tell(&mut self.search, &judgements);
-        told.map_err(|error| lost(&error.to_string()))?;
+        let updated = tell(&mut self.search, &judgements);
+        updated.map_err(|error| lost(&error.to_string()))?;
         if let (Some(all), Some(own)) = (&mut self.observed, &observed) {
             all.merge(own).map_err(|error| lost(&error.to_string()))?;
         }
         if told_apart.is_none() {
             self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         }
-        Ok(Evaluated { fitness, failed, statistics, each, best, met, normalisation })
+        Ok(GenerationResult { fitness, failed, statistics, each, best, met, normalisation })
     }
 }

@@ -8,7 +8,7 @@ use farsa_num::Crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::store::bounded::read_own;
+use crate::store::bounded::read_regular;
 use crate::store::replace::{replace_and_keep, sync_directory};
 
 /// How far a file had come when a checkpoint was written.
@@ -41,7 +41,7 @@ impl Mark {
 /// # Errors
 /// [`Error::Io`]; [`Error::Damaged`] when that is not what was written.
 pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error> {
-    let mut content = read_own(path, limit)?;
+    let mut content = read_regular(path, limit)?;
     let (found, expected) = (content.len() as u64, mark.bytes);
     if found < expected {
         return Err(Error::damaged(path, format!("truncated: {found} bytes of {expected}")));
@@ -54,7 +54,7 @@ pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error
 }
 
 /// A file that this process adds to.
-pub(crate) struct Growing {
+pub(crate) struct AppendLog {
     path: PathBuf,
     file: File,
     bytes: u64,
@@ -62,7 +62,7 @@ pub(crate) struct Growing {
     crc: Crc32,
 }
 
-impl Growing {
+impl AppendLog {
     /// Puts a file with this content in the place of what is there, which is never written to: it may be a link.
     pub(crate) fn new(path: &Path, content: &[u8]) -> Result<Self, Error> {
         let file = replace_and_keep(path, content)?;
@@ -127,7 +127,7 @@ impl Growing {
     pub(crate) fn remove(path: &Path) -> Result<(), Error> {
         match fs::remove_file(path) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::io("remove", path)(error)),
-            _ => sync_directory(crate::store::draft::parent(path)),
+            _ => sync_directory(crate::store::temporary_file::parent(path)),
         }
     }
 }
@@ -140,7 +140,7 @@ mod tests {
     fn what_was_marked_is_read_whatever_follows() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log");
-        let mut log = Growing::new(&path, b"head\n").unwrap();
+        let mut log = AppendLog::new(&path, b"head\n").unwrap();
         let start = log.sync().unwrap();
         assert_eq!(start, Mark::of(b"head\n"));
         log.append(b"one\n").unwrap();
@@ -159,7 +159,7 @@ mod tests {
     fn a_file_grows_to_what_is_read_of_it() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log");
-        let mut log = Growing::new(&path, b"head\n").unwrap().with_most(9);
+        let mut log = AppendLog::new(&path, b"head\n").unwrap().with_most(9);
         log.append(b"one\n").unwrap();
         let mark = log.sync().unwrap();
         assert!(log.room_for(0).is_ok() && log.room_for(1).is_err() && log.room_for(usize::MAX).is_err());
@@ -174,7 +174,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log");
         let said = |change: &dyn Fn()| {
-            let mut log = Growing::new(&path, b"head\n").unwrap();
+            let mut log = AppendLog::new(&path, b"head\n").unwrap();
             log.append(b"one\n").unwrap();
             log.check().unwrap();
             change();
@@ -196,7 +196,7 @@ mod tests {
         let (path, victim) = (folder.path().join("log"), folder.path().join("victim"));
         fs::write(&victim, "precious").unwrap();
         std::os::unix::fs::symlink(&victim, &path).unwrap();
-        Growing::new(&path, b"head\n").unwrap().append(b"one\n").unwrap();
+        AppendLog::new(&path, b"head\n").unwrap().append(b"one\n").unwrap();
         assert_eq!(fs::read(&victim).unwrap(), b"precious");
         assert_eq!(fs::read(&path).unwrap(), b"head\none\n");
     }

@@ -20,7 +20,7 @@ const SUFFIX: &str = ".new";
 /// Letters before it, which no one can foresee.
 const RANDOM: usize = 12;
 /// Bytes of the final name that a draft's name begins with: 255 are allowed.
-const LONGEST: usize = 200;
+const MAX_NAME_BYTES: usize = 200;
 /// How often a draft is made again when somebody has swept it before it was locked.
 const ATTEMPTS: usize = 20;
 
@@ -35,7 +35,7 @@ pub(crate) fn parent(path: &Path) -> &Path {
 /// What the names of all drafts of a file or directory begin with.
 fn prefix(path: &Path) -> OsString {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let end = (0..=name.len().min(LONGEST)).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
+    let end = (0..=name.len().min(MAX_NAME_BYTES)).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
     OsString::from(format!(".{}.", &name[..end]))
 }
 

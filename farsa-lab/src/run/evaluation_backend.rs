@@ -11,7 +11,7 @@ pub(crate) type TaskOf<'t, 'g> = dyn Fn(usize) -> Option<Evaluation<'g>> + Sync 
 pub(crate) type Heard<'t> = dyn Fn(usize, Option<&Outcome>) + Sync + 't;
 
 /// Evaluates what a generation consists of.
-pub(crate) trait Evaluations {
+pub(crate) trait EvaluationBackend {
     /// The experiment.
     fn evaluator(&self) -> &dyn Evaluator;
 

@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
 /// Letters of a message that are kept.
-const LONGEST: usize = 300;
+const MAX_MESSAGE_CHARS: usize = 300;
 
 thread_local! {
     /// Whether a panic of this thread is caught, so that it need not be printed.
@@ -20,7 +20,7 @@ thread_local! {
 ///
 /// Nothing is printed. A stack overflow, an allocation that fails and a panic in a program built with `panic = "abort"` end
 /// the process all the same.
-pub(crate) fn contained<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let before = panic::take_hook();
@@ -34,13 +34,13 @@ pub(crate) fn contained<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         }));
     });
     let before = WATCHED.replace(true);
-    let result = caught(work);
+    let result = catch_printed_panic(work);
     WATCHED.set(before);
     result.map_err(|()| SAID.take().unwrap_or_else(|| "it said nothing".into()))
 }
 
 /// Runs `work` and returns what it returns unless it panics, which is printed as usual.
-pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, ()> {
+pub(crate) fn catch_printed_panic<T>(work: impl FnOnce() -> T) -> Result<T, ()> {
     let drop_quietly = |payload: Box<dyn Any + Send>| {
         // What a panic carries may panic when it is dropped; what that carries is left alone.
         if let Err(next) = panic::catch_unwind(AssertUnwindSafe(|| drop(payload))) {
@@ -55,7 +55,7 @@ fn message(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let said = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let words = said.unwrap_or("no words").split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut text: String = words.chars().take(LONGEST).collect();
+    let mut text: String = words.chars().take(MAX_MESSAGE_CHARS).collect();
     if let Some(place) = info.location() {
         // Writing into a string cannot fail.
         let _ = write!(text, " ({}:{})", place.file(), place.line());
@@ -78,16 +78,16 @@ mod tests {
 
     #[test]
     fn panics_become_their_messages() {
-        assert_eq!(contained(|| 7), Ok(7));
-        let said = contained(|| -> u8 { panic!("as\n planned: {}", 3) }).unwrap_err();
-        assert!(said.starts_with("as planned: 3 (") && said.contains("contained.rs:"), "{said}");
-        let long = contained(|| -> u8 { panic!("{}", "é".repeat(5000)) }).unwrap_err();
-        assert!(long.chars().count() < LONGEST + 200, "{long}");
-        let other = contained(|| -> u8 { panic_any(7_u8) }).unwrap_err();
+        assert_eq!(catch_panic(|| 7), Ok(7));
+        let said = catch_panic(|| -> u8 { panic!("as\n planned: {}", 3) }).unwrap_err();
+        assert!(said.starts_with("as planned: 3 (") && said.contains("catch_panic.rs:"), "{said}");
+        let long = catch_panic(|| -> u8 { panic!("{}", "é".repeat(5000)) }).unwrap_err();
+        assert!(long.chars().count() < MAX_MESSAGE_CHARS + 200, "{long}");
+        let other = catch_panic(|| -> u8 { panic_any(7_u8) }).unwrap_err();
         assert!(other.starts_with("no words ("), "{other}");
         // The first panic was already caught when what it carries panics.
-        assert!(contained(|| -> u8 { panic_any(Bomb) }).is_err());
-        let nested = contained(|| contained(|| -> u8 { panic!("inner") }).unwrap_err());
+        assert!(catch_panic(|| -> u8 { panic_any(Bomb) }).is_err());
+        let nested = catch_panic(|| catch_panic(|| -> u8 { panic!("inner") }).unwrap_err());
         assert!(nested.is_ok_and(|said| said.starts_with("inner")));
         assert!(!WATCHED.get());
     }

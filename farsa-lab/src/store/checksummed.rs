@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
-use crate::store::bounded::read_own;
+use crate::store::bounded::read_regular;
 use crate::store::replace::replace;
 
 /// The version of the layout and of all contents.
@@ -21,30 +21,30 @@ const HEAD: usize = 8 + 4 + 8;
 const CHECKSUM: usize = 4;
 
 /// What is kept in a file of its own kind.
-pub(crate) trait Sealed: Serialize + DeserializeOwned {
+pub(crate) trait Checksummed: Serialize + DeserializeOwned {
     /// The first bytes of such a file.
     const MAGIC: [u8; 8];
     /// What it is called in an error.
     const KIND: &'static str;
     /// Bytes of the largest such file that is read.
-    const LARGEST: u64;
+    const MAX_BYTES: u64;
 }
 
 /// Writes a sealed file in place of what was there; see [`replace`].
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Other`] for one that is too large to be read; nothing is replaced then.
-pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
+pub(crate) fn write<T: Checksummed>(path: &Path, content: &T) -> Result<(), Error> {
     let bytes = to_bytes(path, content)?;
     let size = bytes.len() as u64;
-    if size > T::LARGEST {
-        return Err(Error::too_large(path, size, T::LARGEST));
+    if size > T::MAX_BYTES {
+        return Err(Error::too_large(path, size, T::MAX_BYTES));
     }
     replace(path, &bytes)
 }
 
 /// The bytes of a sealed file, which is to be written to `path`.
-pub(crate) fn to_bytes<T: Sealed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
+pub(crate) fn to_bytes<T: Checksummed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
     let head = [&T::MAGIC[..], &FORMAT.to_le_bytes(), &[0; 8]].concat();
     let mut bytes = postcard::to_extend(content, head).map_err(|error| Error::Io {
         doing: "write",
@@ -74,8 +74,8 @@ pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
 ///
 /// # Errors
 /// [`Error::Damaged`] when it is not the file that was written, [`Error::Io`].
-pub(crate) fn read<T: Sealed>(path: &Path) -> Result<T, Error> {
-    let bytes = read_own(path, T::LARGEST)?;
+pub(crate) fn read<T: Checksummed>(path: &Path) -> Result<T, Error> {
+    let bytes = read_regular(path, T::MAX_BYTES)?;
     open(&bytes).map_err(|why| Error::damaged(path, why))
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn read<T: Sealed>(path: &Path) -> Result<T, Error> {
 ///
 /// # Errors
 /// Why it is not what was written.
-pub(crate) fn open_first<T: Sealed>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
+pub(crate) fn open_first<T: Checksummed>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
     let length =
         bytes.get(12..HEAD).and_then(|length| length.first_chunk::<8>()).map(|length| u64::from_le_bytes(*length));
     let end = length.and_then(|length| usize::try_from(length).ok()?.checked_add(HEAD + CHECKSUM));
@@ -95,7 +95,7 @@ pub(crate) fn open_first<T: Sealed>(bytes: &[u8]) -> Result<(T, &[u8]), String> 
 ///
 /// # Errors
 /// Why it is not what was written.
-pub(crate) fn open<T: Sealed>(bytes: &[u8]) -> Result<T, String> {
+pub(crate) fn open<T: Checksummed>(bytes: &[u8]) -> Result<T, String> {
     let truncated = |expected: u64| format!("truncated: {} bytes of {expected}", bytes.len());
     let Some((magic, rest)) = bytes.split_first_chunk::<8>() else {
         return Err(truncated((HEAD + CHECKSUM) as u64));
@@ -140,10 +140,10 @@ mod tests {
     #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
     struct Thing(Vec<u16>);
 
-    impl Sealed for Thing {
+    impl Checksummed for Thing {
         const MAGIC: [u8; 8] = *b"farsathg";
         const KIND: &'static str = "thing";
-        const LARGEST: u64 = 1000;
+        const MAX_BYTES: u64 = 1000;
     }
 
     fn sealed() -> Vec<u8> {
@@ -169,7 +169,7 @@ mod tests {
         let path = directory.join("thing.bin");
         // Of postcard a length has two bytes here, and each of these numbers three.
         let largest = |count: usize| Thing(vec![u16::MAX; count]);
-        let most = (Thing::LARGEST as usize - HEAD - CHECKSUM - 2) / 3;
+        let most = (Thing::MAX_BYTES as usize - HEAD - CHECKSUM - 2) / 3;
         write(&path, &largest(most)).unwrap();
         let said = write(&path, &largest(most + 1)).unwrap_err().to_string();
         assert!(said.ends_with("bytes, more than the 1000 that are read of it"), "{said}");

@@ -12,16 +12,16 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::run::plan::Plan;
 use crate::run::records::{Checkpoint, RecordHead, evolved, imported};
+use crate::store::append_log::{self, AppendLog, Mark};
+use crate::store::checksummed;
 use crate::store::directory::Directory;
-use crate::store::growing::{self, Growing, Mark};
 use crate::store::identity::Identity;
 use crate::store::log::Line;
-use crate::store::sealed;
 use crate::strategy::history::History;
 use crate::strategy::search::Search;
 
 /// Bytes of the largest record that is read. Tests have one that is soon full.
-const LARGEST: u64 = if cfg!(test) { 1 << 19 } else { 1 << 32 };
+const MAX_BYTES: u64 = if cfg!(test) { 1 << 19 } else { 1 << 32 };
 
 /// A generation.
 #[derive(Serialize, Deserialize)]
@@ -39,7 +39,7 @@ struct Entry<'e> {
 }
 
 /// All finished generations of a run, as its record has them.
-pub(crate) struct Told {
+pub(crate) struct RunRecord {
     pub(crate) identity: Identity,
     pub(crate) record: Record,
     /// Their lines in the log.
@@ -56,7 +56,7 @@ pub(crate) struct Told {
     content: Vec<u8>,
 }
 
-impl Told {
+impl RunRecord {
     /// Reads the record of the run that a plan describes, up to a checkpoint. Its sizes are those of the plan's strategy: nothing is
     /// allocated because the file says so.
     ///
@@ -79,7 +79,7 @@ impl Told {
     ) -> Result<Self, Error> {
         let path = directory.record();
         let damaged = |why: String| Error::damaged(&path, why);
-        let (head, mut rest) = sealed::open_first::<RecordHead>(&content).map_err(damaged)?;
+        let (head, mut rest) = checksummed::open_first::<RecordHead>(&content).map_err(damaged)?;
         let RecordHead { identity, strategy } = head;
         plan.same_run(&identity, directory.path())?;
         let asked = plan.definition().name();
@@ -147,21 +147,21 @@ impl Told {
     /// # Errors
     /// [`Error::Io`], and [`Error::Damaged`] when it is not what the checkpoint speaks of.
     pub(crate) fn content(directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
-        growing::read(&directory.record(), checkpoint.record, LARGEST)
+        append_log::read(&directory.record(), checkpoint.record, MAX_BYTES)
     }
 
     /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
-    pub(crate) fn file(&mut self, directory: &Directory) -> Result<ToldFile, Error> {
+    pub(crate) fn writer(&mut self, directory: &Directory) -> Result<RunRecordWriter, Error> {
         let content = std::mem::take(&mut self.content);
-        let file = Growing::new(&directory.record(), &content)?;
-        Ok(ToldFile { file: file.with_most(LARGEST), longest: self.longest })
+        let file = AppendLog::new(&directory.record(), &content)?;
+        Ok(RunRecordWriter { file: file.with_most(MAX_BYTES), longest: self.longest })
     }
 }
 
 /// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
 ///
 /// # Errors
-/// As [`Told::read`].
+/// As [`RunRecord::read`].
 pub(crate) fn history<'p>(
     plan: &'p Plan<'_>,
     directory: &Directory,
@@ -172,26 +172,26 @@ pub(crate) fn history<'p>(
         return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
     }
     let path = directory.record();
-    let told = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
-    let champion = told.champion();
-    let Told { identity, record, observed, .. } = told;
+    let run_record = RunRecord::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
+    let champion = run_record.champion();
+    let RunRecord { identity, record, observed, .. } = run_record;
     let observations = plan.no_observations()?.into_iter().chain(observed).collect();
     let history = History::new(path.clone(), record, plan.fresh()).with_observations(observations);
     Ok((identity, history.with_champion(champion), path))
 }
 
 /// The record of a run in progress.
-pub(crate) struct ToldFile {
-    file: Growing,
+pub(crate) struct RunRecordWriter {
+    file: AppendLog,
     /// Bytes of the longest entry.
     longest: usize,
 }
 
-impl ToldFile {
+impl RunRecordWriter {
     /// Makes the file of a run without a generation, and says how far it has come.
     pub(crate) fn create(path: &Path, identity: &Identity, strategy: &str) -> Result<Mark, Error> {
         let head = RecordHead { identity: identity.clone(), strategy: strategy.into() };
-        Growing::new(path, &sealed::to_bytes(path, &head)?)?.sync()
+        AppendLog::new(path, &checksummed::to_bytes(path, &head)?)?.sync()
     }
 
     /// Appends the last generation of a run.
@@ -217,7 +217,7 @@ impl ToldFile {
     ///
     /// # Errors
     /// [`Error::Other`].
-    pub(crate) fn room(&self) -> Result<(), Error> {
+    pub(crate) fn check_space(&self) -> Result<(), Error> {
         self.file.room_for(self.longest)
     }
 
