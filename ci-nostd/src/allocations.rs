@@ -7,7 +7,8 @@ use farsa::body::{
     ArmAndHand, Channels, Contacts, InfraredAnalytic, JointPosition, JointSpeed, MobileRobot, Motor, Muscles, PairId,
     Sensor, ServoGroup, Tabletop, Touch, WheelSpeed, WheelVelocity, World as _,
 };
-use farsa::nn::{Architecture, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork};
+use farsa::nn::block::{Architecture, BlockNetwork};
+use farsa::nn::{Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork};
 use farsa::num::{Domain, Stream};
 use farsa::physics::{arena, articulated};
 

@@ -23,10 +23,9 @@ use core::hint::black_box;
 use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
-use farsa::nn::{
-    Aligned, Architecture, BlockLayout, BlockNetwork, BlockNetworkBytes, BlockPlan, Controller, Ctrnn, CtrnnLayout,
-    Leak, LeakyLayout, LeakyNetwork, Perceptron, PerceptronBytes,
-};
+use farsa::nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
+use farsa::nn::bytes::{Aligned, BlockNetworkBytes, PerceptronBytes};
+use farsa::nn::{Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Perceptron};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
 

@@ -5,7 +5,8 @@ mod drawn;
 use farsa_body::Recorder;
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, NetworkExport, Outcome, Settings};
-use farsa_nn::{BlockNetwork, Controller, Ctrnn, Leak, LeakyNetwork, Perceptron};
+use farsa_nn::block::BlockNetwork;
+use farsa_nn::{Controller, Ctrnn, Leak, LeakyNetwork, Perceptron};
 
 use drawn::Draw;
 

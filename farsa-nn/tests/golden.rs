@@ -1,9 +1,8 @@
 //! The bits of a long run: a change here is value-breaking and has its heading in the changelog.
 
-use farsa_nn::{
-    Architecture, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, Integrator, Leak, LeakyLayout,
-    LeakyNetwork, LeakyParameter, QuantizedNetwork, QuantizedScale,
-};
+use farsa_nn::block::{Architecture, BlockNetwork, BlockParameter};
+use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
+use farsa_nn::{Controller, Ctrnn, CtrnnLayout, Integrator, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Digest, Domain, Stream};
 
 #[test]

@@ -1,6 +1,7 @@
 //! The fixed-point network against its equations in wide integers, and against the network of floats.
 
-use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, QuantizedNetwork, QuantizedScale};
+use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
+use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::{env, fs};
 
-use farsa_nn::{LeakyNetworkBytes, QuantizedNetworkBytes, QuantizedScale};
+use farsa_nn::bytes::{LeakyNetworkBytes, QuantizedNetworkBytes};
+use farsa_nn::quantized::QuantizedScale;
 
 /// Fraction bits of sensor values: 9 cover [-64, 64).
 const INPUT_BITS: u32 = 9;

@@ -2,10 +2,10 @@
 #![no_main]
 
 use farsa_fuzz::{bounded, sealed_controller};
-use farsa_nn::{
-    BlockNetwork, BlockNetworkBytes, Controller, Ctrnn, CtrnnBytes, LeakyNetwork, LeakyNetworkBytes, Perceptron,
-    PerceptronBytes, QuantizedNetwork, QuantizedNetworkBytes,
-};
+use farsa_nn::block::BlockNetwork;
+use farsa_nn::bytes::{BlockNetworkBytes, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, QuantizedNetworkBytes};
+use farsa_nn::quantized::QuantizedNetwork;
+use farsa_nn::{Controller, Ctrnn, LeakyNetwork, Perceptron};
 use libfuzzer_sys::fuzz_target;
 
 /// A short description may ask for a large state, or for inputs without weights: who allocates looks at their number first.

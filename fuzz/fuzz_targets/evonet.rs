@@ -2,7 +2,7 @@
 #![no_main]
 
 use farsa_fuzz::bounded;
-use farsa_nn::{Evonet, EvonetRanges};
+use farsa_nn::block::{Evonet, EvonetRanges};
 use libfuzzer_sys::fuzz_target;
 
 farsa_fuzz::text!();

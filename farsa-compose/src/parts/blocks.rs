@@ -1,7 +1,8 @@
 //! Networks of clusters and links.
 
 use farsa_lab::{Error, Parameter};
-use farsa_nn::{Activation, Block, BlockLayout, BlockLayoutBuf, BlockParameter, Group, Span};
+use farsa_nn::Activation;
+use farsa_nn::block::{Block, BlockLayout, BlockLayoutBuf, BlockParameter, Group, Span};
 
 use crate::check::places::Places;
 use crate::document::{Blocks, Cluster, ClusterActivation, Link};

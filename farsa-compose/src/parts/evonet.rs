@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use farsa_lab::Error;
-use farsa_nn::{Activation, Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges, Leak};
+use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges};
+use farsa_nn::{Activation, Leak};
 
 use crate::check::places::Places;
 use crate::document::{Evonet, EvonetNeurons};
@@ -52,8 +53,8 @@ impl EvonetNetwork {
         }
         let wrong = |why: &dyn std::fmt::Display| places.wrong("/network/file", format!("{name}: {why}"));
         let text = files.get(name).map(String::as_str).unwrap_or_default();
-        let found: farsa_nn::Evonet = text.parse().map_err(|error| wrong(&error))?;
-        let farsa_nn::Evonet { layout, numbers, mutations } = found;
+        let found: farsa_nn::block::Evonet = text.parse().map_err(|error| wrong(&error))?;
+        let farsa_nn::block::Evonet { layout, numbers, mutations } = found;
         let [inputs, outputs] = shape;
         if [layout.inputs, layout.outputs] != shape {
             let why = format!(

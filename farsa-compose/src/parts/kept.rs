@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use farsa_nn::BlockLayoutBuf;
+use farsa_nn::block::BlockLayoutBuf;
 
 /// A layout that lasts as long as the process: networks borrow theirs, and equal ones share one.
 pub(crate) fn kept(layout: BlockLayoutBuf) -> &'static BlockLayoutBuf {

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 
 use farsa_lab::{Error, Intervention, OwnedNetwork, Parameter, resting_network};
-use farsa_nn::{
-    Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak,
-    LeakyLayout, LeakyParameter, Perceptron,
-};
+use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter};
+use farsa_nn::{Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak, LeakyLayout, LeakyParameter, Perceptron};
 
 use crate::check::places::Places;
 use crate::document::{Document, Network, NetworkKind, WeightOrder, Wire};

@@ -7,7 +7,8 @@ use farsa_compose::ComposedExperiment;
 use farsa_lab::{
     CaseId, EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, NetworkExport, Outcome, Protocol, Settings,
 };
-use farsa_nn::{Block, BlockNetwork, Controller, Ctrnn, LeakyNetwork, LeakyParameter, Perceptron};
+use farsa_nn::block::{Block, BlockNetwork};
+use farsa_nn::{Controller, Ctrnn, LeakyNetwork, LeakyParameter, Perceptron};
 use farsa_num::{Domain, Instructions, Stream};
 
 use crate::steps::{Steps, drawn};

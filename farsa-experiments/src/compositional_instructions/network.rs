@@ -3,7 +3,8 @@
 use core::f64::consts::LN_10;
 
 use farsa_lab::{Error, Parameter};
-use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Integrator, Span};
+use farsa_nn::block::Span;
+use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Integrator};
 use farsa_num::exp;
 
 use crate::compositional_instructions::config::Ranges;

@@ -1,7 +1,8 @@
 //! The test protocols of `compositional-instructions`: what each of their cases tells an agent, and does to it.
 
 use farsa_lab::{CaseId, Intervention, Protocol};
-use farsa_nn::{CtrnnParameter, Span};
+use farsa_nn::CtrnnParameter;
+use farsa_nn::block::Span;
 
 use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::episode::Told;

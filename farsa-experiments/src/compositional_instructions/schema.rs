@@ -2,7 +2,8 @@
 
 use farsa_body::{Contacts, Handles, PairId, Recorder};
 use farsa_lab::seconds;
-use farsa_nn::{CtrnnParts, Span};
+use farsa_nn::CtrnnParts;
+use farsa_nn::block::Span;
 use farsa_view::{Channel, Links, NodeParameters, Schema, View};
 
 use crate::compositional_instructions::agent::Agent;

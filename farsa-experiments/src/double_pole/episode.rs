@@ -2,7 +2,8 @@
 
 use farsa_evo::ObservationStatistics;
 use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
-use farsa_nn::{BlockNetwork, Controller as _, Leak};
+use farsa_nn::block::BlockNetwork;
+use farsa_nn::{Controller as _, Leak};
 
 use crate::double_pole::cart::CartState;
 use crate::double_pole::config::Config;

@@ -1,6 +1,7 @@
 //! The networks of `double-pole`, one for each number of inputs and hidden neurons.
 
-use farsa_nn::{Activation, Architecture, BlockLayout, BlockPlan};
+use farsa_nn::Activation;
+use farsa_nn::block::{Architecture, BlockLayout, BlockPlan};
 
 /// The most hidden neurons.
 pub const MOST_HIDDEN: u32 = 8;

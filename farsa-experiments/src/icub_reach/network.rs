@@ -1,7 +1,8 @@
 //! The network of an agent of `icub-reach`.
 
 use farsa_lab::{Error, NormalisedController, Parameter};
-use farsa_nn::{Architecture, BlockLayout, BlockNetwork, BlockPlan, Controller, Leak, Span};
+use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan, Span};
+use farsa_nn::{Controller, Leak};
 
 use crate::icub_reach::config::{INPUTS, MOTORS};
 use crate::icub_reach::episode::Reacher;

@@ -7,7 +7,8 @@ use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
     NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
 };
-use farsa_nn::{BlockLayoutBuf, Leak};
+use farsa_nn::Leak;
+use farsa_nn::block::BlockLayoutBuf;
 use farsa_view::Schema;
 
 use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};

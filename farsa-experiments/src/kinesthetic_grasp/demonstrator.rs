@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
 use farsa_lab::{Episode, EpisodeId, Error, run_episode};
-use farsa_nn::{Controller, Demonstration};
+use farsa_nn::Controller;
+use farsa_nn::learning::Demonstration;
 use farsa_physics::articulated::{Model, World};
 
 use crate::reach_grasp_lift::episode::Judge;

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use farsa_lab::{EpisodeId, Error, Iteration};
-use farsa_nn::{Adam, Error as NetworkError, Gradient, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Learner, Loss};
+use farsa_nn::learning::{Adam, Gradient, Learner, Loss};
+use farsa_nn::{Error as NetworkError, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::kinesthetic_grasp::demonstrator::{Demonstrator, Record};

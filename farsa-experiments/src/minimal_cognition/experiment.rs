@@ -3,7 +3,8 @@
 use core::f64::consts::FRAC_PI_4;
 
 use farsa_body::{BodyId, Pose, Recorder};
-use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
+use farsa_nn::block::Span;
+use farsa_nn::{CtrnnParameter, CtrnnParts};
 
 use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::episode::AgentEpisode;

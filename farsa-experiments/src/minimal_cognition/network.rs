@@ -1,7 +1,8 @@
 //! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
 
 use farsa_lab::{Error, Parameter};
-use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Span};
+use farsa_nn::block::Span;
+use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry};
 
 use crate::minimal_cognition::config::Config;
 

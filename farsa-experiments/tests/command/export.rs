@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use farsa_experiments::minimal_cognition::LAYOUT as AGENT;
-use farsa_nn::{CtrnnBytes, Leak, LeakyLayout, LeakyNetworkBytes, channel_hash};
+use farsa_nn::bytes::{CtrnnBytes, LeakyNetworkBytes, channel_hash};
+use farsa_nn::{Leak, LeakyLayout};
 use safetensors::SafeTensors;
 
 use crate::tool::{farsa, ok, own, say, scratch};

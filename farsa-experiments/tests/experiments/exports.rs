@@ -11,10 +11,9 @@ use farsa_lab::{
     ControllerExport, EpisodeId, Evaluation, Evaluator, Experiment, MotorDrive, NetworkExport, SensorReading, Settings,
     Value,
 };
-use farsa_nn::{
-    BlockNetwork, BlockNetworkBytes, Controller, Ctrnn, CtrnnBytes, LeakyNetwork, LeakyNetworkBytes, Perceptron,
-    PerceptronBytes, channel_hash,
-};
+use farsa_nn::block::BlockNetwork;
+use farsa_nn::bytes::{BlockNetworkBytes, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, channel_hash};
+use farsa_nn::{Controller, Ctrnn, LeakyNetwork, Perceptron};
 use farsa_num::{Domain, Stream};
 
 /// Without a network of ours: wired by hand, or without a controller.

@@ -1,7 +1,7 @@
 //! A controller, its body's channels and its starts as plain data, for `farsa export`.
 
 use farsa_body::{Axes, Law};
-use farsa_nn::channel_hash;
+use farsa_nn::bytes::channel_hash;
 use serde::Serialize;
 
 use crate::experiment::network_export::NetworkExport;
@@ -44,7 +44,7 @@ impl ControllerExport {
         Self { network, sensors, motors, actuators, surfaces, judge: None, time_step, steps }
     }
 
-    /// What [`farsa_nn::channel_hash`] makes of the names of its channels.
+    /// What [`farsa_nn::bytes::channel_hash`] makes of the names of its channels.
     pub fn channels(&self) -> u64 {
         let sensors = self.sensors.iter().map(|sensor| &sensor.name);
         channel_hash(sensors, self.motors.iter().map(|motor| &motor.name))

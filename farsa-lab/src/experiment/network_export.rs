@@ -1,9 +1,8 @@
 //! A network of any kind as plain data: a layout and parameters.
 
-use farsa_nn::{
-    Block, BlockLayoutBuf, BlockNetworkBytes, BlockParameter, BytesError, CtrnnBytes, CtrnnLayout, CtrnnParts, Group,
-    Leak, LeakyLayout, LeakyNetworkBytes, LeakyParts, PerceptronBytes,
-};
+use farsa_nn::block::{Block, BlockLayoutBuf, BlockParameter, Group};
+use farsa_nn::bytes::{BlockNetworkBytes, BytesError, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes};
+use farsa_nn::{CtrnnLayout, CtrnnParts, Leak, LeakyLayout, LeakyParts};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
 
@@ -46,7 +45,7 @@ pub enum NetworkExport {
         /// The parameters.
         parameters: Vec<f32>,
     },
-    /// [`farsa_nn::BlockNetwork`], of any connections between groups of neurons.
+    /// [`farsa_nn::block::BlockNetwork`], of any connections between groups of neurons.
     Blocks {
         /// The groups and blocks.
         layout: BlockLayoutBuf,

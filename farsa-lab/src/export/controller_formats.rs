@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
-use farsa_nn::{Block, Group, Leak};
+use farsa_nn::Leak;
+use farsa_nn::block::{Block, Group};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::Value;
 
@@ -23,7 +24,7 @@ pub(crate) fn rust(controller: &ControllerExport, whose: &str) -> Result<String,
         "//! {whose}: written by `farsa export controller --format rust`.
 {}
 {}
-/// What `farsa_nn::channel_hash` makes of the names below.
+/// What `farsa_nn::bytes::channel_hash` makes of the names below.
 pub const CHANNELS: u64 = {:#018x};
 
 /// What the inputs are called.
@@ -152,7 +153,8 @@ pub const TIME_STEP: f32 = {time_step:?};
                 let (inputs, outputs) = (layout.inputs, layout.outputs);
                 writeln!(
                     f,
-                    "use farsa_nn::{{Activation, Block, BlockLayout, Group, Leak, Span}};
+                    "use farsa_nn::block::{{Block, BlockLayout, Group, Span}};
+use farsa_nn::{{Activation, Leak}};
 
 /// The groups of alike neurons.
 #[rustfmt::skip]

@@ -26,7 +26,7 @@ impl BlockParameter {
     pub const ALL: [Self; 4] = [Self::Weight, Self::Bias, Self::Gain, Self::Leak];
 }
 
-/// Groups of neurons, and the blocks that a step of a [`BlockNetwork`](crate::BlockNetwork) works through.
+/// Groups of neurons, and the blocks that a step of a [`BlockNetwork`](crate::block::BlockNetwork) works through.
 ///
 /// The first neurons are the inputs, the last ones the outputs. The description is borrowed: from constants in flash, or
 /// from what a program put together at run time.
@@ -44,7 +44,8 @@ impl BlockParameter {
 /// order is another, [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
 ///
 /// ```
-/// use farsa_nn::{Activation, Block, BlockLayout, Group, Span};
+/// use farsa_nn::block::{Block, BlockLayout, Group, Span};
+/// use farsa_nn::Activation;
 ///
 /// // Three inputs; two neurons that hear them, each other two steps later, and themselves; all heard by one output.
 /// const X: Span = Span::new(0, 3);

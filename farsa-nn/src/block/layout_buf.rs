@@ -3,14 +3,15 @@
 use alloc::vec::Vec;
 
 use crate::activation::Activation;
-use crate::architecture::BlockPlan;
+use crate::block::architecture::BlockPlan;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
 /// Groups and blocks that a [`BlockLayout`] borrows, on the heap; with feature `alloc`.
 ///
 /// ```
-/// use farsa_nn::{BlockLayoutBuf, BlockNetwork, Controller, Leak};
+/// use farsa_nn::block::{BlockLayoutBuf, BlockNetwork};
+/// use farsa_nn::{Controller, Leak};
 ///
 /// let deep = BlockLayoutBuf::feed_forward(&[29, 20, 12, 23]);
 /// let layout = deep.layout();

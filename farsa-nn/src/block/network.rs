@@ -25,7 +25,7 @@ use crate::lesion::{Ablatable, Lesion};
 /// modulated gain g_i = a_by
 /// ```
 ///
-/// Feed-forward, Elman's, Jordan's and fully recurrent networks are orders of blocks ([`Architecture`](crate::Architecture)).
+/// Feed-forward, Elman's, Jordan's and fully recurrent networks are orders of blocks ([`Architecture`](crate::block::Architecture)).
 /// Activations are zero at the start. A NaN or infinite input is the caller's mistake, as in a
 /// [`LeakyNetwork`](crate::LeakyNetwork), whose bits this one has where the blocks are the same.
 ///
@@ -34,7 +34,8 @@ use crate::lesion::{Ablatable, Lesion};
 /// clamped to [0, 1].
 ///
 /// ```
-/// use farsa_nn::{Architecture, BlockLayout, BlockNetwork, Controller, Leak, BlockPlan};
+/// use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
+/// use farsa_nn::{Controller, Leak};
 ///
 /// const PLAN: BlockPlan = Architecture::elman(2, 3, 1).plan();
 /// const LAYOUT: BlockLayout = PLAN.layout();

@@ -22,7 +22,7 @@ const BIAS: u32 = 1 << 8;
 const GAIN: u32 = 1 << 9;
 const LEAK: u32 = 1 << 10;
 
-/// A [`BlockNetwork`](crate::BlockNetwork) of given bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a
+/// A [`BlockNetwork`](crate::block::BlockNetwork) of given bytes, as [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a
 /// `LeakyNetwork`: checked, with the description of its groups and blocks, and parameters that are used where they lie.
 ///
 /// A board whose layout is a constant compares it by [`expect`](Self::expect). A program that takes any network copies the
@@ -31,11 +31,13 @@ const LEAK: u32 = 1 << 10;
 /// [`state_len`](BlockLayout::state_len) before so much is allocated for bytes of strangers.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Architecture, BlockLayout, BlockNetwork, BlockNetworkBytes, BlockPlan, Controller, Leak};
+/// use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
+/// use farsa_nn::bytes::{Aligned, BlockNetworkBytes};
+/// use farsa_nn::{Controller, Leak};
 ///
 /// const PLAN: BlockPlan = Architecture::elman(2, 3, 1).plan();
 /// const LAYOUT: BlockLayout = PLAN.layout();
-/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
 /// // A computer writes,
 /// let parameters = [0.5; LAYOUT.parameter_count()];
 /// let mut flash = Aligned([0; BlockNetworkBytes::byte_count(&LAYOUT)]);
@@ -68,7 +70,7 @@ impl BlockNetworkBytes<'_> {
 
     /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::channel_hash); 0 says nothing.
+    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
     ///
     /// # Errors
     /// [`BytesError::Parameters`] as [`BlockNetwork::new`](crate::BlockNetwork::new), [`BytesError::Description`] for a count
@@ -174,7 +176,7 @@ impl<'a> BlockNetworkBytes<'a> {
         same_layout(BlockNetworkBytes::layout_hash(layout, leak), own)
     }
 
-    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::channel_hash).
+    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
     ///
     /// # Errors
     /// [`BytesError::OtherChannels`].
@@ -197,7 +199,7 @@ impl<'a> BlockNetworkBytes<'a> {
         self.leak
     }
 
-    /// The [`channel_hash`](crate::channel_hash) of its inputs and outputs; 0 if nothing is said.
+    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
     pub const fn channels(&self) -> u64 {
         self.channels
     }

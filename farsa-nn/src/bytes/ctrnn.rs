@@ -9,17 +9,18 @@ use crate::ctrnn::integrator::Integrator;
 use crate::ctrnn::layout::CtrnnLayout;
 use crate::ctrnn::network::{check, check_layout, check_values};
 
-/// A [`Ctrnn`](crate::Ctrnn) of given bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a
+/// A [`Ctrnn`](crate::Ctrnn) of given bytes, as [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a
 /// `LeakyNetwork`: checked, and used where it lies.
 ///
 /// The time step is part of the layout: a board whose steps are longer is another.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Controller, Ctrnn, CtrnnBytes, CtrnnLayout};
+/// use farsa_nn::bytes::{Aligned, CtrnnBytes};
+/// use farsa_nn::{Controller, Ctrnn, CtrnnLayout};
 ///
 /// const LAYOUT: CtrnnLayout = CtrnnLayout::new(1, 2, 1);
 /// const TIME_STEP: f32 = 0.01;
-/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
 /// // A computer writes: weights, then biases, gains and time constants;
 /// let parameters = [1.0, 0.0, 4.5, -1.0, 1.0, 4.5, -2.75, -1.75, 1.0, 1.0, 0.1, 0.1];
 /// let mut flash = Aligned([0; CtrnnBytes::byte_count(LAYOUT)]);
@@ -49,7 +50,7 @@ impl CtrnnBytes<'_> {
 
     /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::channel_hash); 0 says nothing.
+    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
     ///
     /// # Errors
     /// [`BytesError::Parameters`] as [`Ctrnn::new`](crate::Ctrnn::new), [`BytesError::Buffer`]; then nothing is written.
@@ -112,7 +113,7 @@ impl<'a> CtrnnBytes<'a> {
         same_layout(CtrnnBytes::layout_hash(layout, time_step), CtrnnBytes::layout_hash(self.layout, self.time_step))
     }
 
-    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::channel_hash).
+    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
     ///
     /// # Errors
     /// [`BytesError::OtherChannels`].
@@ -130,7 +131,7 @@ impl<'a> CtrnnBytes<'a> {
         self.time_step
     }
 
-    /// The [`channel_hash`](crate::channel_hash) of its inputs and outputs; 0 if nothing is said.
+    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
     pub const fn channels(&self) -> u64 {
         self.channels
     }

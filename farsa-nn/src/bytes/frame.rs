@@ -9,8 +9,8 @@ use crate::bytes::error::BytesError;
 ///
 /// ```
 /// # const LAYOUT: farsa_nn::LeakyLayout = farsa_nn::LeakyLayout::new(1, 1, 1);
-/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::LeakyNetworkBytes::byte_count(LAYOUT)] } }
-/// use farsa_nn::{Aligned, LeakyNetworkBytes};
+/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::bytes::LeakyNetworkBytes::byte_count(LAYOUT)] } }
+/// use farsa_nn::bytes::{Aligned, LeakyNetworkBytes};
 ///
 /// // Does not compile when the file has another length.
 /// static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
@@ -101,7 +101,7 @@ pub(crate) fn values(parameters: &[u8]) -> impl ExactSizeIterator<Item = f32> + 
 /// A controller for another body, or for the same with its sensors in another order, has another.
 ///
 /// ```
-/// use farsa_nn::channel_hash;
+/// use farsa_nn::bytes::channel_hash;
 ///
 /// assert_ne!(channel_hash(["left", "right"], ["wheel"]), channel_hash(["right", "left"], ["wheel"]));
 /// ```

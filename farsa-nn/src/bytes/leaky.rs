@@ -15,10 +15,11 @@ use crate::leaky_network::{check, check_values};
 /// the order of the [`LeakyLayout`], a CRC-32. All of it is little-endian.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Controller, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes};
+/// use farsa_nn::bytes::{Aligned, LeakyNetworkBytes};
+/// use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 ///
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 1, 1);
-/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
 /// // A computer writes,
 /// let mut flash = Aligned([0; LeakyNetworkBytes::byte_count(LAYOUT)]);
 /// LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut flash.0)?;

@@ -6,13 +6,14 @@ use crate::bytes::frame::{
 };
 use crate::perceptron::{Perceptron, check};
 
-/// A [`Perceptron`] of given bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and
+/// A [`Perceptron`] of given bytes, as [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and
 /// used where it lies.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Controller, Perceptron, PerceptronBytes};
+/// use farsa_nn::bytes::{Aligned, PerceptronBytes};
+/// use farsa_nn::{Controller, Perceptron};
 ///
-/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
 /// // A computer writes: weights source by source, then biases;
 /// let mut flash = Aligned([0; PerceptronBytes::byte_count(2, 2)]);
 /// PerceptronBytes::write(2, 2, 1.0, 0, &[0.0, 4.0, 4.0, 0.0, -2.0, -2.0], &mut flash.0)?;
@@ -43,7 +44,7 @@ impl PerceptronBytes<'_> {
 
     /// Fills `out` [[`byte_count`](Self::byte_count)] with a layer.
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::channel_hash); 0 says nothing.
+    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
     ///
     /// # Errors
     /// [`BytesError::Parameters`] as [`Perceptron::new`](crate::Perceptron::new), [`BytesError::Buffer`]; then nothing is
@@ -100,7 +101,7 @@ impl<'a> PerceptronBytes<'a> {
         same_layout(PerceptronBytes::layout_hash(inputs, outputs, slope), own)
     }
 
-    /// Nothing, if the layer is for these channels, by their [`channel_hash`](crate::channel_hash).
+    /// Nothing, if the layer is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
     ///
     /// # Errors
     /// [`BytesError::OtherChannels`].
@@ -123,7 +124,7 @@ impl<'a> PerceptronBytes<'a> {
         self.slope
     }
 
-    /// The [`channel_hash`](crate::channel_hash) of its inputs and outputs; 0 if nothing is said.
+    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
     pub const fn channels(&self) -> u64 {
         self.channels
     }

@@ -7,17 +7,19 @@ use crate::leaky_layout::LeakyLayout;
 use crate::quantized::network::check;
 use crate::quantized::scale::QuantizedScale;
 
-/// A [`QuantizedNetwork`](crate::QuantizedNetwork) of given bytes, as
-/// [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and used where it lies.
+/// A [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) of given bytes, as
+/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and used where it lies.
 ///
 /// The scale lies beside the parameters: each individual has its own, and only the fraction bits of the sensor values are the
 /// board's business. The slope of the logistic function is in the weights.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Leak, LeakyLayout, QuantizedNetwork, QuantizedNetworkBytes, QuantizedScale};
+/// use farsa_nn::bytes::{Aligned, QuantizedNetworkBytes};
+/// use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
+/// use farsa_nn::{Leak, LeakyLayout};
 ///
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 1, 1);
-/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
 /// // A computer writes,
 /// let mut fixed = [0; LAYOUT.parameter_count()];
 /// let scale = QuantizedScale::quantize(&LAYOUT, 9, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut fixed)?;
@@ -53,7 +55,7 @@ impl QuantizedNetworkBytes<'_> {
 
     /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::channel_hash); 0 says nothing.
+    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
     ///
     /// # Errors
     /// [`BytesError::Parameters`] as [`QuantizedNetwork::new`](crate::QuantizedNetwork::new), [`BytesError::Buffer`];
@@ -113,7 +115,7 @@ impl<'a> QuantizedNetworkBytes<'a> {
         same_layout(hash_of(layout, leak, [input_bits, weights, sums]), own)
     }
 
-    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::channel_hash).
+    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
     ///
     /// # Errors
     /// [`BytesError::OtherChannels`].
@@ -136,7 +138,7 @@ impl<'a> QuantizedNetworkBytes<'a> {
         self.scale
     }
 
-    /// The [`channel_hash`](crate::channel_hash) of its inputs and outputs; 0 if nothing is said.
+    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
     pub const fn channels(&self) -> u64 {
         self.channels
     }

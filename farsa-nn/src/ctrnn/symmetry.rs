@@ -11,7 +11,8 @@ use crate::error::Error;
 /// are those of the mirror image. Genes lie in the order of the first parameters that they fill.
 ///
 /// ```
-/// use farsa_nn::{CtrnnLayout, CtrnnSymmetry, Span};
+/// use farsa_nn::block::Span;
+/// use farsa_nn::{CtrnnLayout, CtrnnSymmetry};
 ///
 /// // Beer's agent: seven neurons of rays, all alike; five between; two motors. Each layer is mirrored on itself.
 /// const LAYOUT: CtrnnLayout = CtrnnLayout::new(7, 14, 2).with_direct_inputs(0);

@@ -43,7 +43,8 @@ pub struct Demonstration<'a> {
 /// [`LeakyNetwork`](crate::LeakyNetwork), with the leak's own derivative.
 ///
 /// ```
-/// use farsa_nn::{Demonstration, Gradient, Leak, LeakyLayout, Loss};
+/// use farsa_nn::learning::{Demonstration, Gradient, Loss};
+/// use farsa_nn::{Leak, LeakyLayout};
 ///
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
 /// let mut gradient = Gradient::<f64>::new(LAYOUT, Leak::Filter, Loss::SquaredError)?;

@@ -18,7 +18,8 @@ use crate::learning::optimizer::Optimizer;
 /// [`limit`](Self::with_limit): a leak at an end stays there until the gradient points inwards.
 ///
 /// ```
-/// use farsa_nn::{Adam, Demonstration, Leak, LeakyLayout, Learner, Loss};
+/// use farsa_nn::learning::{Adam, Demonstration, Learner, Loss};
+/// use farsa_nn::{Leak, LeakyLayout};
 ///
 /// // One output that shall be the exclusive or of two inputs: examples of one tick each.
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 4, 1).with_slope(1.0);

@@ -10,7 +10,7 @@ use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 /// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
 pub(crate) const LEAK_BITS: u32 = 14;
 
-/// Where the binary points of a [`QuantizedNetwork`](crate::QuantizedNetwork) lie: an integer `v` of `b` fraction bits
+/// Where the binary points of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) lie: an integer `v` of `b` fraction bits
 /// stands for `v / 2^b`.
 ///
 /// | integers | fraction bits |
@@ -75,7 +75,7 @@ impl QuantizedScale {
 
     /// Writes the parameters of a [`LeakyNetwork`](crate::LeakyNetwork)
     /// [[`parameter_count`](LeakyLayout::parameter_count)] as integers of a
-    /// [`QuantizedNetwork`](crate::QuantizedNetwork) for sensor values of so many fraction bits, each rounded to the
+    /// [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) for sensor values of so many fraction bits, each rounded to the
     /// nearest.
     ///
     /// Weights and biases get the most fraction bits, up to 15, with which the largest of them times the slope is an
@@ -87,7 +87,8 @@ impl QuantizedScale {
     /// and [`Error::SumRange`] where sums of 10 fraction bits could overflow. Then `fixed` may be written in part.
     ///
     /// ```
-    /// use farsa_nn::{Leak, LeakyLayout, QuantizedNetwork, QuantizedScale};
+    /// use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
+    /// use farsa_nn::{Leak, LeakyLayout};
     ///
     /// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
     /// let mut fixed = [0; LAYOUT.parameter_count()];

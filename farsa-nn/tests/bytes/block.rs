@@ -1,9 +1,8 @@
 //! Networks of blocks.
 
-use farsa_nn::{
-    Activation, Aligned, Block, BlockLayout, BlockNetwork, BlockNetworkBytes, BlockParameter, BytesError, Controller,
-    Error, Group, Leak, Span,
-};
+use farsa_nn::block::{Block, BlockLayout, BlockNetwork, BlockParameter, Group, Span};
+use farsa_nn::bytes::{Aligned, BlockNetworkBytes, BytesError};
+use farsa_nn::{Activation, Controller, Error, Leak};
 use farsa_num::{Digest, Domain, Stream, crc32};
 use proptest::prelude::*;
 

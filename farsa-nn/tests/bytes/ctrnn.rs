@@ -1,8 +1,7 @@
 //! Continuous-time networks.
 
-use farsa_nn::{
-    Activation, Aligned, BytesError, Controller, Ctrnn, CtrnnBytes, CtrnnLayout, CtrnnParameter, Error, Integrator,
-};
+use farsa_nn::bytes::{Aligned, BytesError, CtrnnBytes};
+use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 

@@ -1,9 +1,7 @@
 //! Leaky networks.
 
-use farsa_nn::{
-    Aligned, BytesError, Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes, LeakyParameter,
-    channel_hash,
-};
+use farsa_nn::bytes::{Aligned, BytesError, LeakyNetworkBytes, channel_hash};
+use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 

@@ -6,7 +6,7 @@ mod leaky;
 mod perceptron;
 mod quantized;
 
-use farsa_nn::{
+use farsa_nn::bytes::{
     Aligned, BlockNetworkBytes, BytesError, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, QuantizedNetworkBytes,
 };
 use farsa_num::{Digest, crc32};

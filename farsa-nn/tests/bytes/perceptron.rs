@@ -1,6 +1,7 @@
 //! The layer of logistic units.
 
-use farsa_nn::{Aligned, BytesError, Controller, Error, Perceptron, PerceptronBytes};
+use farsa_nn::bytes::{Aligned, BytesError, PerceptronBytes};
+use farsa_nn::{Controller, Error, Perceptron};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 

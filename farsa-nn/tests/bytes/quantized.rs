@@ -1,9 +1,8 @@
 //! Networks of integers.
 
-use farsa_nn::{
-    Aligned, BytesError, Error, Leak, LeakyLayout, LeakyParameter, QuantizedNetwork, QuantizedNetworkBytes,
-    QuantizedScale,
-};
+use farsa_nn::bytes::{Aligned, BytesError, QuantizedNetworkBytes};
+use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
+use farsa_nn::{Error, Leak, LeakyLayout, LeakyParameter};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 

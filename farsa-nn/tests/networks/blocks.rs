@@ -1,8 +1,10 @@
 //! Networks of blocks against loops written from their equations, against the other networks, and in the original's order.
 
+use farsa_nn::block::{
+    Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, BlockPlan, EvonetRanges, Group, Span,
+};
 use farsa_nn::{
-    Ablatable, Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, BlockPlan, Controller,
-    Error, EvonetRanges, Group, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned, Span,
+    Ablatable, Activation, Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;

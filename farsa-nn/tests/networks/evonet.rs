@@ -1,7 +1,8 @@
 //! The original's text and the order of its parameters, against a walk through them as the original takes it.
 #![cfg(feature = "alloc")]
 
-use farsa_nn::{Activation, Block, BlockNetwork, Controller, Error, Evonet, EvonetRanges, Leak};
+use farsa_nn::block::{Block, BlockNetwork, Evonet, EvonetRanges};
+use farsa_nn::{Activation, Controller, Error, Leak};
 
 const TEXT: &str = include_str!("../fixtures/evonet.phe");
 

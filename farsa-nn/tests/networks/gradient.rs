@@ -1,10 +1,8 @@
 //! Gradients against finite differences, the run against the network, optimizers against their formulas, and what is learned.
 #![cfg(feature = "alloc")]
 
-use farsa_nn::{
-    Adam, Controller, Demonstration, Error, Gradient, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Learner, Loss,
-    Momentum, Optimizer,
-};
+use farsa_nn::learning::{Adam, Demonstration, Gradient, Learner, Loss, Momentum, Optimizer};
+use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Digest, Domain, Stream};
 use proptest::prelude::*;
 

@@ -3,10 +3,10 @@
 
 use std::fmt::Debug;
 
-use farsa_nn::{
-    Activation, Adam, Architecture, Block, BlockLayoutBuf, BlockParameter, CtrnnLayout, CtrnnParameter, EvonetRanges,
-    Integrator, Leak, LeakyLayout, LeakyParameter, Lesion, Loss, Momentum, QuantizedScale, Span,
-};
+use farsa_nn::block::{Architecture, Block, BlockLayoutBuf, BlockParameter, EvonetRanges, Span};
+use farsa_nn::learning::{Adam, Loss, Momentum};
+use farsa_nn::quantized::QuantizedScale;
+use farsa_nn::{Activation, CtrnnLayout, CtrnnParameter, Integrator, Leak, LeakyLayout, LeakyParameter, Lesion};
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::{from_str, to_string};
 

@@ -1,8 +1,9 @@
 //! How many values and neurons networks of every kind say that they have, and what errors say.
 
+use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
+use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
 use farsa_nn::{
-    Ablatable, Architecture, BlockLayout, BlockNetwork, BlockPlan, Controller, Ctrnn, CtrnnLayout, Error, Leak,
-    LeakyLayout, LeakyNetwork, Lesion, Lesioned, Perceptron, QuantizedNetwork, QuantizedScale,
+    Ablatable, Controller, Ctrnn, CtrnnLayout, Error, Leak, LeakyLayout, LeakyNetwork, Lesion, Lesioned, Perceptron,
 };
 
 const PLAN: BlockPlan = Architecture::elman(2, 4, 3).plan();

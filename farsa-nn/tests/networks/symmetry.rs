@@ -1,6 +1,7 @@
 //! Few genes that fill many parameters, and centre-crossing biases.
 
-use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Error, Integrator, Span};
+use farsa_nn::block::Span;
+use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Error, Integrator};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -1,6 +1,8 @@
 //! The trained network, in flash.
 
-use farsa_nn::{Aligned, BytesError, Leak, LeakyLayout, LeakyNetworkBytes, QuantizedNetworkBytes, QuantizedScale};
+use farsa_nn::bytes::{Aligned, BytesError, LeakyNetworkBytes, QuantizedNetworkBytes};
+use farsa_nn::quantized::QuantizedScale;
+use farsa_nn::{Leak, LeakyLayout};
 
 /// 29 sensors, 12 hidden neurons, 23 motors.
 pub const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);

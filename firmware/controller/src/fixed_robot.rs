@@ -1,6 +1,8 @@
 //! The loop in integers: no float in it, from the counts of the converters to the widths of the pulses.
 
-use farsa_nn::{BytesError, Controller, QuantizedNetwork};
+use farsa_nn::Controller;
+use farsa_nn::bytes::BytesError;
+use farsa_nn::quantized::QuantizedNetwork;
 use farsa_num::{Digest, Stream};
 
 use crate::champion::read_fixed;

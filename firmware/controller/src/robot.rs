@@ -1,7 +1,8 @@
 //! The loop: read, think, drive.
 
 use farsa_body::{Motor, Sensor};
-use farsa_nn::{BytesError, Controller, LeakyNetwork};
+use farsa_nn::bytes::BytesError;
+use farsa_nn::{Controller, LeakyNetwork};
 use farsa_num::{Digest, Stream};
 
 use crate::{Analog, Board, Control, LAYOUT, LEAK, Pulse, champion};

@@ -1,6 +1,7 @@
 //! What boards must come to in integers, and how far it is from what they come to in floats.
 
-use farsa_nn::{Aligned, BytesError, QuantizedNetworkBytes, QuantizedScale};
+use farsa_nn::bytes::{Aligned, BytesError, QuantizedNetworkBytes};
+use farsa_nn::quantized::QuantizedScale;
 use farsa_num::{Digest, Domain, Stream};
 use firmware_controller::{
     Analog, Board, CHANNELS, Control, FixedRobot, INPUT_BITS, LAYOUT, LEAK, Robot, champion, fixed_champion,

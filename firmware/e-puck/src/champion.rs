@@ -1,6 +1,6 @@
 //! The trained layer, in flash.
 
-use farsa_nn::{Aligned, BytesError, PerceptronBytes};
+use farsa_nn::bytes::{Aligned, BytesError, PerceptronBytes};
 
 /// Infrared sensors, in the order of the exported table: at 90, 54, 18, -18, -54, -90, -150 and 150 degrees to the left of ahead.
 pub const SENSORS: usize = 8;

@@ -5,7 +5,8 @@ use core::fmt;
 use adapters::{Converter, Converters, CurveError, Fault, Guard, GuardError, Pulses};
 use embedded_hal::pwm::SetDutyCycle;
 use farsa_body::{Motor, Sensor};
-use farsa_nn::{BytesError, Controller, Perceptron};
+use farsa_nn::bytes::BytesError;
+use farsa_nn::{Controller, Perceptron};
 
 use crate::{SENSORS, SLOPE, WHEELS, champion};
 

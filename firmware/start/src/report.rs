@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use controller::{ARM, Board, Control, FixedRobot, LAYOUT, Robot, noise_into, self_test};
 use e_puck::run_episode;
-use farsa_nn::BytesError;
+use farsa_nn::bytes::BytesError;
 use farsa_num::{Digest, Domain, Stream};
 
 use crate::{exit, say, say_hex, used};

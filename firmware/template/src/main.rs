@@ -3,7 +3,8 @@
 #![no_main]
 
 use cortex_m_rt::entry;
-use farsa_nn::{Aligned, BytesError, Controller, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes};
+use farsa_nn::bytes::{Aligned, BytesError, LeakyNetworkBytes};
+use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 
 const LAYOUT: LeakyLayout = LeakyLayout::new({{sensors}}, {{hidden}}, {{motors}});
 

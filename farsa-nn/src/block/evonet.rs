@@ -29,7 +29,7 @@ impl EvonetRanges {
     /// The number `p` of a gene [0..255]: `weight - 2*weight*gene/255`, so that 0 is the largest.
     ///
     /// ```
-    /// use farsa_nn::EvonetRanges;
+    /// use farsa_nn::block::EvonetRanges;
     ///
     /// assert_eq!([0, 51, 255].map(|gene| EvonetRanges::default().read_gene(gene)), [5.0, 3.0, -5.0]);
     /// ```
@@ -60,7 +60,7 @@ impl<'a> BlockLayout<'a> {
     /// Source: Evonet of `[FARSA2]`.
     ///
     /// ```
-    /// use farsa_nn::{Architecture, BlockPlan};
+    /// use farsa_nn::block::{Architecture, BlockPlan};
     ///
     /// // Discrimination: six sensors, two outputs. The biases first, then the weights of each output.
     /// const PLAN: BlockPlan = Architecture::feed_forward(6, 0, 2).plan();

@@ -6,9 +6,9 @@ use core::str::FromStr;
 
 use crate::activation::Activation;
 use crate::block::description::{Block, Group, Span};
+use crate::block::evonet::EvonetRanges;
 use crate::block::layout_buf::BlockLayoutBuf;
 use crate::error::Error;
-use crate::evonet::EvonetRanges;
 
 /// A network of the original FARSA, read from its text; with feature `alloc`.
 ///
@@ -39,7 +39,7 @@ pub struct Evonet {
 }
 
 impl Evonet {
-    /// The parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::BlockLayout).
+    /// The parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::block::BlockLayout).
     ///
     /// # Errors
     /// [`Error::NoValue`] for a parameter that evolution draws, [`Error::ParameterCount`] for a `.net` file.

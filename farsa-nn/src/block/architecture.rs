@@ -9,7 +9,8 @@ use crate::block::layout::BlockLayout;
 /// Neurons are logistic with slope 1 and biases, without gains and leaks, unless something else is asked for.
 ///
 /// ```
-/// use farsa_nn::{Architecture, LeakyLayout, BlockPlan};
+/// use farsa_nn::block::{Architecture, BlockPlan};
+/// use farsa_nn::LeakyLayout;
 ///
 /// // The network of the manipulation experiment.
 /// const PLAN: BlockPlan = Architecture::elman(29, 12, 23).with_slope(0.2).with_leaks().without_output_biases().plan();
