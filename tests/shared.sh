@@ -25,7 +25,7 @@ has_pip() { [[ ${CI:-} == true ]] || python3 -m pip --version >/dev/null 2>&1; }
 pip_install() { has_pip && python3 -m pip install --quiet --only-binary :all: "$@"; }
 
 # The libraries, and the features of one of them.
-libraries=(farsa-num farsa-body farsa-physics farsa-nn farsa-evo farsa-models farsa-view farsa-lab farsa-compose farsa-experiments farsa)
+libraries=(farsa-num farsa-body farsa-physics farsa-nn farsa-evo farsa-models farsa-view farsa-lab farsa-compose farsa-original farsa-experiments farsa)
 features_of() {
     local folder=$1
     [[ $1 != farsa ]] || folder=.

@@ -6,7 +6,6 @@ use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template
 
 use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;
-use crate::original::from_original;
 
 /// What the command needs to take files of this format for experiments.
 ///
@@ -18,7 +17,7 @@ use crate::original::from_original;
 /// }
 /// ```
 pub const FILES: ExperimentFiles =
-    ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: from_original };
+    ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: None };
 
 const TEMPLATES: [Template; 3] = [
     Template {

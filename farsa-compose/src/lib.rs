@@ -9,11 +9,9 @@ mod experiment;
 mod files;
 mod jointed;
 mod name;
-mod original;
 mod parts;
 
 pub use arena::field::{Field, Forager};
 pub use check::schema::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
-pub use original::from_original;

@@ -44,7 +44,10 @@ pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// What the command `farsa` is over: the experiments, all strategies, and files that describe experiments.
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
-    let laboratory = farsa_lab::Laboratory::new(&all()).with_files(farsa_compose::FILES);
+    let files = farsa_compose::FILES;
+    #[cfg(feature = "command")]
+    let files = farsa_lab::ExperimentFiles { import: Some(farsa_original::from_original), ..files };
+    let laboratory = farsa_lab::Laboratory::new(&all()).with_files(files);
     #[cfg(feature = "command")]
     let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.xz"), &["rapier"]);
     laboratory

@@ -5,7 +5,7 @@
 
 use std::cell::RefCell;
 
-use farsa_lab::{Error, ExperimentFiles, Laboratory, LiveSession};
+use farsa_lab::{ExperimentFiles, Laboratory, LiveSession};
 
 #[derive(Default)]
 struct State {
@@ -32,8 +32,7 @@ impl State {
 
 /// The experiments, and those that files describe: to read them is all that a page wants of files.
 fn laboratory() -> Laboratory<'static> {
-    let import = |_: &str, _: &str, _: &str| Err(Error::Usage("a page imports nothing".into()));
-    let files = ExperimentFiles { read: farsa_compose::FILES.read, schema: String::new, templates: &[], import };
+    let files = ExperimentFiles { schema: String::new, templates: &[], ..farsa_compose::FILES };
     Laboratory::new(&farsa_experiments::all()).with_files(files)
 }
 

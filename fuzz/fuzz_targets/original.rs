@@ -1,8 +1,9 @@
 //! Configurations of the original FARSA (INI).
 #![no_main]
 
-use farsa_compose::{ComposedExperiment, from_original};
+use farsa_compose::ComposedExperiment;
 use farsa_fuzz::bounded;
+use farsa_original::from_original;
 use libfuzzer_sys::fuzz_target;
 
 farsa_fuzz::text!();

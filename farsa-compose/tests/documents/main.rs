@@ -6,7 +6,6 @@ mod drawn;
 mod damaged;
 mod groups;
 mod networks;
-mod original;
 mod parts;
 mod protocols;
 mod rules;

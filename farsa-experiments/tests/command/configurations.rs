@@ -4,8 +4,8 @@ use std::fs;
 
 use crate::tool::{content, farsa, ok, say, scratch};
 
-const STAY: &str = include_str!("../../../farsa-compose/tests/fixtures/original/stay.ini");
-const TEAM: &str = include_str!("../../../farsa-compose/tests/fixtures/original/team.ini");
+const STAY: &str = include_str!("../../../farsa-original/tests/fixtures/stay.ini");
+const TEAM: &str = include_str!("../../../farsa-original/tests/fixtures/team.ini");
 
 #[test]
 fn configurations_become_files_that_are_checked_and_run() {

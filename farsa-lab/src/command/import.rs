@@ -77,7 +77,9 @@ impl Invocation<'_, '_> {
         if !name.ends_with(FILE) {
             return Err(Error::Usage(format!("--out {name}: a file that describes an experiment ends with {FILE}")));
         }
-        let found = (self.laboratory.files()?.import)(&path.display().to_string(), &name, &text)?;
+        let import = self.laboratory.files()?.import;
+        let import = import.ok_or_else(|| Error::Usage("this program imports no configurations".into()))?;
+        let found = import(&path.display().to_string(), &name, &text)?;
         let ImportedFile { text, left, idle, more_left, more_idle } = &found;
         let lost = left.len() + more_left;
         tell_left(left, lost);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use farsa_lab::{Error, LeftOut};
 
-use crate::original::ini::{Entry, Group, Ini};
+use crate::ini::{Entry, Group, Ini};
 
 /// The most remarks of each sort; what is beyond them is counted. Each repeats the name of its group, which may be a hundred times as
 /// long as a line.

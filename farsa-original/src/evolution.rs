@@ -2,9 +2,9 @@
 
 use farsa_lab::Error;
 
-use crate::original::ini::Group;
-use crate::original::remarks::Remarks;
-use crate::original::written::{Written, number};
+use crate::ini::Group;
+use crate::remarks::Remarks;
+use crate::written::{Written, number};
 
 /// What is said of the search, and of the runs.
 #[derive(Clone, Debug, PartialEq)]

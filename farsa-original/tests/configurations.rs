@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use farsa_compose::{ComposedExperiment, from_original};
+use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Evaluation, Experiment as _, ImportedFile, Settings};
+use farsa_original::from_original;
 use proptest::prelude::*;
 
 fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/original").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name)
 }
 
 fn text(name: &str) -> String {

@@ -1,8 +1,8 @@
 //! The network.
 
-use crate::original::ini::Group;
-use crate::original::remarks::Remarks;
-use crate::original::written::{Written, number, numbers};
+use crate::ini::Group;
+use crate::remarks::Remarks;
+use crate::written::{Written, number, numbers};
 
 /// The most neurons of a network of the original.
 pub(super) const MOST_NEURONS: u64 = 1000;

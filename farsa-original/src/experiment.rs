@@ -1,8 +1,8 @@
 //! The experiment: steps and trials, the arena, and what a plugin does with them.
 
-use crate::original::ini::Group;
-use crate::original::remarks::Remarks;
-use crate::original::written::{Written, number, numbers};
+use crate::ini::Group;
+use crate::remarks::Remarks;
+use crate::written::{Written, number, numbers};
 
 /// What a configuration says beside robots, networks and the search.
 #[derive(Clone, Debug, PartialEq)]

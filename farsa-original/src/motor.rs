@@ -1,7 +1,7 @@
 //! The motors.
 
-use crate::original::channels::{Device, Part};
-use crate::original::remarks::Remarks;
+use crate::channels::{Device, Part};
+use crate::remarks::Remarks;
 
 /// A motor here that is nearest to one of the original.
 pub(super) fn motor(device: &Device<'_>, remarks: &mut Remarks) -> Option<Part> {

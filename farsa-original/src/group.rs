@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use crate::original::ini::{Entry, Group};
-use crate::original::remarks::Remarks;
+use crate::ini::{Entry, Group};
+use crate::remarks::Remarks;
 
 impl Group {
     /// The line of a key that has been read.

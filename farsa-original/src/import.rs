@@ -5,17 +5,17 @@ use std::path::Path;
 
 use farsa_lab::{Error, Experiment as _, ImportedFile, LeftOut, Settings};
 
-use crate::experiment::ComposedExperiment;
-use crate::original::channels::{Device, MOST_PARTS, Part};
-use crate::original::evolution::Evolution;
-use crate::original::experiment::Experiment;
-use crate::original::ini::{Group, Ini};
-use crate::original::motor::motor;
-use crate::original::network::{MOST_NEURONS, Network};
-use crate::original::remarks::Remarks;
-use crate::original::robot::RobotKind;
-use crate::original::sensor::sensor;
-use crate::original::written::Written;
+use farsa_compose::ComposedExperiment;
+use crate::channels::{Device, MOST_PARTS, Part};
+use crate::evolution::Evolution;
+use crate::experiment::Experiment;
+use crate::ini::{Group, Ini};
+use crate::motor::motor;
+use crate::network::{MOST_NEURONS, Network};
+use crate::remarks::Remarks;
+use crate::robot::RobotKind;
+use crate::sensor::sensor;
+use crate::written::Written;
 
 /// The most remarks of each sort that the file itself repeats.
 const MOST_REPEATED: usize = 200;
@@ -29,7 +29,7 @@ const MOST_REPEATED: usize = 200;
 /// `KheperaDiscriminationExperiment` are known; of all others they are C++ code, and what comes out has a fitness of 0.
 ///
 /// ```
-/// use farsa_compose::from_original;
+/// use farsa_original::from_original;
 ///
 /// let text = "[Component/GA]
 /// nreproducing = 10

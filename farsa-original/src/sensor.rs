@@ -1,10 +1,10 @@
 //! The sensors.
 
-use crate::original::channels::{Device, Part, Selection};
-use crate::original::ini::Group;
-use crate::original::remarks::Remarks;
-use crate::original::robot::RobotKind;
-use crate::original::written::{number, numbers};
+use crate::channels::{Device, Part, Selection};
+use crate::ini::Group;
+use crate::remarks::Remarks;
+use crate::robot::RobotKind;
+use crate::written::{number, numbers};
 
 /// Names of the resources by which devices of the original find each other.
 const RESOURCES: [&str; 5] = ["khepera", "epuck", "marxbot", "neuronsIterator", "arena"];

@@ -2,9 +2,9 @@
 
 use farsa_lab::Error;
 
-use crate::original::ini::Group;
-use crate::original::remarks::Remarks;
-use crate::original::written::Written;
+use crate::ini::Group;
+use crate::remarks::Remarks;
+use crate::written::Written;
 
 /// The original's wheeled robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use farsa_lab::Error;
 
-use crate::original::ini::{Entry, Group, Ini};
-use crate::original::remarks::Remarks;
-use crate::original::written::{Written, name, number};
+use crate::ini::{Entry, Group, Ini};
+use crate::remarks::Remarks;
+use crate::written::{Written, name, number};
 
 /// The most sensors, and the most motors.
 pub(super) const MOST_PARTS: usize = 100;
