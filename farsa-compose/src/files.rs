@@ -16,8 +16,7 @@ use crate::experiment::ComposedExperiment;
 ///     Laboratory::new(&[]).with_files(farsa_compose::FILES).main()
 /// }
 /// ```
-pub const FILES: ExperimentFiles =
-    ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: None };
+pub const FILES: ExperimentFiles = ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: None };
 
 const TEMPLATES: [Template; 3] = [
     Template {

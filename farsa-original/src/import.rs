@@ -5,7 +5,6 @@ use std::path::Path;
 
 use farsa_lab::{Error, Experiment as _, ImportedFile, LeftOut, Settings};
 
-use farsa_compose::ComposedExperiment;
 use crate::channels::{Device, MOST_PARTS, Part};
 use crate::evolution::Evolution;
 use crate::experiment::Experiment;
@@ -16,6 +15,7 @@ use crate::remarks::Remarks;
 use crate::robot::RobotKind;
 use crate::sensor::sensor;
 use crate::written::Written;
+use farsa_compose::ComposedExperiment;
 
 /// The most remarks of each sort that the file itself repeats.
 const MOST_REPEATED: usize = 200;

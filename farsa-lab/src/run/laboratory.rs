@@ -191,12 +191,7 @@ mod tests {
     /// What a run has kept may come from anyone: it names no files of the folder where the command is called.
     #[test]
     fn only_files_of_the_user_have_a_folder() {
-        let files = ExperimentFiles {
-            read,
-            schema: String::new,
-            templates: &[],
-            import: None,
-        };
+        let files = ExperimentFiles { read, schema: String::new, templates: &[], import: None };
         let laboratory = Laboratory::new(&[]).with_files(files);
         let said = |found: Result<&dyn Experiment, Error>| found.err().map(|error| error.to_string());
         for name in ["own", "below/own", "/own"] {
