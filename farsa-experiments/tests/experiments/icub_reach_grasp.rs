@@ -58,7 +58,7 @@ fn grasped(config: &Config, cells: [u32; 2], trials: u32) -> (u32, u32) {
     (succeeded, cells[0] * cells[1] * trials)
 }
 
-/// What ARCHITECTURE.md says of the table's height and of the dynamics steps.
+/// The figures of docs/decisions/20-icub.md.
 #[test]
 fn a_lower_table_and_short_steps_are_needed() {
     let with = |substeps: u32, table_top: f64| grasped(&Config { substeps, table_top, ..Config::default() }, CELLS, 2);
