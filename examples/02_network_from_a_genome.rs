@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use farsa::evo::{GeneRange, decode, randomize};
+use farsa::evo::words::{GeneRange, decode, randomize};
 use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Stream};
 

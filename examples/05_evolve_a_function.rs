@@ -4,10 +4,8 @@
 
 use std::error::Error;
 
-use farsa::evo::{
-    EvoError, Fitness, GaConfig, GeneRange, Population, RandomSearch, Record, Statistics, Strategy, TruncationGa,
-    decode,
-};
+use farsa::evo::words::{GaConfig, GeneRange, RandomSearch, TruncationGa, decode};
+use farsa::evo::{EvoError, Fitness, Population, Record, Statistics, Strategy};
 use farsa::num::sin_cos;
 
 const VARIABLES: usize = 8;

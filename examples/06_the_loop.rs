@@ -8,7 +8,7 @@ use farsa::body::{
     ActuatorId, ArmAndHand, Axes, Channels, Contacts, Finger, JointPosition, Kinematics, Motor, Muscles, PairId, Point,
     Robot, Sensor, ServoGroup, Signal, Tabletop, TargetPosition, Touch, World as _,
 };
-use farsa::evo::{GeneRange, decode, randomize};
+use farsa::evo::words::{GeneRange, decode, randomize};
 use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::{Model, Options, World};

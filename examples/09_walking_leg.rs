@@ -5,7 +5,8 @@
 use std::error::Error;
 use std::f64::consts::FRAC_PI_6;
 
-use farsa::evo::{EvoError, Fitness, GaConfig, GeneRange, Statistics, Strategy, TruncationGa, decode};
+use farsa::evo::words::{GaConfig, GeneRange, TruncationGa, decode};
+use farsa::evo::{EvoError, Fitness, Statistics, Strategy};
 use farsa::nn::{Controller, Ctrnn, CtrnnLayout};
 use farsa::num::{atan2, sin_cos};
 

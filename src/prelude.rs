@@ -65,10 +65,11 @@ pub use farsa_body::{
     MobileRobot, Robot, Segment, Servo, Shape, Tabletop,
 };
 #[cfg(feature = "alloc")]
-pub use farsa_evo::{
-    Champion, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, Population, RandomSearch,
-    Statistics, Strategy, TruncationGa, decode,
+pub use farsa_evo::words::{
+    GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa, decode,
 };
+#[cfg(feature = "alloc")]
+pub use farsa_evo::{Champion, Fitness, Population, Statistics, Strategy};
 pub use farsa_nn::{
     Activation, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Perceptron,
 };

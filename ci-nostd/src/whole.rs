@@ -1,7 +1,9 @@
 //! With a heap: a description, a world of arm, hand, sphere and table, and evolution of words and of reals.
 
 use farsa::body::{ArmAndHand, Tabletop, World as _};
-use farsa::evo::{CmaEs, CmaEsConfig, EvoError, GaConfig, Strategy, TruncationGa};
+use farsa::evo::{EvoError, Strategy};
+use farsa::evo::covariance::{CmaEs, CmaEsConfig};
+use farsa::evo::words::{GaConfig, TruncationGa};
 use farsa::physics::articulated::{Model, Options, World};
 
 /// Ten control steps, and two searches that have to find what they search for.

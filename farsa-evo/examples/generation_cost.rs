@@ -6,10 +6,10 @@
 
 use std::time::Instant;
 
-use farsa_evo::{
-    Ars, ArsConfig, CholeskyCmaEs, CmaEs, CmaEsConfig, EvoError, GaConfig, Gene, OpenAiEs, OpenAiEsConfig, Pgpe,
-    PgpeConfig, SeparableCmaEs, SeparableCmaEsConfig, Strategy, TruncationGa,
-};
+use farsa_evo::covariance::{CholeskyCmaEs, CmaEs, CmaEsConfig, SeparableCmaEs, SeparableCmaEsConfig};
+use farsa_evo::gradient::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig};
+use farsa_evo::words::{GaConfig, TruncationGa};
+use farsa_evo::{EvoError, Gene, Strategy};
 
 /// Times so many generations of a strategy that is told numbers of no meaning, after two that are not timed.
 fn time<G: Gene>(name: &str, generations: usize, strategy: &mut dyn Strategy<G>) -> Result<(), EvoError> {

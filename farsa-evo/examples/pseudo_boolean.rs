@@ -3,7 +3,8 @@
 //! `cargo run --release -p farsa-evo --example pseudo_boolean` prints the table of docs/results/strategies.md: medians of 20
 //! seeds, beside what is known of the (1+1) evolutionary algorithm \[Droste2002\], \[Boettcher2010\]; traps are those of \[Deb1993\].
 
-use farsa_evo::{EvoError, GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, Strategy, TruncationGa};
+use farsa_evo::words::{GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, TruncationGa};
+use farsa_evo::{EvoError, Strategy};
 
 /// Bits, each a gene of its own.
 const BITS: usize = 100;

@@ -7,18 +7,23 @@
 
 use std::time::Instant;
 
-use farsa_evo::{
-    Ars, ArsConfig, CholeskyCmaEs, CmaEs, CmaEsConfig, Cosyne, CosyneConfig, CvtCells, EvoError, EvolutionStrategy,
-    EvolutionStrategyConfig, GaConfig, Gene, GridCells, JudgementShape, Judgements, MapElites, MapElitesConfig,
-    NoveltyConfig, NoveltySearch, Nsga2, Nsga2Config, OnePlusOne, OnePlusOneConfig, OpenAiEs, OpenAiEsConfig, Pgpe,
-    PgpeConfig, RealGa, RealGaConfig, Record, SeparableCmaEs, SeparableCmaEsConfig, Snes, SnesConfig, SteadyState,
-    SteadyStateConfig, Strategy, TruncationGa, Xnes, XnesConfig,
+use farsa_evo::archives::{CvtCells, GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch};
+use farsa_evo::coevolution::{Cosyne, CosyneConfig};
+use farsa_evo::covariance::{CholeskyCmaEs, CmaEs, CmaEsConfig, SeparableCmaEs, SeparableCmaEsConfig};
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig, Snes, SnesConfig, Xnes, XnesConfig,
 };
+use farsa_evo::pareto::{Nsga2, Nsga2Config};
+use farsa_evo::real::{
+    EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, SteadyState, SteadyStateConfig,
+};
+use farsa_evo::words::{GaConfig, OnePlusOne, OnePlusOneConfig, TruncationGa};
+use farsa_evo::{EvoError, Gene, Record, ScoreShape, Scores, Strategy};
 
 /// Numbers of no meaning, others in every generation.
-fn judgements(shape: JudgementShape, individuals: usize, generation: u32) -> Result<Judgements, EvoError> {
+fn scores(shape: ScoreShape, individuals: usize, generation: u32) -> Result<Scores, EvoError> {
     let number = |i: usize| ((i * 7919 + generation as usize * 104_729) % 10_007) as f64 / 10_007.0;
-    Judgements::nan_as_failed(shape, (0..individuals * shape.width()).map(number).collect())
+    Scores::nan_as_failed(shape, (0..individuals * shape.width()).map(number).collect())
 }
 
 /// Tells a strategy so many generations and times how long some of them take to be rebuilt.
@@ -32,11 +37,11 @@ fn time<G: Gene, S: Strategy<G>>(
     let mut record = Record::new(&mut strategy)?;
     let mut before_states = Vec::new();
     for generation in 0..generations {
-        let told = judgements(strategy.judged_by(), individuals, generation)?;
-        if told.shape() == JudgementShape::FITNESS {
+        let told = scores(strategy.score_shape(), individuals, generation)?;
+        if told.shape() == ScoreShape::FITNESS {
             record.tell(&mut strategy, &told.fitness())?;
         } else {
-            record.tell_judgements(&mut strategy, &told)?;
+            record.tell_scores(&mut strategy, &told)?;
         }
         if record.entry(generation).is_some_and(|entry| entry.state.is_some()) {
             before_states.push(generation);

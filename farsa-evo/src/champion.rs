@@ -14,7 +14,8 @@ use crate::statistics::Statistics;
 /// luckiest as well; a search that wants it keeps it like this:
 ///
 /// ```
-/// use farsa_evo::{Champion, Fitness, GaConfig, Strategy, TruncationGa};
+/// use farsa_evo::{Champion, Fitness, Strategy};
+/// use farsa_evo::words::{GaConfig, TruncationGa};
 ///
 /// let mut evolution = TruncationGa::new(GaConfig::new(4), 42)?;
 /// let mut champion: Option<Champion> = None;

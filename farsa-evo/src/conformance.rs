@@ -6,14 +6,14 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::collection::Member;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::Judgements;
-use crate::judgement_shape::JudgementShape;
 use crate::recording::{Record, RecordWriter};
-use crate::strategy::{Recorded, Strategy};
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
+use crate::strategy::Member;
+use crate::strategy::{RecordKind, Strategy};
 
 /// Checks that the strategy that `fresh` makes, always with the same configuration and seed, keeps to what [`Strategy`] says,
 /// over so many generations.
@@ -21,13 +21,14 @@ use crate::strategy::{Recorded, Strategy};
 /// Asked twice it answers the same. A fresh one that is told the same does the same and says the same of it
 /// ([`diagnostics`](Strategy::diagnostics), as many each time), through a [`Record`] and, interrupted after every generation, through
 /// saved states, which are the same bytes then. It refuses another number of values and is unchanged by that. It counts generations,
-/// and names a champion of each population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
-/// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused. What it keeps,
+/// and names a champion of each population. Where it says that only the order counts ([`RecordKind::Order`]), other values of the same order change nothing.
+/// Failed evaluations, all of them at once too, end nothing. Scores of another shape than it wants are refused. What it keeps,
 /// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told. Where it says
-/// whom individuals meet ([`Meetings`](crate::Meetings)), everyone meets as many, one of each other population.
+/// whom individuals meet ([`Opponents`](crate::Opponents)), everyone meets as many, one of each other population.
 ///
 /// ```
-/// use farsa_evo::{GaConfig, TruncationGa, check_strategy};
+/// use farsa_evo::check_strategy;
+/// use farsa_evo::words::{GaConfig, TruncationGa};
 ///
 /// let config = GaConfig { population: 10, parents: 5, ..GaConfig::new(4) };
 /// check_strategy(|| TruncationGa::new(config, 7), 20)?;
@@ -46,7 +47,7 @@ where
     let mut record = Record::new(&mut strategy).map_err(|error| format!("no record: {error}"))?;
     let mut writer = RecordWriter::new(&mut again).map_err(|error| format!("no record elsewhere: {error}"))?;
     let mut asked: Vec<u64> = Vec::new();
-    let mut history: Vec<Judgements> = Vec::new();
+    let mut history: Vec<Scores> = Vec::new();
     let mut numbers = None;
     for generation in 0..generations {
         let wrong = |what: &str| format!("generation {generation}: {what}");
@@ -62,25 +63,25 @@ where
         if !count.is_multiple_of(strategy.populations()) {
             return Err(wrong("populations of unequal sizes"));
         }
-        let shape = strategy.judged_by();
-        meetings(&strategy).map_err(|what| wrong(&what))?;
-        let judgements = judgements(generation, count, shape);
-        let fitness = judgements.fitness();
-        refuses(&mut strategy, &judgements).map_err(|what| wrong(&what))?;
+        let shape = strategy.score_shape();
+        opponents(&strategy).map_err(|what| wrong(&what))?;
+        let scores = scores(generation, count, shape);
+        let fitness = scores.fitness();
+        refuses(&mut strategy, &scores).map_err(|what| wrong(&what))?;
         let champions = strategy.champions(&strategy.ranked_by(&fitness));
         let size = count / strategy.populations();
         if !champions.iter().copied().map(|best| best / size).eq(0..strategy.populations()) {
             return Err(wrong("names other champions than one of each population"));
         }
         // Another fitness of the same order has to do where only the order counts.
-        let other: Vec<Fitness> = match strategy.recorded() {
-            Recorded::Order => fitness.iter().map(|fitness| rising(*fitness)).collect(),
+        let other: Vec<Fitness> = match strategy.record_kind() {
+            RecordKind::Order => fitness.iter().map(|fitness| rising(*fitness)).collect(),
             _ => fitness.clone(),
         };
-        let (told, told_again) = if shape == JudgementShape::FITNESS {
+        let (told, told_again) = if shape == ScoreShape::FITNESS {
             (record.tell(&mut strategy, &fitness), writer.tell(&mut again, &other))
         } else {
-            (record.tell_judgements(&mut strategy, &judgements), writer.tell_judgements(&mut again, &judgements))
+            (record.tell_scores(&mut strategy, &scores), writer.tell_scores(&mut again, &scores))
         };
         told.map_err(|error| wrong(&format!("cannot be told: {error}")))?;
         told_again.map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
@@ -95,12 +96,12 @@ where
             return Err(wrong("says another count of numbers of itself than before"));
         }
         again = restored(again, made()?).map_err(|what| wrong(&what))?;
-        history.push(judgements);
+        history.push(scores);
         if let Some(collection) = strategy.collection() {
             kept(&collection.members(), &history).map_err(|what| wrong(&what))?;
         }
     }
-    if strategy.recorded() == Recorded::Genomes {
+    if strategy.record_kind() == RecordKind::Genomes {
         return Ok(());
     }
     for (generation, digest) in (0..).zip(&asked) {
@@ -115,15 +116,15 @@ where
 }
 
 /// Whether everyone meets one of each other population as each opponent, nobody else does, and an objective is told of each.
-fn meetings<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
-    let Some(meetings) = strategy.meetings() else { return Ok(()) };
-    let (count, all) = (meetings.count(), strategy.ask().len());
-    if count == 0 || strategy.judged_by() != JudgementShape::new(1 + count, 0) {
-        return Err(format!("says whom {count} opponents are, and is judged by {}", strategy.judged_by()));
+fn opponents<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
+    let Some(opponents) = strategy.opponents() else { return Ok(()) };
+    let (count, all) = (opponents.count(), strategy.ask().len());
+    if count == 0 || strategy.score_shape() != ScoreShape::new(1 + count, 0) {
+        return Err(format!("says whom {count} opponents are, and is judged by {}", strategy.score_shape()));
     }
     let genes = strategy.ask().genome_len();
     let others = |individual, opponent| {
-        let met = meetings.met(individual, opponent);
+        let met = opponents.opponents_of(individual, opponent);
         met.iter().all(|genome| genome.len() == genes).then_some(met.len())
     };
     let wanted = Some(strategy.populations() - 1);
@@ -133,12 +134,12 @@ fn meetings<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
 }
 
 /// Whether members of a collection are individuals of generations that were told, each with what was told of it, and none twice.
-fn kept(members: &[Member<'_>], history: &[Judgements]) -> Result<(), String> {
+fn kept(members: &[Member<'_>], history: &[Scores]) -> Result<(), String> {
     let mut origins = Vec::with_capacity(members.len());
-    for &Member { objectives, descriptor, generation, individual, .. } in members {
+    for &Member { objectives, measures, generation, individual, .. } in members {
         let told = history.get(generation as usize);
-        let same = told
-            .is_some_and(|told| (told.objectives(individual), told.descriptor(individual)) == (objectives, descriptor));
+        let same =
+            told.is_some_and(|told| (told.objectives(individual), told.measures(individual)) == (objectives, measures));
         if !same {
             return Err(format!("keeps an individual {individual} of generation {generation} that it was not told of"));
         }
@@ -151,7 +152,7 @@ fn kept(members: &[Member<'_>], history: &[Judgements]) -> Result<(), String> {
 /// A fresh strategy with the state of another, which is that other and takes no part of a state; the other itself if it saves none.
 fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S, String> {
     let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(strategy) };
-    if strategy.snapshot().is_some_and(|snapshot| snapshot.generations_between_states() == 0) {
+    if strategy.snapshot().is_some_and(|snapshot| snapshot.snapshot_interval() == 0) {
         return Err("wants 0 generations between its states, where 1 is the least".into());
     }
     let Some(snapshot) = fresh.snapshot() else { return Err("saves states, and when it is fresh none".into()) };
@@ -166,27 +167,27 @@ fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S,
     if same { Ok(fresh) } else { Err("is another after its state was restored".into()) }
 }
 
-/// Whether a strategy refuses too few judgements, those of another shape, and fitness if it wants more, and is unchanged by
+/// Whether a strategy refuses too few scores, those of another shape, and fitness if it wants more, and is unchanged by
 /// that.
-fn refuses<G: Gene, S: Strategy<G>>(strategy: &mut S, judgements: &Judgements) -> Result<(), String> {
-    let (shape, digest) = (judgements.shape(), strategy.ask().digest());
-    let (generation, count) = (strategy.generation(), judgements.len());
-    let other = JudgementShape::new(shape.objectives + 1, shape.descriptors);
-    let few = strategy.tell(&judgements.fitness()[1..]).is_ok()
-        || strategy.tell_judgements(&self::judgements(generation, count - 1, shape)).is_ok();
+fn refuses<G: Gene, S: Strategy<G>>(strategy: &mut S, scores: &Scores) -> Result<(), String> {
+    let (shape, digest) = (scores.shape(), strategy.ask().digest());
+    let (generation, count) = (strategy.generation(), scores.len());
+    let other = ScoreShape::new(shape.objectives + 1, shape.measures);
+    let few = strategy.tell(&scores.fitness()[1..]).is_ok()
+        || strategy.tell_scores(&self::scores(generation, count - 1, shape)).is_ok();
     if few || strategy.ask().digest() != digest {
         return Err("takes too few values, or is changed by them".into());
     }
-    let others = strategy.tell_judgements(&self::judgements(generation, count, other)).is_ok()
-        || shape != JudgementShape::FITNESS && strategy.tell(&judgements.fitness()).is_ok();
+    let others = strategy.tell_scores(&self::scores(generation, count, other)).is_ok()
+        || shape != ScoreShape::FITNESS && strategy.tell(&scores.fitness()).is_ok();
     if others || strategy.ask().digest() != digest || strategy.generation() != generation {
         return Err("takes judgements of another shape, or is changed by them".into());
     }
     Ok(())
 }
 
-/// Judgements of no meaning: fitness, as below, then more numbers of the same kind.
-fn judgements(generation: u32, count: usize, shape: JudgementShape) -> Judgements {
+/// Scores of no meaning: fitness, as below, then more numbers of the same kind.
+fn scores(generation: u32, count: usize, shape: ScoreShape) -> Scores {
     let mut stream = Stream::new(u64::from(generation), Domain::General, 1, 0, 0);
     let mut row = |fitness: Fitness| {
         let mut row = Vec::with_capacity(shape.width());
@@ -195,7 +196,7 @@ fn judgements(generation: u32, count: usize, shape: JudgementShape) -> Judgement
         row
     };
     let values: Vec<f64> = values(generation, count).into_iter().flat_map(&mut row).collect();
-    Judgements::nan_as_failed(shape, values).unwrap_or_else(|_| Judgements::from_fitness(&[]))
+    Scores::nan_as_failed(shape, values).unwrap_or_else(|_| Scores::from_fitness(&[]))
 }
 
 /// Fitness of no meaning: in every fifth generation all alike, in every seventh all failed, else some failed and some equal.

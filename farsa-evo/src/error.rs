@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::judgement_shape::JudgementShape;
+use crate::score_shape::ScoreShape;
 
 /// The most genes of a population, 2^28 (512 MiB).
 pub(crate) const MAX_GENES: usize = 1 << 28;
@@ -103,19 +103,19 @@ pub enum EvoError {
     },
     /// A fitness that is NaN.
     NanFitness,
-    /// Numbers of judgements that are not whole rows.
-    JudgementCount {
+    /// Numbers of scores that are not whole rows.
+    ScoreCount {
         /// Numbers of each individual.
         width: usize,
         /// Numbers told.
         found: usize,
     },
-    /// The strategy was told another number of objectives or descriptor values than it takes.
-    Judgement {
+    /// The strategy was told another number of objectives or measures than it takes.
+    ScoreShape {
         /// What it takes.
-        expected: JudgementShape,
+        expected: ScoreShape,
         /// What it was told.
-        found: JudgementShape,
+        found: ScoreShape,
     },
     /// The generation counter has reached its last value, 2^32 - 1.
     LastGeneration,
@@ -222,8 +222,8 @@ impl fmt::Display for EvoError {
             Self::FitnessCount { expected, found } => {
                 write!(f, "{found} fitness values for {expected} individuals")
             }
-            Self::JudgementCount { width, found } => write!(f, "{found} numbers are not {width} of each individual"),
-            Self::Judgement { expected, found } => {
+            Self::ScoreCount { width, found } => write!(f, "{found} numbers are not {width} of each individual"),
+            Self::ScoreShape { expected, found } => {
                 write!(f, "{found} of each individual where {expected} are expected")
             }
             Self::NanFitness => f.write_str("a fitness that is not a number"),

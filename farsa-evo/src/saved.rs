@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use crate::error::EvoError;
-use crate::mutation::Mutation;
 use crate::snapshot::Snapshot;
+use crate::words::mutation::Mutation;
 
 /// A strategy as it is saved: what it was made of, and its state.
 #[derive(serde::Serialize, serde::Deserialize)]

@@ -21,7 +21,7 @@ pub trait Snapshot {
     /// After how many generations a [`Record`](crate::Record) keeps the state at the latest, at least 1, because telling them
     /// again takes long, and less often once its states take 256 MiB; by default it keeps states only as often as that at most
     /// doubles it.
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         u32::MAX
     }
 }

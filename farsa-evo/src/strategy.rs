@@ -4,25 +4,23 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::champion::Champion;
-use crate::collection::Collection;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::Judgements;
-use crate::judgement_shape::JudgementShape;
-use crate::meetings::Meetings;
 use crate::population::Population;
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
 
-/// What has to be recorded of a generation so that it can be rebuilt, [`Strategy::recorded`].
+/// What has to be recorded of a generation so that it can be rebuilt, [`Strategy::record_kind`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum Recorded {
+pub enum RecordKind {
     /// The order of the individuals, best first, equals by index: for strategies that depend on nothing else.
     Order,
-    /// The values of fitness, or all numbers of the judgements.
+    /// The values of fitness, or all numbers of the scores.
     Values,
     /// The genomes themselves: for strategies that take too long to be told again.
     Genomes,
@@ -36,9 +34,9 @@ pub enum Recorded {
 /// numbers only from [`farsa_num::Stream`]s named by seed, individual and generation.
 ///
 /// Three methods are required; the others have defaults that fit a strategy of one population that depends on the values of
-/// fitness. A strategy that wants several objectives, or a behaviour descriptor, says so
-/// ([`judged_by`](Strategy::judged_by)) and takes [`Judgements`] in the place of fitness
-/// ([`tell_judgements`](Strategy::tell_judgements)); its fitness, by which it is logged, is the first objective.
+/// fitness. A strategy that wants several objectives, or a measures, says so
+/// ([`score_shape`](Strategy::score_shape)) and takes [`Scores`] in the place of fitness
+/// ([`tell_scores`](Strategy::tell_scores)); its fitness, by which it is logged, is the first objective.
 pub trait Strategy<G: Gene = u16> {
     /// The number of the generation that waits for its fitness, from 0.
     fn generation(&self) -> u32;
@@ -49,23 +47,23 @@ pub trait Strategy<G: Gene = u16> {
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`], or [`EvoError::Judgement`] by a strategy that wants more than
+    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`], or [`EvoError::ScoreShape`] by a strategy that wants more than
     /// fitness; the strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
-    /// How many objectives and descriptor values it is told of each individual: one objective, if nothing else is said.
-    fn judged_by(&self) -> JudgementShape {
-        JudgementShape::FITNESS
+    /// How many objectives and measures it is told of each individual: one objective, if nothing else is said.
+    fn score_shape(&self) -> ScoreShape {
+        ScoreShape::FITNESS
     }
 
-    /// Takes the judgements of the current generation, of the shape that it is [`judged_by`](Strategy::judged_by), and makes the
+    /// Takes the scores of the current generation, of the shape that it is [`score_shape`](Strategy::score_shape), and makes the
     /// next one; what has but one objective is told as fitness.
     ///
     /// # Errors
-    /// [`EvoError::Judgement`] for another shape, and those of [`tell`](Strategy::tell); the strategy is then unchanged.
-    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
-        JudgementShape::FITNESS.check(judgements.shape())?;
-        self.tell(&judgements.fitness())
+    /// [`EvoError::ScoreShape`] for another shape, and those of [`tell`](Strategy::tell); the strategy is then unchanged.
+    fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
+        ScoreShape::FITNESS.check(scores.shape())?;
+        self.tell(&scores.fitness())
     }
 
     /// Number of populations, each of as many individuals.
@@ -74,8 +72,8 @@ pub trait Strategy<G: Gene = u16> {
     }
 
     /// What has to be recorded of a generation so that it can be rebuilt.
-    fn recorded(&self) -> Recorded {
-        Recorded::Values
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Values
     }
 
     /// The fitness \[individuals\] that individuals are ranked by if this is what the evaluation gave; of several objectives the
@@ -103,7 +101,7 @@ pub trait Strategy<G: Gene = u16> {
     }
 
     /// Whom each individual meets, where the strategy says so; else that is the caller's choice.
-    fn meetings(&self) -> Option<&dyn Meetings<G>> {
+    fn opponents(&self) -> Option<&dyn Opponents<G>> {
         None
     }
 
@@ -116,7 +114,7 @@ pub trait Strategy<G: Gene = u16> {
     /// whose generations are not meant to be better than those before: one that fills an archive, or only guesses.
     ///
     /// By default where something is [kept](Strategy::collection).
-    fn keeps_champion(&self) -> bool {
+    fn champion_is_best_ever(&self) -> bool {
         self.collection().is_some()
     }
 
@@ -135,7 +133,7 @@ pub trait Strategy<G: Gene = u16> {
         self.tell(&fitness)
     }
 
-    /// Evaluates so many generations, where `judge` writes the objectives and then the descriptor values of a genome \[genes\] into
+    /// Evaluates so many generations, where `judge` writes the objectives and then the measures of a genome \[genes\] into
     /// a row [m + d] of zeros, and returns the best individual of them by the first objective; a NaN is a failed evaluation.
     ///
     /// # Errors
@@ -144,13 +142,13 @@ pub trait Strategy<G: Gene = u16> {
     where
         Self: Sized,
     {
-        let (mut champion, shape) = (None, self.judged_by());
+        let (mut champion, shape) = (None, self.score_shape());
         for _ in 0..generations {
             let mut values = vec![0.0; self.ask().len() * shape.width()];
             self.ask().iter().zip(values.chunks_exact_mut(shape.width())).for_each(|(genes, row)| judge(genes, row));
-            let judgements = Judgements::nan_as_failed(shape, values)?;
-            Champion::keep(&mut champion, self.generation(), self.ask(), &judgements.fitness())?;
-            self.tell_judgements(&judgements)?;
+            let scores = Scores::nan_as_failed(shape, values)?;
+            Champion::keep(&mut champion, self.generation(), self.ask(), &scores.fitness())?;
+            self.tell_scores(&scores)?;
         }
         champion.ok_or(EvoError::NoBest { generation: self.generation() })
     }
@@ -159,7 +157,8 @@ pub trait Strategy<G: Gene = u16> {
     /// of them; a NaN is a failed evaluation.
     ///
     /// ```
-    /// use farsa_evo::{GaConfig, Strategy, TruncationGa};
+    /// use farsa_evo::Strategy;
+    /// use farsa_evo::words::{GaConfig, TruncationGa};
     ///
     /// let mut evolution = TruncationGa::new(GaConfig::new(2), 1)?;
     /// let ones = |genes: &[u16]| genes.iter().map(|gene| f64::from(gene.count_ones())).sum();
@@ -192,6 +191,45 @@ pub trait Genealogy {
     fn parents_of(&self, individual: usize) -> Vec<usize>;
 }
 
+/// The ability to say whom each individual of a generation meets, [`Strategy::meetings`](crate::Strategy::meetings): for
+/// strategies of several populations that are told what was earned against each opponent.
+///
+/// Such a strategy is judged by 1 + m objectives for m opponents: the fitness of all trials, and then the fitness of the trials
+/// against each opponent, in their order. In trial `t` an individual meets the opponent of number `t` modulo m, so that there
+/// have to be m trials or more.
+pub trait Opponents<G: Gene = u16> {
+    /// Number of opponents m that each individual of a generation meets, at least 1.
+    fn count(&self) -> usize;
+
+    /// The genomes that an individual of the generation that waits for its fitness meets in the trials of an opponent: one of each
+    /// other population, in the order of the populations. Individuals are counted through all populations, opponents from 0
+    /// to m - 1; nobody is met beyond the last of either.
+    fn opponents_of(&self, individual: usize, opponent: usize) -> Vec<&[G]>;
+}
+
+/// An individual that a strategy keeps: an elite of an archive, or a member of a front.
+///
+/// Where it comes from, its generation and index, is enough to find its genes in a [`Record`](crate::Record).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Member<'a> {
+    /// The number of its cell, where there are cells.
+    pub cell: Option<usize>,
+    /// Its objectives \[m\], in the experiment's own units.
+    pub objectives: &'a [f64],
+    /// Its measures \[d\].
+    pub measures: &'a [f64],
+    /// The generation in which it was evaluated.
+    pub generation: u32,
+    /// Its index in that generation, counted through all populations.
+    pub individual: usize,
+}
+
+/// The ability to keep individuals beyond their generation: an archive of elites, or the front of several objectives.
+pub trait Collection {
+    /// All that are kept, in an order that says nothing.
+    fn members(&self) -> Vec<Member<'_>>;
+}
+
 /// The number of the next generation, if `fitness` has one value for each of `population` individuals.
 pub(crate) fn next_generation(generation: u32, population: usize, fitness: &[Fitness]) -> Result<u32, EvoError> {
     if fitness.len() != population {
@@ -200,13 +238,13 @@ pub(crate) fn next_generation(generation: u32, population: usize, fitness: &[Fit
     generation.checked_add(1).ok_or(EvoError::LastGeneration)
 }
 
-/// The number of the next generation, if there are judgements of this shape for each of `population` individuals.
-pub(crate) fn next_judged(
+/// The number of the next generation, if there are scores of this shape for each of `population` individuals.
+pub(crate) fn next_scored(
     generation: u32,
     population: usize,
-    shape: JudgementShape,
-    judgements: &Judgements,
+    shape: ScoreShape,
+    scores: &Scores,
 ) -> Result<u32, EvoError> {
-    judgements.check(shape, population)?;
+    scores.check(shape, population)?;
     generation.checked_add(1).ok_or(EvoError::LastGeneration)
 }

@@ -1,10 +1,11 @@
 //! The bits themselves. A change here is a change of every recorded run: it stands in CHANGELOG.md as value-breaking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_evo::{
-    Coevolution, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, Record, Strategy,
-    TruncationGa, decode,
+use farsa_evo::coevolution::Coevolution;
+use farsa_evo::words::{
+    GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa, decode,
 };
+use farsa_evo::{Fitness, Record, Strategy};
 use farsa_num::Digest;
 
 /// A rugged toy: it rewards a pattern within genes and its repetition between them.

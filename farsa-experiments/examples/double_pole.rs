@@ -11,7 +11,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use farsa_evo::{CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, Cosyne, CosyneConfig, RestartSchedule, Strategy};
+use farsa_evo::Strategy;
+use farsa_evo::coevolution::{Cosyne, CosyneConfig};
+use farsa_evo::covariance::{CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
 use farsa_experiments::double_pole::{CartEpisode, CartState, Config, neuron_order};
 
 /// Evaluations after which a run counts as not solved.

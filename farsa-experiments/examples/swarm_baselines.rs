@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use farsa_evo::randomize;
+use farsa_evo::words::randomize;
 use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, aggregate};
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use farsa_body::BodyId;
-use farsa_evo::randomize;
+use farsa_evo::words::randomize;
 use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, Gathering, aggregate};
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};

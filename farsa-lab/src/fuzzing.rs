@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::Path;
 
-use farsa_evo::{EvoError, Judgements};
+use farsa_evo::{EvoError, Scores};
 
 use crate::command::{cli, manual};
 use crate::error::Error;
@@ -322,9 +322,9 @@ impl<'l> RunReader<'l> {
     fn go_on(&self, search: &mut Search) -> Result<(), EvoError> {
         // What cannot be decoded ends a run with an error.
         let _ = search.parameters(&self.genotype);
-        let shape = search.judged_by();
+        let shape = search.score_shape();
         let numbers = search.individuals().saturating_mul(shape.width());
         let values = (0..numbers).map(|number| (number * 7 % 11) as f64).collect();
-        search.tell_unrecorded(&Judgements::new(shape, values)?)
+        search.tell_unrecorded(&Scores::new(shape, values)?)
     }
 }

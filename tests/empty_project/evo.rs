@@ -1,4 +1,5 @@
-use farsa_evo::{EvoError, Fitness, GaConfig, Strategy, TruncationGa};
+use farsa_evo::{EvoError, Fitness, Strategy};
+use farsa_evo::words::{GaConfig, TruncationGa};
 
 fn main() -> Result<(), EvoError> {
     let mut evolution = TruncationGa::new(GaConfig::new(8), 42)?;

@@ -7,7 +7,8 @@
 
 use std::time::Instant;
 
-use farsa_evo::{CvtCells, EvoError, MapElites, MapElitesConfig, Strategy};
+use farsa_evo::archives::{CvtCells, MapElites, MapElitesConfig};
+use farsa_evo::{EvoError, Strategy};
 
 mod planar_arm;
 use planar_arm::{ANGLES, JOINTS, PLACES, judge};

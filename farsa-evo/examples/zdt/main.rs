@@ -5,7 +5,8 @@
 
 use std::time::Instant;
 
-use farsa_evo::{EvoError, Nsga2, Nsga2Config, Strategy, hypervolume};
+use farsa_evo::pareto::{Nsga2, Nsga2Config, hypervolume};
+use farsa_evo::{EvoError, Strategy};
 
 mod problems;
 use problems::{REFERENCE, Zdt};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use farsa_evo::hypervolume;
+use farsa_evo::pareto::hypervolume;
 use farsa_num::{exp, sin_cos};
 
 /// What fronts are measured from, in objectives that are minimised: (1.1, 1.1).

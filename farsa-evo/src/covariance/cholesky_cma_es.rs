@@ -15,7 +15,7 @@ use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 
 /// Covariance matrix adaptation that draws by a triangular factor of the covariance matrix in the place of its axes: a generation
-/// of many genes takes a fraction of the time of a [`CmaEs`](crate::CmaEs), whose axes take most of it.
+/// of many genes takes a fraction of the time of a [`CmaEs`](crate::covariance::CmaEs), whose axes take most of it.
 ///
 /// It is a `CmaEs` in all but one thing: the path of the step size turns steps by A^-1 of C = A A^T, not by C^-1/2, so that it
 /// is another one once C is no multiple of the identity. It learns as well. Configuration, random numbers, and what is said of
@@ -25,7 +25,8 @@ use crate::strategy::{Strategy, next_generation};
 /// generations. Deviations: those of `CmaEs`, with squares on the factor's diagonal of at least 10^-16 of the largest variance.
 ///
 /// ```
-/// use farsa_evo::{CholeskyCmaEs, CmaEsConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{CholeskyCmaEs, CmaEsConfig};
 ///
 /// let mut search = CholeskyCmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 1)?;
 /// let goal = [1.0, -2.0, 0.5];

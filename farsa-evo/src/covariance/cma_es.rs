@@ -103,7 +103,8 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
 /// takes its place.
 ///
 /// ```
-/// use farsa_evo::{CmaEs, CmaEsConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{CmaEs, CmaEsConfig};
 ///
 /// let mut search = CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 1)?;
 /// let goal = [1.0, -2.0, 0.5];

@@ -87,7 +87,7 @@ struct Run {
 ///
 /// A strategy asks for the same number of genomes in all generations, but runs differ in theirs. So a generation of this strategy
 /// is a block, of as many individuals as the first run has, and a generation of a run is one to 512 blocks in a row: it is
-/// adapted when its last block is told. Individuals of a block are those of a [`CmaEs`](crate::CmaEs) and draw from the same
+/// adapted when its last block is told. Individuals of a block are those of a [`CmaEs`](crate::covariance::CmaEs) and draw from the same
 /// streams; the mean of run `r` and its size from (seed, [`Domain::Mutation`], trial 1, individual 0, `r`).
 ///
 /// A run ends by `MaxIter`, 100 + 50 (n + 3)^2 / sqrt(lambda) generations, `TolHistFun`, `TolX` (10^-12), `TolUpSigma` (10^4),
@@ -97,7 +97,8 @@ struct Run {
 /// the source rounds down to any number; and they double nine times, after which runs stay as large.
 ///
 /// ```
-/// use farsa_evo::{CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
 ///
 /// let first = CmaEsConfig::new(vec![3.0; 2], 1.0);
 /// let mut search = CmaEsRestarts::new(CmaEsRestartsConfig::new(first, RestartSchedule::Bipop), 1)?;
@@ -282,7 +283,7 @@ impl Strategy<f64> for CmaEsRestarts {
 const FRONT: (usize, usize) = (8, 6);
 
 impl Snapshot for CmaEsRestarts {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         between_states(self.config.first.mean.len())
     }
 

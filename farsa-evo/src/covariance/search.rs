@@ -52,7 +52,7 @@ macro_rules! search {
                 Ok(())
             }
 
-            fn generations_between_states(&self) -> u32 {
+            fn snapshot_interval(&self) -> u32 {
                 $between(self.config.mean.len())
             }
         }

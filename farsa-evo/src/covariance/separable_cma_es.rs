@@ -54,7 +54,7 @@ impl SeparableCmaEsConfig {
 
 /// Covariance matrix adaptation with a diagonal matrix: each gene has a variance of its own, and genes stay independent.
 ///
-/// The time of a generation rises with the number of genes, not with its square as that of a [`CmaEs`](crate::CmaEs), and it
+/// The time of a generation rises with the number of genes, not with its square as that of a [`CmaEs`](crate::covariance::CmaEs), and it
 /// learns (n + 2) / 3 times as fast. It is for many genes, or where genes matter one by one.
 ///
 /// Equals rank by index; failed evaluations rank last. A generation of which all evaluations failed leaves the distribution
@@ -65,7 +65,8 @@ impl SeparableCmaEsConfig {
 /// least 10^-30 of the largest. No weight is negative, as in the source.
 ///
 /// ```
-/// use farsa_evo::{SeparableCmaEs, SeparableCmaEsConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{SeparableCmaEs, SeparableCmaEsConfig};
 ///
 /// let mut search = SeparableCmaEs::new(SeparableCmaEsConfig::new(vec![1.0; 20], 0.5), 1)?;
 /// let champion = search.maximize(400, |x| -x.iter().map(|x| x * x).sum::<f64>())?;

@@ -68,7 +68,8 @@ impl ArsConfig {
 /// point stays; it stays within 1e100 of zero.
 ///
 /// ```
-/// use farsa_evo::{Ars, ArsConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::gradient::{Ars, ArsConfig};
 ///
 /// let config = ArsConfig { top_directions: 4, noise: 0.1, step_size: 0.1, ..ArsConfig::new(vec![0.0; 2], 8) };
 /// let mut search = Ars::new(config, 1)?;

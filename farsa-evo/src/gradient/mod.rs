@@ -15,7 +15,7 @@ mod centred_ranks;
 mod clip_up;
 mod matrix_exponential;
 mod noise;
-mod observation_statistics;
+pub(crate) mod observation_statistics;
 mod open_ai_es;
 mod optimizer;
 mod pgpe;
@@ -26,7 +26,6 @@ mod utilities;
 mod xnes;
 
 pub use ars::{Ars, ArsConfig};
-pub use observation_statistics::ObservationStatistics;
 pub use open_ai_es::{OpenAiEs, OpenAiEsConfig};
 pub use optimizer::Optimizer;
 pub use pgpe::{Pgpe, PgpeConfig, PgpeFitness};

@@ -12,7 +12,7 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{Recorded, Strategy, next_generation};
+use crate::strategy::{RecordKind, Strategy, next_generation};
 
 /// What an [`OpenAiEs`] needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,8 @@ impl OpenAiEsConfig {
 /// read from a table; sums go through the pairs by index; the point stays within 1e100 of zero.
 ///
 /// ```
-/// use farsa_evo::{OpenAiEs, OpenAiEsConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::gradient::{OpenAiEs, OpenAiEsConfig};
 ///
 /// let paper = OpenAiEsConfig::new(vec![0.0; 2], 10);
 /// let config = OpenAiEsConfig { sigma: 0.1, learning_rate: 0.05, weight_decay: 0.0, ..paper };
@@ -161,8 +162,8 @@ impl Strategy<f64> for OpenAiEs {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        Recorded::Order
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Order
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {

@@ -8,7 +8,7 @@ use super::settings::{decay, positive, read};
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
 
-/// How [`OpenAiEs`](crate::OpenAiEs) turns a gradient into a step.
+/// How [`OpenAiEs`](crate::gradient::OpenAiEs) turns a gradient into a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

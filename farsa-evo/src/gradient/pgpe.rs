@@ -14,7 +14,7 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{Recorded, Strategy, next_generation};
+use crate::strategy::{RecordKind, Strategy, next_generation};
 
 /// What [`Pgpe`] takes for the reward of an individual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +100,8 @@ impl PgpeConfig {
 /// stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
 ///
 /// ```
-/// use farsa_evo::{Pgpe, PgpeConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::gradient::{Pgpe, PgpeConfig};
 ///
 /// let mut search = Pgpe::new(PgpeConfig::new(vec![0.0; 2], 1.0, 10), 1)?;
 /// search.maximize(200, |x| -(x[0] - 3.0) * (x[0] - 3.0) - (x[1] + 1.0) * (x[1] + 1.0))?;
@@ -218,10 +219,10 @@ impl Strategy<f64> for Pgpe {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
+    fn record_kind(&self) -> RecordKind {
         match self.config.fitness {
-            PgpeFitness::CentredRanks => Recorded::Order,
-            PgpeFitness::Raw => Recorded::Values,
+            PgpeFitness::CentredRanks => RecordKind::Order,
+            PgpeFitness::Raw => RecordKind::Values,
         }
     }
 

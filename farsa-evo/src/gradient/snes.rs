@@ -12,7 +12,7 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{Recorded, Strategy, next_generation};
+use crate::strategy::{RecordKind, Strategy, next_generation};
 
 /// What a [`Snes`] needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,13 +62,14 @@ impl SnesConfig {
 /// the natural gradient of the expected fitness.
 ///
 /// It costs time and memory in proportion to the genes, and finds scales of its own for each of them, but no
-/// correlations: those are for [`Xnes`](crate::Xnes). Only the order of fitness counts.
+/// correlations: those are for [`Xnes`](crate::gradient::Xnes). Only the order of fitness counts.
 ///
 /// Source: \[Wierstra2014\] algorithm 6 (SNES) with the utilities of table 1. Deviations: sums go through the
 /// individuals by index; means stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
 ///
 /// ```
-/// use farsa_evo::{Snes, SnesConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::gradient::{Snes, SnesConfig};
 ///
 /// let mut search = Snes::new(SnesConfig::new(vec![0.0; 2], 1.0), 1)?;
 /// search.maximize(100, |x| -(x[0] - 3.0) * (x[0] - 3.0) - 100.0 * (x[1] + 1.0) * (x[1] + 1.0))?;
@@ -159,8 +160,8 @@ impl Strategy<f64> for Snes {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        Recorded::Order
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Order
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {

@@ -15,7 +15,7 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{Recorded, Strategy, next_generation};
+use crate::strategy::{RecordKind, Strategy, next_generation};
 
 /// The most genes: a matrix of 8 MiB, and some 10^10 products a generation.
 const MOST_GENES: usize = 1024;
@@ -85,7 +85,8 @@ impl XnesConfig {
 /// 1e100, and B stays as it was where an element would pass 1e100.
 ///
 /// ```
-/// use farsa_evo::{Strategy, Xnes, XnesConfig};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::gradient::{Xnes, XnesConfig};
 ///
 /// let mut search = Xnes::new(XnesConfig::new(vec![0.0; 2], 1.0), 1)?;
 /// // A valley along the diagonal.
@@ -226,8 +227,8 @@ impl Strategy<f64> for Xnes {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        Recorded::Order
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Order
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {

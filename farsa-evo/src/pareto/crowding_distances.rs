@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 /// Source: \[Deb2002\] section III.B. Deviation: what is said of objectives without a finite range, on which it is silent.
 ///
 /// ```
-/// use farsa_evo::crowding_distances;
+/// use farsa_evo::pareto::crowding_distances;
 ///
 /// let objectives = [0.0, 4.0, 1.0, 2.0, 3.0, 1.0, 4.0, 0.0];
 /// // (3 - 0) / 4 + (4 - 1) / 4, and (4 - 1) / 4 + (2 - 0) / 4.

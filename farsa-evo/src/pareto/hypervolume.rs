@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 /// being better.
 ///
 /// ```
-/// use farsa_evo::hypervolume;
+/// use farsa_evo::pareto::hypervolume;
 ///
 /// assert_eq!(hypervolume(&[[3.0, 1.0], [1.0, 2.0], [2.0, 1.0], [-1.0, 9.0]], [0.0, 0.0]), 4.0);
 /// ```

@@ -24,7 +24,7 @@ pub fn dominates(objectives: &[f64], others: &[f64]) -> bool {
 /// each other are found again where the source keeps them, which takes memory for n^2.
 ///
 /// ```
-/// use farsa_evo::non_dominated_fronts;
+/// use farsa_evo::pareto::non_dominated_fronts;
 ///
 /// let objectives = [0.0, 3.0, 1.0, 1.0, 3.0, 0.0, 2.0, 2.0];
 /// assert_eq!(non_dominated_fronts(&objectives, 2), [vec![0, 2, 3], vec![1]]);

@@ -6,18 +6,18 @@ use core::cmp::Reverse;
 
 use farsa_num::{Domain, Stream};
 
-use crate::collection::{Collection, Member};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::judgement::Judgements;
-use crate::judgement_shape::JudgementShape;
 use crate::pareto::crowding_distances::crowding_distances;
 use crate::pareto::non_dominated_fronts::non_dominated_fronts;
 use crate::pareto::nsga2_config::Nsga2Config;
 use crate::population::Population;
 use crate::real::bounds::{check_within, draw_within};
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, Strategy, next_judged};
+use crate::strategy::{Collection, Member};
+use crate::strategy::{Genealogy, Strategy, next_scored};
 
 /// NSGA-II over real genes within bounds: of parents and offspring together the better half become the next parents, by
 /// fronts of those that do not dominate each other, within a front by how much room an individual has.
@@ -35,7 +35,8 @@ use crate::strategy::{Genealogy, Strategy, next_judged};
 /// the two children of a crossover one is made, each gene from either with probability 1/2; there are no constraints.
 ///
 /// ```
-/// use farsa_evo::{Nsga2, Nsga2Config, Strategy, hypervolume};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::pareto::{Nsga2, Nsga2Config, hypervolume};
 ///
 /// // Near 0 and near 2 at once: the trade-off lies between.
 /// let mut search = Nsga2::new(Nsga2Config { population: 20, ..Nsga2Config::new(vec![[-10.0, 10.0]], 2) }, 1)?;
@@ -124,12 +125,12 @@ impl Nsga2 {
     }
 
     /// The better half of parents and individuals that were told.
-    fn select(&self, judgements: &Judgements) -> Result<Parents, EvoError> {
+    fn select(&self, scores: &Scores) -> Result<Parents, EvoError> {
         let (size, m) = (self.population.len(), self.config.objectives);
         let old = self.parents.as_ref();
         let kept = old.map_or(0, |old| old.genes.len());
         let mut objectives = old.map_or(Vec::new(), |old| old.objectives.clone());
-        objectives.extend_from_slice(judgements.values());
+        objectives.extend_from_slice(scores.values());
         let mut places: Vec<(usize, Standing)> = Vec::with_capacity(size);
         for (number, front) in non_dominated_fronts(&objectives, m).into_iter().enumerate() {
             let distances = crowding_distances(&objectives, m, &front);
@@ -245,17 +246,17 @@ impl Strategy<f64> for Nsga2 {
         &self.population
     }
 
-    fn judged_by(&self) -> JudgementShape {
-        JudgementShape::new(self.config.objectives, 0)
+    fn score_shape(&self) -> ScoreShape {
+        ScoreShape::new(self.config.objectives, 0)
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        self.tell_judgements(&Judgements::from_fitness(fitness))
+        self.tell_scores(&Scores::from_fitness(fitness))
     }
 
-    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
-        let generation = next_judged(self.generation, self.population.len(), self.judged_by(), judgements)?;
-        let parents = self.select(judgements)?;
+    fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
+        let generation = next_scored(self.generation, self.population.len(), self.score_shape(), scores)?;
+        let parents = self.select(scores)?;
         (self.generation, self.parents) = (generation, Some(parents));
         self.make();
         Ok(())
@@ -285,7 +286,7 @@ impl Collection for Nsga2 {
         let origins = self.parents.iter().flat_map(|parents| &parents.origins);
         let member = |((_, objectives), origin): ((_, _), &[u32; 2])| {
             let [generation, individual] = *origin;
-            Member { cell: None, objectives, descriptor: &[], generation, individual: individual as usize }
+            Member { cell: None, objectives, measures: &[], generation, individual: individual as usize }
         };
         self.front().zip(origins).map(member).collect()
     }
@@ -308,7 +309,7 @@ impl Genealogy for Nsga2 {
 }
 
 impl Snapshot for Nsga2 {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         between_states(&self.population)
     }
 

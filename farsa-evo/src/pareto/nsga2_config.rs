@@ -8,7 +8,7 @@ use crate::real::bounds::{check_bounds, check_rate, check_setting};
 use crate::real::crossover::Crossover;
 use crate::real::polynomial_mutation::PolynomialMutation;
 
-/// What an [`Nsga2`](crate::Nsga2) needs to know; a plain value that is checked where it is used.
+/// What an [`Nsga2`](crate::pareto::Nsga2) needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nsga2Config {

@@ -11,7 +11,7 @@ use crate::population::Population;
 use crate::real::evolution_strategy_config::{EvolutionStrategyConfig, LARGEST, Recombination, StepSizes, Survival};
 use crate::real::ranking::ranking;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
 /// The largest size that a gene can have: some 2^32 steps of the largest kind.
 const FARTHEST: f64 = 1e120;
@@ -33,7 +33,8 @@ const FARTHEST: f64 = 1e120;
 /// first parents, so mu is at most lambda; step sizes stay between a smallest one and 1e100.
 ///
 /// ```
-/// use farsa_evo::{EvolutionStrategy, EvolutionStrategyConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::real::{EvolutionStrategy, EvolutionStrategyConfig};
 ///
 /// let mut search = EvolutionStrategy::new(EvolutionStrategyConfig::new(vec![0.0; 3], 1.0), 1)?;
 /// let champion = search.maximize(100, |genes| -genes.iter().map(|gene| (gene - 1.0) * (gene - 1.0)).sum::<f64>())?;
@@ -228,9 +229,9 @@ impl Strategy<f64> for EvolutionStrategy {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
+    fn record_kind(&self) -> RecordKind {
         // Where parents keep their fitness it is compared with that of another generation.
-        if self.config.survival == Survival::Plus { Recorded::Values } else { Recorded::Order }
+        if self.config.survival == Survival::Plus { RecordKind::Values } else { RecordKind::Order }
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
@@ -265,7 +266,7 @@ impl Genealogy for EvolutionStrategy {
 }
 
 impl Snapshot for EvolutionStrategy {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         between_states(&self.population)
     }
 

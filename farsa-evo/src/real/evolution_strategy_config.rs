@@ -74,7 +74,7 @@ impl StepSizes {
     }
 }
 
-/// What an [`EvolutionStrategy`](crate::EvolutionStrategy) needs to know; a plain value that is checked where it is
+/// What an [`EvolutionStrategy`](crate::real::EvolutionStrategy) needs to know; a plain value that is checked where it is
 /// used.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -14,7 +14,7 @@ use crate::real::ranking::ranking;
 use crate::real::real_ga_config::RealGaConfig;
 use crate::real::selection::Selector;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
 /// A generational genetic algorithm over real genes within bounds: selection, crossover, mutation, elites.
 ///
@@ -26,11 +26,12 @@ use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 /// parent, whether there is a second, the second, the crossover, its step size, its mutation, gene after gene.
 /// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Sources: those of [`Selection`](crate::Selection), [`Crossover`] and [`RealMutation`](crate::RealMutation). How they
+/// Sources: those of [`Selection`](crate::real::Selection), [`Crossover`] and [`RealMutation`](crate::real::RealMutation). How they
 /// are put together is ours.
 ///
 /// ```
-/// use farsa_evo::{RealGa, RealGaConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::real::{RealGa, RealGaConfig};
 ///
 /// let mut search = RealGa::new(RealGaConfig::new(vec![[-5.0, 5.0]; 3]), 1)?;
 /// let champion = search.maximize(100, |genes| -genes.iter().map(|gene| (gene - 1.0) * (gene - 1.0)).sum::<f64>())?;
@@ -144,8 +145,8 @@ impl Strategy<f64> for RealGa {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        Recorded::Order
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Order
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
@@ -172,7 +173,7 @@ impl Genealogy for RealGa {
 }
 
 impl Snapshot for RealGa {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         between_states(&self.population)
     }
 

@@ -8,7 +8,7 @@ use crate::real::crossover::Crossover;
 use crate::real::mutation::RealMutation;
 use crate::real::selection::{Selection, Selector};
 
-/// What a [`RealGa`](crate::RealGa) needs to know; a plain value that is checked where it is used.
+/// What a [`RealGa`](crate::real::RealGa) needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RealGaConfig {

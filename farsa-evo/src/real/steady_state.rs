@@ -11,7 +11,7 @@ use crate::real::bounds::{check_bounds, check_rate, check_setting, check_within,
 use crate::real::mutation::RealMutation;
 use crate::real::ranking::ranking;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
 /// What a [`SteadyState`] needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +69,8 @@ impl SteadyStateConfig {
 /// what its network proposes); sigma is a share of the range; mutation may leave out genes.
 ///
 /// ```
-/// use farsa_evo::{SteadyState, SteadyStateConfig, Strategy};
+/// use farsa_evo::Strategy;
+/// use farsa_evo::real::{SteadyState, SteadyStateConfig};
 ///
 /// let mut search = SteadyState::new(SteadyStateConfig::new(vec![[-5.0, 5.0]; 3]), 1)?;
 /// let champion = search.maximize(200, |genes| -genes.iter().map(|gene| (gene - 1.0) * (gene - 1.0)).sum::<f64>())?;
@@ -160,8 +161,8 @@ impl Strategy<f64> for SteadyState {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        if self.config.noise > 0.0 { Recorded::Values } else { Recorded::Order }
+    fn record_kind(&self) -> RecordKind {
+        if self.config.noise > 0.0 { RecordKind::Values } else { RecordKind::Order }
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
@@ -180,7 +181,7 @@ impl Genealogy for SteadyState {
 }
 
 impl Snapshot for SteadyState {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         between_states(&self.population)
     }
 

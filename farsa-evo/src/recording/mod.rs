@@ -1,11 +1,13 @@
-//! What a strategy was told: records of searches, kept or written elsewhere.
+//! Records of searches, kept in memory or written to a file.
 
-mod entry;
+/// The checks and encodings shared by a record and a writer.
 mod progress;
+/// A record in memory.
 mod record;
+/// The sizes of a record.
 mod shape;
+/// A record that is handed out generation by generation.
 mod writer;
 
-pub use entry::RecordEntry;
 pub use record::Record;
-pub use writer::RecordWriter;
+pub use writer::{RecordEntry, RecordWriter};

@@ -6,9 +6,9 @@ use core::cmp::Reverse;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::Judgements;
-use crate::judgement_shape::JudgementShape;
 use crate::recording::shape::{Kept, Shape};
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
 use crate::snapshot::Snapshot;
 use crate::strategy::Strategy;
 
@@ -67,22 +67,22 @@ impl Progress {
         strategy: &mut (impl Strategy<G> + ?Sized),
         fitness: &[Fitness],
     ) -> Result<Taken, EvoError> {
-        strategy.judged_by().check(JudgementShape::FITNESS)?;
+        strategy.score_shape().check(ScoreShape::FITNESS)?;
         self.take(strategy, fitness, fitness.iter().map(|fitness| fitness.get()), |strategy| strategy.tell(fitness))
     }
 
-    /// Tells a strategy the judgements of its generation, and takes them down.
+    /// Tells a strategy the scores of its generation, and takes them down.
     ///
     /// # Errors
-    /// Those of [`Record::tell_judgements`](crate::Record::tell_judgements).
-    pub(crate) fn judgements<G: Gene>(
+    /// Those of [`Record::tell_scores`](crate::Record::tell_scores).
+    pub(crate) fn scores<G: Gene>(
         self,
         strategy: &mut (impl Strategy<G> + ?Sized),
-        judgements: &Judgements,
+        scores: &Scores,
     ) -> Result<Taken, EvoError> {
-        strategy.judged_by().check(judgements.shape())?;
-        let (fitness, values) = (judgements.fitness(), judgements.values().iter().copied());
-        self.take(strategy, &fitness, values, |strategy| strategy.tell_judgements(judgements))
+        strategy.score_shape().check(scores.shape())?;
+        let (fitness, values) = (scores.fitness(), scores.values().iter().copied());
+        self.take(strategy, &fitness, values, |strategy| strategy.tell_scores(scores))
     }
 
     fn take<G: Gene, S: Strategy<G> + ?Sized>(
@@ -114,13 +114,13 @@ impl Progress {
         }
         match shape.recorded {
             Kept::Order => order(fitness).into_iter().for_each(|index| shape.push_index(&mut frame, index)),
-            Kept::Values | Kept::Judgements(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
+            Kept::Values | Kept::Scores(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
             Kept::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
         }
         next(strategy, told)?;
         let due = self.due();
         let since = generations + 1 - self.saved;
-        let asked = |strategy: &&mut dyn Snapshot| self.spacing(strategy.generations_between_states());
+        let asked = |strategy: &&mut dyn Snapshot| self.spacing(strategy.snapshot_interval());
         let due = |strategy: &&mut dyn Snapshot| due || u64::from(since) >= asked(strategy);
         let kept = shape.recorded != Kept::Genomes;
         Ok((frame, strategy.snapshot().filter(|strategy| kept && due(strategy)).map(|strategy| strategy.save())))
@@ -160,10 +160,10 @@ pub(crate) fn order(fitness: &[Fitness]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::GaConfig;
     use crate::recording::record::Record;
     use crate::recording::writer::RecordWriter;
-    use crate::truncation::TruncationGa;
+    use crate::words::GaConfig;
+    use crate::words::TruncationGa;
 
     #[test]
     fn a_record_and_its_writer_have_kept_as_many_bytes_of_states() {

@@ -6,13 +6,12 @@ use alloc::vec::Vec;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::Judgements;
-use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
-use crate::recording::entry::RecordEntry;
 use crate::recording::progress::{Progress, Taken, next, order};
 use crate::recording::shape::{Kept, Shape};
-use crate::recording::writer::RecordWriter;
+use crate::recording::writer::{RecordEntry, RecordWriter};
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
 use crate::strategy::Strategy;
 
 /// What a strategy was told in every generation, in the form that it depends on.
@@ -26,7 +25,8 @@ use crate::strategy::Strategy;
 /// it takes long to be told again: half as often once such states take 256 MiB, and again for each 256 MiB more.
 ///
 /// ```
-/// use farsa_evo::{Fitness, GaConfig, Record, Strategy, TruncationGa};
+/// use farsa_evo::{Fitness, Record, Strategy};
+/// use farsa_evo::words::{GaConfig, TruncationGa};
 ///
 /// let fresh = || TruncationGa::new(GaConfig { population: 6, parents: 2, ..GaConfig::new(3) }, 5);
 /// let mut evolution = fresh()?;
@@ -120,16 +120,16 @@ impl Record {
         Ok(())
     }
 
-    /// Tells a strategy the judgements of its generation, and records them.
+    /// Tells a strategy the scores of its generation, and records them.
     ///
     /// # Errors
-    /// Those of [`tell`](Self::tell) and [`Strategy::tell_judgements`]. Nothing is recorded then.
-    pub fn tell_judgements<G: Gene>(
+    /// Those of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
+    pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
-        judgements: &Judgements,
+        scores: &Scores,
     ) -> Result<(), EvoError> {
-        let taken = self.progress().judgements(strategy, judgements)?;
+        let taken = self.progress().scores(strategy, scores)?;
         self.keep(&taken);
         Ok(())
     }
@@ -185,13 +185,13 @@ impl Record {
     pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
         match self.shape.recorded {
             Kept::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
-            Kept::Values | Kept::Judgements(_) => Some(order(&self.told(generation)?.fitness())),
+            Kept::Values | Kept::Scores(_) => Some(order(&self.told(generation)?.fitness())),
             Kept::Genomes => None,
         }
     }
 
-    /// What makes a strategy of this kind do what it did: the judgements, or a fitness of the same order.
-    fn told(&self, generation: u32) -> Option<Judgements> {
+    /// What makes a strategy of this kind do what it did: the scores, or a fitness of the same order.
+    fn told(&self, generation: u32) -> Option<Scores> {
         let (_, bytes) = self.frame(generation)?;
         match self.shape.recorded {
             Kept::Order => {
@@ -199,10 +199,10 @@ impl Record {
                 for (rank, individual) in self.shape.indices(bytes).enumerate() {
                     *fitness.get_mut(individual)? = Fitness::nan_as_failed(-(rank as f64));
                 }
-                Some(Judgements::from_fitness(&fitness))
+                Some(Scores::from_fitness(&fitness))
             }
-            Kept::Values => Judgements::nan_as_failed(JudgementShape::FITNESS, reals(bytes).collect()).ok(),
-            Kept::Judgements(shape) => Judgements::nan_as_failed(shape, reals(bytes).collect()).ok(),
+            Kept::Values => Scores::nan_as_failed(ScoreShape::FITNESS, reals(bytes).collect()).ok(),
+            Kept::Scores(shape) => Scores::nan_as_failed(shape, reals(bytes).collect()).ok(),
             Kept::Genomes => None,
         }
     }
@@ -239,8 +239,8 @@ impl Record {
         while strategy.generation() < generation {
             let told = self.told(strategy.generation()).ok_or(EvoError::GenomesOnly)?;
             next(strategy, |strategy| match told.shape() {
-                JudgementShape::FITNESS => strategy.tell(&told.fitness()),
-                _ => strategy.tell_judgements(&told),
+                ScoreShape::FITNESS => strategy.tell(&told.fitness()),
+                _ => strategy.tell_scores(&told),
             })?;
         }
         Ok(())
@@ -316,7 +316,7 @@ impl Record {
                     }
                 }
             }
-            Kept::Values | Kept::Judgements(_) => {
+            Kept::Values | Kept::Scores(_) => {
                 if reals(bytes).any(f64::is_nan) {
                     return Err(EvoError::NanFitness);
                 }

@@ -4,10 +4,10 @@ use alloc::vec::Vec;
 
 use crate::error::EvoError;
 use crate::gene::Gene;
-use crate::judgement_shape::JudgementShape;
 #[cfg(feature = "serde")]
 use crate::population::Population;
-use crate::strategy::{Recorded, Strategy};
+use crate::score_shape::ScoreShape;
+use crate::strategy::{RecordKind, Strategy};
 
 /// The sizes that a record was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub(crate) struct Shape {
     pub(crate) gene_bytes: usize,
 }
 
-/// What is kept of a generation: [`Recorded`], and for judgements of more than one number how many.
+/// What is kept of a generation: [`RecordKind`], and for scores of more than one number how many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Recorded"))]
@@ -30,16 +30,17 @@ pub(crate) enum Kept {
     Order,
     Values,
     Genomes,
-    Judgements(JudgementShape),
+    #[cfg_attr(feature = "serde", serde(rename = "Judgements"))]
+    Scores(ScoreShape),
 }
 
 impl Kept {
     fn from_strategy<G: Gene>(strategy: &(impl Strategy<G> + ?Sized)) -> Self {
-        match (strategy.recorded(), strategy.judged_by()) {
-            (Recorded::Genomes, _) => Self::Genomes,
-            (Recorded::Order, JudgementShape::FITNESS) => Self::Order,
-            (Recorded::Values, JudgementShape::FITNESS) => Self::Values,
-            (Recorded::Order | Recorded::Values, shape) => Self::Judgements(shape),
+        match (strategy.record_kind(), strategy.score_shape()) {
+            (RecordKind::Genomes, _) => Self::Genomes,
+            (RecordKind::Order, ScoreShape::FITNESS) => Self::Order,
+            (RecordKind::Values, ScoreShape::FITNESS) => Self::Values,
+            (RecordKind::Order | RecordKind::Values, shape) => Self::Scores(shape),
         }
     }
 }
@@ -64,8 +65,8 @@ impl Shape {
         if ![u16::BYTES, f64::BYTES].contains(&self.gene_bytes) {
             return Err(EvoError::StateContent { what: "the bytes of a gene", found: self.gene_bytes as u64 });
         }
-        if let Kept::Judgements(shape) = self.recorded {
-            if shape.objectives == 0 || shape == JudgementShape::FITNESS {
+        if let Kept::Scores(shape) = self.recorded {
+            if shape.objectives == 0 || shape == ScoreShape::FITNESS {
                 let found = shape.objectives as u64;
                 return Err(EvoError::StateContent { what: "a number of objectives", found });
             }
@@ -116,7 +117,7 @@ impl Shape {
             Kept::Order => self.width(),
             Kept::Values => 8,
             Kept::Genomes => self.gene_bytes * self.genes,
-            Kept::Judgements(shape) => 8 * shape.width(),
+            Kept::Scores(shape) => 8 * shape.width(),
         };
         self.populations * self.width() + self.individuals * each
     }

@@ -5,10 +5,18 @@ use alloc::vec::Vec;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::Judgements;
-use crate::recording::entry::RecordEntry;
 use crate::recording::progress::{Progress, Taken};
+use crate::scores::Scores;
 use crate::strategy::Strategy;
+
+/// What stands in a [`Record`](crate::Record) for one generation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordEntry<'r> {
+    /// The champion of each population, then what was recorded.
+    pub frame: &'r [u8],
+    /// The state that the strategy was in afterwards, where it was saved.
+    pub state: Option<&'r [u8]>,
+}
 
 /// Records a search of which each generation is written elsewhere, such as to a file that grows: it takes the same memory
 /// however many generations there are.
@@ -17,7 +25,8 @@ use crate::strategy::Strategy;
 /// puts them together again, and [`Record::writer`](crate::Record::writer) goes on from there.
 ///
 /// ```
-/// use farsa_evo::{Fitness, GaConfig, Record, RecordWriter, Strategy, TruncationGa};
+/// use farsa_evo::{Fitness, Record, RecordWriter, Strategy};
+/// use farsa_evo::words::{GaConfig, TruncationGa};
 ///
 /// let mut evolution = TruncationGa::new(GaConfig { population: 6, parents: 2, ..GaConfig::new(3) }, 5)?;
 /// let mut record = Record::new(&mut evolution)?;
@@ -62,16 +71,16 @@ impl RecordWriter {
         Ok(())
     }
 
-    /// Tells a strategy the judgements of its generation, and records them.
+    /// Tells a strategy the scores of its generation, and records them.
     ///
     /// # Errors
-    /// Those of [`Record::tell_judgements`](crate::Record::tell_judgements). Nothing is recorded then.
-    pub fn tell_judgements<G: Gene>(
+    /// Those of [`Record::tell_scores`](crate::Record::tell_scores). Nothing is recorded then.
+    pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
-        judgements: &Judgements,
+        scores: &Scores,
     ) -> Result<(), EvoError> {
-        let taken = self.progress.judgements(strategy, judgements)?;
+        let taken = self.progress.scores(strategy, scores)?;
         self.keep(taken);
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! What every strategy keeps to, for several configurations of each.
 
-use farsa_evo::{
-    Ars, ArsConfig, Fitness, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Recorded, Snapshot,
-    Snes, SnesConfig, Strategy, Xnes, XnesConfig, check_strategy,
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Xnes,
+    XnesConfig,
 };
+use farsa_evo::{Fitness, RecordKind, Snapshot, Strategy, check_strategy};
 use proptest::prelude::{Just, ProptestConfig, prop, prop_oneof, proptest};
 use proptest::strategy::Strategy as Generator;
 
@@ -49,12 +50,13 @@ fn mirrored_strategies_conform() {
 
 #[test]
 fn what_has_to_be_recorded_is_said() {
-    let pgpe = |fitness| Pgpe::new(PgpeConfig { fitness, ..PgpeConfig::new(mean(2), 0.3, 2) }, 0).unwrap().recorded();
-    assert_eq!([PgpeFitness::CentredRanks, PgpeFitness::Raw].map(pgpe), [Recorded::Order, Recorded::Values]);
-    assert_eq!(Snes::new(SnesConfig::new(mean(2), 1.0), 0).unwrap().recorded(), Recorded::Order);
-    assert_eq!(Xnes::new(XnesConfig::new(mean(2), 1.0), 0).unwrap().recorded(), Recorded::Order);
-    assert_eq!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().recorded(), Recorded::Order);
-    assert_eq!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().recorded(), Recorded::Values);
+    let pgpe =
+        |fitness| Pgpe::new(PgpeConfig { fitness, ..PgpeConfig::new(mean(2), 0.3, 2) }, 0).unwrap().record_kind();
+    assert_eq!([PgpeFitness::CentredRanks, PgpeFitness::Raw].map(pgpe), [RecordKind::Order, RecordKind::Values]);
+    assert_eq!(Snes::new(SnesConfig::new(mean(2), 1.0), 0).unwrap().record_kind(), RecordKind::Order);
+    assert_eq!(Xnes::new(XnesConfig::new(mean(2), 1.0), 0).unwrap().record_kind(), RecordKind::Order);
+    assert_eq!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().record_kind(), RecordKind::Order);
+    assert_eq!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().record_kind(), RecordKind::Values);
 }
 
 fn length(x: impl Iterator<Item = f64>) -> f64 {

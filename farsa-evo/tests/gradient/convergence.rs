@@ -2,9 +2,10 @@
 
 use std::f64::consts::LN_10;
 
-use farsa_evo::{
-    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Strategy,
-    Xnes, XnesConfig,
+use farsa_evo::Strategy;
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Xnes,
+    XnesConfig,
 };
 use farsa_num::exp;
 

@@ -1,8 +1,9 @@
 //! The bits themselves. A change here is a change of every recorded run: it stands in CHANGELOG.md as value-breaking.
 
-use farsa_evo::{
-    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Strategy,
-    Xnes, XnesConfig,
+use farsa_evo::Strategy;
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Xnes,
+    XnesConfig,
 };
 
 /// The digest of the genomes after fifty generations.

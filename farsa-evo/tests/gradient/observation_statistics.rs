@@ -1,6 +1,7 @@
 //! Running statistics against sums over everything.
 
-use farsa_evo::{EvoError, ObservationStatistics, Snapshot};
+use farsa_evo::ObservationStatistics;
+use farsa_evo::{EvoError, Snapshot};
 use farsa_num::Stream;
 use proptest::prelude::*;
 

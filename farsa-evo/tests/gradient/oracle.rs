@@ -1,8 +1,9 @@
 //! The papers' formulas, written down as they stand, against the strategies for a few generations.
 
-use farsa_evo::{
-    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Strategy,
-    Xnes, XnesConfig,
+use farsa_evo::Strategy;
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Xnes,
+    XnesConfig,
 };
 use farsa_num::{Domain, Stream, exp, ln};
 

@@ -1,9 +1,9 @@
 //! Configurations and states that cannot be are refused with their numbers.
 
-use farsa_evo::{
-    Ars, ArsConfig, EvoError, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, Population, Snapshot, Snes,
-    SnesConfig, Strategy, Xnes, XnesConfig,
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, Snes, SnesConfig, Xnes, XnesConfig,
 };
+use farsa_evo::{EvoError, Population, Snapshot, Strategy};
 
 /// The name and the number of the setting that is refused.
 fn setting<T: std::fmt::Debug>(made: Result<T, EvoError>) -> (&'static str, f64) {

@@ -1,11 +1,16 @@
 //! What the check of strategies finds in one that is wrong; how often ours want their states kept.
 
-use farsa_evo::{
-    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, EvoError, EvolutionStrategy,
-    EvolutionStrategyConfig, Fitness, GaConfig, Nsga2, Nsga2Config, Population, RealGa, RealGaConfig, Record,
-    RecordEntry, Recorded, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig, SideBySide, Snapshot, SteadyState,
-    SteadyStateConfig, Strategy, TruncationGa, check_strategy,
+use farsa_evo::coevolution::Populations;
+use farsa_evo::covariance::{
+    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
+    SeparableCmaEsConfig,
 };
+use farsa_evo::pareto::{Nsga2, Nsga2Config};
+use farsa_evo::real::{
+    EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, SteadyState, SteadyStateConfig,
+};
+use farsa_evo::words::{GaConfig, TruncationGa};
+use farsa_evo::{EvoError, Fitness, Population, Record, RecordEntry, RecordKind, Snapshot, Strategy, check_strategy};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Flaw {
@@ -56,8 +61,8 @@ impl Strategy<f64> for Summing {
         self.population.iter_mut().flatten().for_each(|gene| *gene = shown);
         Ok(())
     }
-    fn recorded(&self) -> Recorded {
-        Recorded::Genomes
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Genomes
     }
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
         (self.flaw != Flaw::SavesLate || self.generation > 0).then_some(self)
@@ -72,7 +77,7 @@ impl Strategy<f64> for Summing {
 }
 
 impl Snapshot for Summing {
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         u32::from(self.flaw != Flaw::SavesTooOften)
     }
     fn save(&self) -> Vec<u8> {
@@ -134,10 +139,10 @@ fn a_recorded_gene_that_is_no_number_is_named() {
 #[test]
 fn states_are_kept_as_often_as_telling_takes_time() {
     let bounds = || vec![[-1.0, 1.0]; 250];
-    let between = |mut strategy: Box<dyn Strategy<f64>>| strategy.snapshot().unwrap().generations_between_states();
+    let between = |mut strategy: Box<dyn Strategy<f64>>| strategy.snapshot().unwrap().snapshot_interval();
     let real_ga = |seed| RealGa::new(RealGaConfig { population: 40, ..RealGaConfig::new(bounds()) }, seed);
     assert_eq!(between(Box::new(real_ga(0).unwrap())), 2000);
-    assert_eq!(between(Box::new(SideBySide::new(3, 0, real_ga).unwrap())), 2000);
+    assert_eq!(between(Box::new(Populations::new(3, 0, real_ga).unwrap())), 2000);
     let config = SteadyStateConfig { population: 80, ..SteadyStateConfig::new(bounds()) };
     assert_eq!(between(Box::new(SteadyState::new(config, 0).unwrap())), 1000);
     let config = Nsga2Config { population: 20, ..Nsga2Config::new(bounds(), 2) };

@@ -1,6 +1,7 @@
 //! Cooperative co-evolution of weights: beside a transcription of the algorithm, on known functions, and its bits.
 
-use farsa_evo::{Cosyne, CosyneConfig, EvoError, Fitness, Permutation, Recorded, Snapshot, Strategy, check_strategy};
+use farsa_evo::coevolution::{Cosyne, CosyneConfig, Permutation};
+use farsa_evo::{EvoError, Fitness, RecordKind, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 
@@ -28,8 +29,8 @@ fn it_keeps_to_what_a_strategy_is() {
     for config in configs() {
         check_strategy(|| Cosyne::new(config.clone(), 7), 40).unwrap();
     }
-    let [all, by_fitness, ..] = configs().map(|config| Cosyne::new(config, 1).unwrap().recorded());
-    assert_eq!((all, by_fitness), (Recorded::Order, Recorded::Values));
+    let [all, by_fitness, ..] = configs().map(|config| Cosyne::new(config, 1).unwrap().record_kind());
+    assert_eq!((all, by_fitness), (RecordKind::Order, RecordKind::Values));
 }
 
 /// A generation of algorithm 2, gene by gene: rows of weights, each with the row that it was in before.

@@ -1,9 +1,7 @@
 //! Covariance matrix adaptation against a transcription of its equations, on test functions, and against bad input.
 
-use farsa_evo::{
-    CholeskyCmaEs, CmaEs, CmaEsConfig, EvoError, Fitness, Recorded, SeparableCmaEs, SeparableCmaEsConfig, Snapshot,
-    Strategy, check_strategy,
-};
+use farsa_evo::covariance::{CholeskyCmaEs, CmaEs, CmaEsConfig, SeparableCmaEs, SeparableCmaEsConfig};
+use farsa_evo::{EvoError, Fitness, RecordKind, Snapshot, Strategy, check_strategy};
 use farsa_num::Digest;
 use proptest::prelude::*;
 
@@ -103,7 +101,7 @@ fn strategies_keep_to_the_contract() {
     check_strategy(|| CmaEs::new(config.clone(), 4), 40).unwrap();
     check_strategy(|| CholeskyCmaEs::new(config.clone(), 4), 40).unwrap();
     let search = CmaEs::new(config, 4).unwrap();
-    assert_eq!(search.recorded(), Recorded::Values);
+    assert_eq!(search.record_kind(), RecordKind::Values);
 }
 
 /// The inverse square root of a symmetric matrix, by Jacobi rotations.

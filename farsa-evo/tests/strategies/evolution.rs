@@ -2,9 +2,11 @@
 
 use std::time::Instant;
 
+use farsa_evo::coevolution::Coevolution;
+use farsa_evo::words::{GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
 use farsa_evo::{
-    Champion, Coevolution, EvoError, Fitness, GaConfig, Genealogy as _, Mutation, OnePlusOne, OnePlusOneConfig,
-    Population, RandomSearch, Record, Recorded, Snapshot, Statistics, Strategy, TruncationGa, check_strategy,
+    Champion, EvoError, Fitness, Genealogy as _, Population, Record, RecordKind, Snapshot, Statistics, Strategy,
+    check_strategy,
 };
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
@@ -145,8 +147,8 @@ impl Strategy for Slow {
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         self.0.tell(fitness)
     }
-    fn recorded(&self) -> Recorded {
-        Recorded::Genomes
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Genomes
     }
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
         (self.0.population.len() == 4).then_some(self)

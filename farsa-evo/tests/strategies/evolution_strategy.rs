@@ -2,10 +2,8 @@
 
 #![allow(clippy::disallowed_methods)]
 
-use farsa_evo::{
-    EvoError, EvolutionStrategy, EvolutionStrategyConfig, Fitness, Recombination, Record, StepSizes, Strategy,
-    Survival, check_strategy,
-};
+use farsa_evo::real::{EvolutionStrategy, EvolutionStrategyConfig, Recombination, StepSizes, Survival};
+use farsa_evo::{EvoError, Fitness, Record, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -1,9 +1,8 @@
 //! Co-evolution with generalist selection: beside a transcription of its source, conformant, and on games.
 
-use farsa_evo::{
-    EvoError, Fitness, GeneralistCoevolution, GeneralistConfig, JudgementShape, Judgements, Mutation, Recorded,
-    Snapshot, Strategy, check_strategy,
-};
+use farsa_evo::coevolution::{GeneralistCoevolution, GeneralistConfig};
+use farsa_evo::words::Mutation;
+use farsa_evo::{EvoError, Fitness, RecordKind, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 
@@ -40,7 +39,7 @@ impl Transcription {
         let genome = |side: usize, own: usize| {
             let mut stream = Stream::new(seed, Domain::InitialGenome, side as u32, own as u32, 0);
             let mut genes = vec![0; config.genes];
-            farsa_evo::randomize(&mut genes, &mut stream);
+            farsa_evo::words::randomize(&mut genes, &mut stream);
             genes.iter().map(|gene| gene >> (16 - config.gene_bits)).collect()
         };
         let everyone = [0, 1].map(|side| (0..size).map(|own| genome(side, own)).collect());
@@ -120,7 +119,7 @@ impl Transcription {
                         let mut stream =
                             Stream::new(self.seed, Domain::Mutation, side as u32, own as u32, self.generation);
                         let GeneralistConfig { mutation, mutation_rate, gene_bits, .. } = self.config;
-                        let mutation = farsa_evo::BitMutation::new(mutation, mutation_rate).unwrap();
+                        let mutation = farsa_evo::words::BitMutation::new(mutation, mutation_rate).unwrap();
                         mutation.with_gene_bits(gene_bits).unwrap().apply(&mut genes, &mut stream);
                     }
                     genes
@@ -148,23 +147,23 @@ impl Transcription {
     }
 }
 
-/// The judgements of a game: the sum of what was earned, and what was earned against each opponent.
-fn played(search: &GeneralistCoevolution, game: impl Fn(usize, &[u16], &[u16]) -> f64) -> Judgements {
-    let (meetings, size) = (search.meetings().unwrap(), search.config().size());
+/// The scores of a game: the sum of what was earned, and what was earned against each opponent.
+fn played(search: &GeneralistCoevolution, game: impl Fn(usize, &[u16], &[u16]) -> f64) -> Scores {
+    let (opponents, size) = (search.opponents().unwrap(), search.config().size());
     let mut rows = Vec::new();
     for (individual, genes) in search.ask().iter().enumerate() {
-        let met = (0..meetings.count()).map(|opponent| meetings.met(individual, opponent)[0]);
+        let met = (0..opponents.count()).map(|opponent| opponents.opponents_of(individual, opponent)[0]);
         let each: Vec<f64> = met.map(|other| game(individual / size, genes, other)).collect();
         rows.push(each.iter().sum());
         rows.extend(each);
     }
-    Judgements::new(search.judged_by(), rows).unwrap()
+    Scores::new(search.score_shape(), rows).unwrap()
 }
 
 fn next(search: &mut GeneralistCoevolution) {
     let generation = search.generation();
-    let judgements = played(search, |side, own, other| earned(generation, side, own, other));
-    search.tell_judgements(&judgements).unwrap();
+    let scores = played(search, |side, own, other| earned(generation, side, own, other));
+    search.tell_scores(&scores).unwrap();
 }
 
 #[test]
@@ -181,7 +180,7 @@ fn it_asks_for_whom_the_transcription_asks_and_meets_the_same() {
                         let individual = side * size + own;
                         assert_eq!(search.ask().get(individual).unwrap(), asked[side][own], "{own} of {generation}");
                         for (opponent, genes) in met[side].iter().enumerate() {
-                            assert_eq!(search.meetings().unwrap().met(individual, opponent), [&genes[..]]);
+                            assert_eq!(search.opponents().unwrap().opponents_of(individual, opponent), [&genes[..]]);
                         }
                     }
                 }
@@ -216,10 +215,10 @@ fn it_keeps_to_what_a_strategy_is() {
     }
     let config = configs()[0];
     let mut search = GeneralistCoevolution::new(config, 7).unwrap();
-    assert_eq!((search.populations(), search.recorded()), (2, Recorded::Values));
-    assert_eq!(search.judged_by(), JudgementShape::new(5, 0));
-    let expected = search.judged_by();
-    let refused = Err(EvoError::Judgement { expected, found: JudgementShape::FITNESS });
+    assert_eq!((search.populations(), search.record_kind()), (2, RecordKind::Values));
+    assert_eq!(search.score_shape(), ScoreShape::new(5, 0));
+    let expected = search.score_shape();
+    let refused = Err(EvoError::ScoreShape { expected, found: ScoreShape::FITNESS });
     assert_eq!(search.tell(&[Fitness::WORST; 18]), refused);
 }
 
@@ -356,11 +355,11 @@ proptest! {
                 let fails = u32::from(own[0] ^ other[0]) % 16 < failing;
                 if fails { f64::NEG_INFINITY } else { earned(generation, side, own, other) }
             };
-            let judgements = played(&search, game);
-            search.tell_judgements(&judgements).unwrap();
+            let scores = played(&search, game);
+            search.tell_scores(&scores).unwrap();
             let mut other = GeneralistCoevolution::new(config, seed).unwrap();
             other.restore(&again.save()).unwrap();
-            other.tell_judgements(&judgements).unwrap();
+            other.tell_scores(&scores).unwrap();
             again = other;
             prop_assert_eq!(&search, &again);
         }
@@ -381,8 +380,8 @@ fn members_become_better_against_all() {
     for seed in 0..5 {
         let mut search = GeneralistCoevolution::new(config, seed).unwrap();
         for _ in 0..60 * config.round() {
-            let judgements = played(&search, game);
-            search.tell_judgements(&judgements).unwrap();
+            let scores = played(&search, game);
+            search.tell_scores(&scores).unwrap();
         }
         for side in 0..2 {
             let least = search.members(side).iter().map(strength).fold(16.0, f64::min);

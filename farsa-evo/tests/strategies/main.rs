@@ -7,7 +7,6 @@ mod covariance;
 mod evolution;
 mod evolution_strategy;
 mod generalist_coevolution;
-mod judgements;
 mod map_elites;
 mod novelty_search;
 mod nsga2;
@@ -19,6 +18,7 @@ mod restarts;
 mod saved;
 #[cfg(feature = "serde")]
 mod saved_configurations;
+mod scores;
 mod seeds;
 mod steady_state;
 mod word_map;

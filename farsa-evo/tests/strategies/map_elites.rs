@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use farsa_evo::{
-    Addition, Archive, Cells, CmaEs, CmaEsConfig, CvtCells, Emitter, EvoError, Fitness, GridCells, JudgementShape,
-    Judgements, MapElites, MapElitesConfig, Record, Snapshot, Strategy, check_strategy,
-};
+use farsa_evo::archives::{Addition, Archive, Cells, CvtCells, Emitter, GridCells, MapElites, MapElitesConfig};
+use farsa_evo::covariance::{CmaEs, CmaEsConfig};
+use farsa_evo::{EvoError, Fitness, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 
@@ -33,17 +32,17 @@ fn configs() -> [MapElitesConfig; 4] {
     ]
 }
 
-/// A cost, and a descriptor that often changes; one evaluation in eleven fails.
+/// A cost, and a measures that often changes; one evaluation in eleven fails.
 fn plain(genes: &[f64], row: &mut [f64]) {
     let sum: f64 = genes.iter().sum();
     let cost = if sum.to_bits().is_multiple_of(11) { f64::NAN } else { genes[0] * genes[0] + (genes[1] - 0.3).abs() };
     row.copy_from_slice(&[-cost, sum, genes[2] - genes[0]]);
 }
 
-fn judgements<C: Cells + Clone>(search: &MapElites<C>) -> Judgements {
+fn scores<C: Cells + Clone>(search: &MapElites<C>) -> Scores {
     let mut values = vec![0.0; 3 * search.ask().len()];
     search.ask().iter().zip(values.chunks_mut(3)).for_each(|(genes, row)| plain(genes, row));
-    Judgements::nan_as_failed(search.judged_by(), values).unwrap()
+    Scores::nan_as_failed(search.score_shape(), values).unwrap()
 }
 
 #[test]
@@ -73,11 +72,11 @@ fn generations_are_those_of_a_transcription() {
         let mut search = MapElites::new(config.clone(), grid(), 11).unwrap();
         let (mut elites, mut order): (BTreeMap<usize, Naive>, Vec<usize>) = (BTreeMap::new(), Vec::new());
         for generation in 0..25 {
-            let told = judgements(&search);
+            let told = scores(&search);
             for (i, genes) in search.ask().iter().enumerate() {
                 let objective = told.objectives(i)[0];
                 let place = |x: f64, parts: f64| ((x + 3.0) / 8.0 * parts).floor().clamp(0.0, parts - 1.0) as usize;
-                let cell = place(told.descriptor(i)[0], 6.0) * 5 + place(told.descriptor(i)[1], 5.0);
+                let cell = place(told.measures(i)[0], 6.0) * 5 + place(told.measures(i)[1], 5.0);
                 let better = elites.get(&cell).is_none_or(|elite| objective > elite.1);
                 if !told.is_failed(i) && better {
                     if !elites.contains_key(&cell) {
@@ -86,7 +85,7 @@ fn generations_are_those_of_a_transcription() {
                     elites.insert(cell, (genes.to_vec(), objective, [generation, i as u32]));
                 }
             }
-            search.tell_judgements(&told).unwrap();
+            search.tell_scores(&told).unwrap();
             let archive = search.archive();
             assert!(archive.elites().map(|elite| elite.cell).eq(order.iter().copied()));
             let [count, sum] = search.diagnostics()[..] else { panic!("says two numbers") };
@@ -155,7 +154,7 @@ fn an_improvement_emitter_whose_better_half_improves_is_cma_es() {
             [objective, f64::from(12 * generation + i)]
         };
         let rows: Vec<f64> = (0..).zip(&values).flat_map(row).collect();
-        search.tell_judgements(&Judgements::nan_as_failed(search.judged_by(), rows).unwrap()).unwrap();
+        search.tell_scores(&Scores::nan_as_failed(search.score_shape(), rows).unwrap()).unwrap();
         alone.tell_values(&values).unwrap();
     }
 }
@@ -166,8 +165,8 @@ fn an_improvement_emitter_that_improves_nothing_starts_again_from_an_elite() {
     let mut search = MapElites::new(config, grid(), 3).unwrap();
     // Nothing is taken by an empty archive: from its own mean.
     let failed = vec![f64::NAN; 3 * 16];
-    let failed = Judgements::nan_as_failed(search.judged_by(), failed).unwrap();
-    search.tell_judgements(&failed).unwrap();
+    let failed = Scores::nan_as_failed(search.score_shape(), failed).unwrap();
+    search.tell_scores(&failed).unwrap();
     let near = |search: &MapElites<GridCells>, centre: &[f64]| {
         let far = |(x, centre): (&f64, &f64)| (x - centre).abs() > 4.0 * 0.4;
         search.ask().iter().filter(|genes| !genes.iter().zip(centre).any(far)).count()
@@ -177,8 +176,8 @@ fn an_improvement_emitter_that_improves_nothing_starts_again_from_an_elite() {
     let mut rows = vec![f64::NAN; 3 * 16];
     rows[..3].copy_from_slice(&[1.0, 0.0, 0.0]);
     let elite = search.ask().get(0).unwrap().to_vec();
-    search.tell_judgements(&Judgements::nan_as_failed(search.judged_by(), rows).unwrap()).unwrap();
-    search.tell_judgements(&failed).unwrap();
+    search.tell_scores(&Scores::nan_as_failed(search.score_shape(), rows).unwrap()).unwrap();
+    search.tell_scores(&failed).unwrap();
     assert_eq!((search.archive().len(), near(&search, &elite)), (1, 16));
 }
 
@@ -196,8 +195,8 @@ fn cma_me_fills_the_arms_cells() {
     for elite in search.archive().elites() {
         let mut row = [0.0; 3];
         judge(elite.genes, &mut row);
-        assert_eq!((elite.objective, elite.descriptor), (row[0], &row[1..]));
-        assert_eq!(search.archive().cells().cell(elite.descriptor), elite.cell);
+        assert_eq!((elite.objective, elite.measures), (row[0], &row[1..]));
+        assert_eq!(search.archive().cells().cell(elite.measures), elite.cell);
     }
 }
 
@@ -214,8 +213,8 @@ fn a_thousand_generations_are_rebuilt() {
         }
         let mut values = vec![0.0; 300];
         search.ask().iter().zip(values.chunks_mut(3)).for_each(|(genes, row)| judge(genes, row));
-        let told = Judgements::new(search.judged_by(), values).unwrap();
-        record.tell_judgements(&mut search, &told).unwrap();
+        let told = Scores::new(search.score_shape(), values).unwrap();
+        record.tell_scores(&mut search, &told).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -263,8 +262,8 @@ fn impossible_configurations_are_refused() {
     let found = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), many, 0).unwrap_err();
     assert_eq!(found, EvoError::TooLarge { population: 1 << 28, genes: 3 });
     let mut search = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), grid(), 1).unwrap();
-    let (expected, found) = (JudgementShape::new(1, 2), JudgementShape::FITNESS);
-    assert_eq!(search.tell(&[Fitness::WORST; 100]), Err(EvoError::Judgement { expected, found }));
+    let (expected, found) = (ScoreShape::new(1, 2), ScoreShape::FITNESS);
+    assert_eq!(search.tell(&[Fitness::WORST; 100]), Err(EvoError::ScoreShape { expected, found }));
     let mut archive = Archive::new(grid(), 3).unwrap();
     let lengths = |genes, ranges| Err(EvoError::Lengths { genes, ranges, out: ranges });
     assert_eq!(archive.add(&[0.0; 2], 1.0, &[0.0; 2]), lengths(2, 3));
@@ -277,7 +276,7 @@ fn impossible_configurations_are_refused() {
 fn a_damaged_state_is_refused() {
     let [.., config] = configs();
     let mut search = MapElites::new(config, grid(), 3).unwrap();
-    (0..5).for_each(|_| search.tell_judgements(&judgements(&search)).unwrap());
+    (0..5).for_each(|_| search.tell_scores(&scores(&search)).unwrap());
     let (before, state) = (search.clone(), search.save());
     let elites = search.archive().len();
     let first = 8;
@@ -285,7 +284,7 @@ fn a_damaged_state_is_refused() {
     let empty = search.archive().cells().cells() - elites;
     assert_eq!(search.largest_state(), state.len() + empty * (12 + 8 * 6));
     let last = first + (elites - 1) * (12 + 8 * 6);
-    // The number of elites, a cell that is not that of its descriptor, an objective that failed, a gene out of its
+    // The number of elites, a cell that is not that of its measures, an objective that failed, a gene out of its
     // bounds, a step size of zero.
     let changes: [(usize, Vec<u8>); 6] = [
         (4, (elites as u32 + 1).to_le_bytes().into()),
@@ -323,9 +322,9 @@ proptest! {
         }
         let mut search = MapElites::new(config, grid(), seed).unwrap();
         for values in told.chunks_exact(3 * search.ask().len()).take(10) {
-            let told = Judgements::nan_as_failed(search.judged_by(), values.to_vec()).unwrap();
+            let told = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
             let before = search.archive().clone();
-            search.tell_judgements(&told).unwrap();
+            search.tell_scores(&told).unwrap();
             for elite in before.elites() {
                 prop_assert!(search.archive().elite(elite.cell).is_some_and(|now| now.objective >= elite.objective));
             }

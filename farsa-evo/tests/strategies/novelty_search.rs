@@ -2,11 +2,11 @@
 
 use core::fmt::Debug;
 
-use farsa_evo::{
-    ArchiveRule, CmaEs, CmaEsConfig, EvoError, EvolutionStrategy, EvolutionStrategyConfig, Fitness, GaConfig, Gene,
-    JudgementShape, Judgements, NoveltyConfig, NoveltySearch, RealGa, RealGaConfig, Record, Snapshot, Strategy,
-    TruncationGa, check_strategy,
-};
+use farsa_evo::archives::{ArchiveRule, NoveltyConfig, NoveltySearch};
+use farsa_evo::covariance::{CmaEs, CmaEsConfig};
+use farsa_evo::real::{EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig};
+use farsa_evo::words::{GaConfig, TruncationGa};
+use farsa_evo::{EvoError, Fitness, Gene, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 
 const THRESHOLD: ArchiveRule = ArchiveRule::Threshold { first: 0.4, most: 2, patience: 3 };
@@ -32,7 +32,7 @@ fn what_it_says_is_its_archive_and_what_the_other_says() {
     let mut search = NoveltySearch::new(config(ArchiveRule::Random { rate: 1.0 }), normal().unwrap(), 7).unwrap();
     for _ in 0..3 {
         let values: Vec<f64> = search.ask().iter().flat_map(|genes| [0.0, genes[0], genes[1]]).collect();
-        search.tell_judgements(&Judgements::new(search.judged_by(), values).unwrap()).unwrap();
+        search.tell_scores(&Scores::new(search.score_shape(), values).unwrap()).unwrap();
     }
     let [archived, largest, sigma, ratio] = search.diagnostics()[..] else { panic!("says four numbers") };
     assert_eq!(archived, 36.0, "twelve individuals of each generation");
@@ -55,12 +55,12 @@ fn judge(genes: &[f64], row: &mut [f64]) {
     row.copy_from_slice(&[if failed { f64::NAN } else { genes[2] }, genes[0] + genes[1], genes[1] * genes[2]]);
 }
 
-fn judgements<G: Gene>(search: &impl Strategy<G>, real: impl Fn(G) -> f64) -> Judgements {
+fn scores<G: Gene>(search: &impl Strategy<G>, real: impl Fn(G) -> f64) -> Scores {
     let mut values = vec![0.0; 3 * search.ask().len()];
     for (genes, row) in search.ask().iter().zip(values.chunks_mut(3)) {
         judge(&genes.iter().map(|gene| real(*gene)).collect::<Vec<_>>(), row);
     }
-    Judgements::nan_as_failed(search.judged_by(), values).unwrap()
+    Scores::nan_as_failed(search.score_shape(), values).unwrap()
 }
 
 /// Tells a strategy of its own what the source says, and compares.
@@ -73,8 +73,8 @@ fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
     let mut alone = fresh().unwrap();
     let (mut archive, mut threshold, mut idle): (Vec<[f64; 2]>, f64, u32) = (Vec::new(), 0.4, 0);
     for generation in 0..30 {
-        let told = judgements(&search, &real);
-        let place = |i: usize| [told.descriptor(i)[0], told.descriptor(i)[1]];
+        let told = scores(&search, &real);
+        let place = |i: usize| [told.measures(i)[0], told.measures(i)[1]];
         let living: Vec<usize> = (0..12).filter(|i| !told.is_failed(*i)).collect();
         let novelty = |own: usize| {
             let far = |other: [f64; 2]| {
@@ -105,7 +105,7 @@ fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
             (threshold, idle) = (0.95 * threshold, 0);
         }
         archive.extend(added);
-        search.tell_judgements(&told).unwrap();
+        search.tell_scores(&told).unwrap();
         alone.tell_values(&values).unwrap();
         assert_eq!(search.inner(), &alone, "{generation}");
         assert_eq!(search.archive(), archive.as_flattened());
@@ -153,8 +153,8 @@ fn a_thousand_generations_are_rebuilt() {
         if generation % 333 == 0 {
             asked.push((generation, search.ask().clone()));
         }
-        let told = judgements(&search, |gene: u16| f64::from(gene) / 16_384.0);
-        record.tell_judgements(&mut search, &told).unwrap();
+        let told = scores(&search, |gene: u16| f64::from(gene) / 16_384.0);
+        record.tell_scores(&mut search, &told).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -194,17 +194,17 @@ fn impossible_configurations_are_refused() {
     told.tell(&[Fitness::WORST; 12]).unwrap();
     assert_eq!(NoveltySearch::new(base, told, 0).unwrap_err(), EvoError::AlreadyTold { generation: 1 });
     let own = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
-    let (expected, found) = (JudgementShape::FITNESS, JudgementShape::new(1, 2));
-    assert_eq!(NoveltySearch::new(base, own, 0).unwrap_err(), EvoError::Judgement { expected, found });
+    let (expected, found) = (ScoreShape::FITNESS, ScoreShape::new(1, 2));
+    assert_eq!(NoveltySearch::new(base, own, 0).unwrap_err(), EvoError::ScoreShape { expected, found });
     let mut search = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
     let (expected, found) = (found, expected);
-    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::Judgement { expected, found }));
+    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::ScoreShape { expected, found }));
 }
 
 #[test]
 fn a_damaged_state_is_refused() {
     let mut search = NoveltySearch::new(config(THRESHOLD), reals().unwrap(), 3).unwrap();
-    (0..5).for_each(|_| search.tell_judgements(&judgements(&search, |gene: f64| gene)).unwrap());
+    (0..5).for_each(|_| search.tell_scores(&scores(&search, |gene: f64| gene)).unwrap());
     let (before, state) = (search.save(), search.save());
     let inner = 8 + u64::from_le_bytes(state[..8].try_into().unwrap()) as usize;
     assert!(search.archive().len() >= 4);
@@ -237,11 +237,11 @@ fn distances_are_taken_in_units() {
     let scaled = plain.clone().with_units::<u16>(&[1024.0, 0.5]).unwrap();
     let (mut plain, mut scaled) = (plain, scaled);
     for _ in 0..20 {
-        let told = judgements(&plain, |gene: u16| f64::from(gene) / 65_536.0);
+        let told = scores(&plain, |gene: u16| f64::from(gene) / 65_536.0);
         let larger = |row: &[f64]| [row[0], 1024.0 * row[1], 0.5 * row[2]];
         let larger = told.values().chunks(3).flat_map(larger).collect();
-        plain.tell_judgements(&told).unwrap();
-        scaled.tell_judgements(&Judgements::nan_as_failed(told.shape(), larger).unwrap()).unwrap();
+        plain.tell_scores(&told).unwrap();
+        scaled.tell_scores(&Scores::nan_as_failed(told.shape(), larger).unwrap()).unwrap();
         assert_eq!((plain.ask(), plain.novelty(), plain.archive()), (scaled.ask(), scaled.novelty(), scaled.archive()));
     }
     let fresh = || NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();

@@ -2,10 +2,9 @@
 
 #![allow(clippy::disallowed_methods)]
 
-use farsa_evo::{
-    EvoError, Fitness, JudgementShape, Judgements, Nsga2, Nsga2Config, Record, SideBySide, Snapshot, Strategy,
-    check_strategy, dominates, hypervolume,
-};
+use farsa_evo::coevolution::Populations;
+use farsa_evo::pareto::{Nsga2, Nsga2Config, dominates, hypervolume};
+use farsa_evo::{EvoError, Fitness, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 
@@ -34,11 +33,11 @@ fn judge(genes: &[f64], row: &mut [f64]) {
     }
 }
 
-fn judgements(search: &Nsga2) -> Judgements {
+fn scores(search: &Nsga2) -> Scores {
     let width = search.config().objectives;
     let mut values = vec![0.0; width * search.ask().len()];
     search.ask().iter().zip(values.chunks_mut(width)).for_each(|(genes, row)| judge(genes, row));
-    Judgements::nan_as_failed(search.judged_by(), values).unwrap()
+    Scores::nan_as_failed(search.score_shape(), values).unwrap()
 }
 
 #[test]
@@ -47,7 +46,7 @@ fn it_keeps_to_what_a_strategy_is() {
         check_strategy(|| Nsga2::new(config.clone(), 7), 40).unwrap();
     }
     let [config, ..] = configs();
-    check_strategy(|| SideBySide::new(3, 7, |seed| Nsga2::new(config.clone(), seed)), 20).unwrap();
+    check_strategy(|| Populations::new(3, 7, |seed| Nsga2::new(config.clone(), seed)), 20).unwrap();
 }
 
 /// An individual of the transcription: genes, objectives, front and distance.
@@ -137,7 +136,7 @@ fn generations_are_those_of_a_transcription() {
         let mut search = Nsga2::new(config.clone(), 11).unwrap();
         let mut parents: Vec<Naive> = Vec::new();
         for generation in 1..20 {
-            let told = judgements(&search);
+            let told = scores(&search);
             for parent in &mut parents {
                 parent.told = None;
             }
@@ -145,7 +144,7 @@ fn generations_are_those_of_a_transcription() {
                 let objectives = told.objectives(i).to_vec();
                 Naive { genes: genes.to_vec(), objectives, front: 0, distance: 0.0, told: Some(i) }
             }));
-            search.tell_judgements(&told).unwrap();
+            search.tell_scores(&told).unwrap();
             parents = survivors(&parents, config.population);
             assert!(search.parents().map(|(genes, _)| genes).eq(parents.iter().map(|parent| &parent.genes[..])));
             assert!(search.parents().map(|(_, m)| m).eq(parents.iter().map(|parent| &parent.objectives[..])));
@@ -214,8 +213,8 @@ fn a_thousand_generations_are_rebuilt() {
         }
         let mut values = vec![0.0; 200];
         search.ask().iter().zip(values.chunks_mut(2)).for_each(|(genes, row)| Zdt::Four.judge(genes, row));
-        let told = Judgements::new(search.judged_by(), values).unwrap();
-        record.tell_judgements(&mut search, &told).unwrap();
+        let told = Scores::new(search.score_shape(), values).unwrap();
+        record.tell_scores(&mut search, &told).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -266,7 +265,7 @@ fn impossible_configurations_are_refused() {
 fn a_damaged_state_is_refused() {
     let [config, ..] = configs();
     let mut search = Nsga2::new(config, 3).unwrap();
-    (0..3).for_each(|_| search.tell_judgements(&judgements(&search)).unwrap());
+    (0..3).for_each(|_| search.tell_scores(&scores(&search)).unwrap());
     let (before, state) = (search.clone(), search.save());
     let (genes, objectives) = (4 + 4 * 8 * 12, 4 + 6 * 8 * 12);
     // A gene out of its bounds, an objective that is NaN, a front that leaves one out, a generation that was not told, an
@@ -294,8 +293,8 @@ fn a_damaged_state_is_refused() {
 fn fitness_is_too_little() {
     let [two, _, one, _] = configs();
     let mut search = Nsga2::new(two, 1).unwrap();
-    let (expected, found) = (JudgementShape::new(2, 0), JudgementShape::FITNESS);
-    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::Judgement { expected, found }));
+    let (expected, found) = (ScoreShape::new(2, 0), ScoreShape::FITNESS);
+    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::ScoreShape { expected, found }));
     // Of one objective it is told as any other.
     let mut search = Nsga2::new(one, 1).unwrap();
     search.tell(&[Fitness::WORST; 12]).unwrap();
@@ -314,9 +313,9 @@ proptest! {
         let (bounds, m, size) = (config.bounds.clone(), config.objectives, config.population);
         let mut search = Nsga2::new(config, seed).unwrap();
         for values in told.chunks_exact(m * size).take(8) {
-            let told = Judgements::nan_as_failed(search.judged_by(), values.to_vec()).unwrap();
+            let told = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
             let before: Vec<Vec<f64>> = search.parents().map(|(_, objectives)| objectives.to_vec()).collect();
-            search.tell_judgements(&told).unwrap();
+            search.tell_scores(&told).unwrap();
             let after: Vec<Vec<f64>> = search.parents().map(|(_, objectives)| objectives.to_vec()).collect();
             prop_assert_eq!(after.len(), size);
             // Elitism: whoever was there is there, or not dominating anybody of the last front.

@@ -1,6 +1,7 @@
 //! Selection by the outcomes of encounters: beside a transcription of its source, and on a game without a best player.
 
-use farsa_evo::{EvoError, Fitness, Outcomes, Replacement};
+use farsa_evo::coevolution::{Outcomes, Replacement};
+use farsa_evo::{EvoError, Fitness};
 use farsa_num::Stream;
 use proptest::prelude::*;
 

@@ -3,9 +3,8 @@
 
 #![allow(clippy::disallowed_methods)]
 
-use farsa_evo::{
-    Crossover, EvoError, Fitness, RealGa, RealGaConfig, RealMutation, Selection, Snapshot, Strategy, check_strategy,
-};
+use farsa_evo::real::{Crossover, RealGa, RealGaConfig, RealMutation, Selection};
+use farsa_evo::{EvoError, Fitness, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -1,6 +1,7 @@
 //! Records that keep states, whole, cut, read entry by entry, and written elsewhere.
 
-use farsa_evo::{EvoError, Fitness, GaConfig, Population, Record, RecordWriter, Snapshot, Strategy, TruncationGa};
+use farsa_evo::words::{GaConfig, TruncationGa};
+use farsa_evo::{EvoError, Fitness, Population, Record, RecordWriter, Snapshot, Strategy};
 
 /// A search that asks for its state to be kept every three generations.
 struct Asking {
@@ -33,7 +34,7 @@ impl Snapshot for Asking {
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         self.search.restore(&state[..state.len() - self.more])
     }
-    fn generations_between_states(&self) -> u32 {
+    fn snapshot_interval(&self) -> u32 {
         3
     }
 }

@@ -1,9 +1,7 @@
 //! Covariance matrix adaptation that begins anew: which runs follow each other, and what they find.
 
-use farsa_evo::{
-    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, EvoError, Fitness, RestartSchedule, Snapshot, Strategy,
-    check_strategy,
-};
+use farsa_evo::covariance::{CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
+use farsa_evo::{EvoError, Fitness, Snapshot, Strategy, check_strategy};
 use farsa_num::{Digest, sin_cos};
 use proptest::prelude::*;
 

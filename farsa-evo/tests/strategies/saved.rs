@@ -1,9 +1,8 @@
 //! Saving and reading: the same bits go on, and an altered state is refused.
 
-use farsa_evo::{
-    Champion, Coevolution, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, Record,
-    RecordEntry, Recorded, Snapshot, Statistics, Strategy, TruncationGa,
-};
+use farsa_evo::coevolution::Coevolution;
+use farsa_evo::words::{GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
+use farsa_evo::{Champion, Fitness, Record, RecordEntry, RecordKind, Snapshot, Statistics, Strategy};
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -162,7 +161,7 @@ fn a_refused_state_changes_nothing() {
 /// A record as it is saved, free of its checks.
 #[derive(Clone, Serialize)]
 struct ForgedRecord {
-    shape: (Recorded, usize, usize, usize, usize),
+    shape: (RecordKind, usize, usize, usize, usize),
     frames: Vec<u8>,
     keyframes: Vec<(u32, Vec<u8>)>,
 }
@@ -192,7 +191,7 @@ fn a_record_comes_back_and_a_forged_one_is_refused() {
         assert!(forged(frame).is_err(), "{frame:?}");
     }
     let (frames, keyframes) = (vec![3, 3, 1, 0, 2, 0, 0, 1, 2, 3], vec![(1, ga.save())]);
-    let good = ForgedRecord { shape: (Recorded::Order, 1, 4, 3, 2), frames, keyframes };
+    let good = ForgedRecord { shape: (RecordKind::Order, 1, 4, 3, 2), frames, keyframes };
     let read = |change: &dyn Fn(&mut ForgedRecord)| {
         let mut forged = good.clone();
         change(&mut forged);
@@ -207,11 +206,11 @@ fn a_record_comes_back_and_a_forged_one_is_refused() {
     assert!(read(&|record| record.keyframes[0].0 = 3).is_err(), "a state of the future");
     assert!(read(&|record| record.keyframes.push((1, Vec::new()))).is_err(), "two states of a generation");
     for (populations, individuals, genes) in [(0, 4, 3), (3, 4, 3), (1, 0, 3), (1, 4, 0), (1, usize::MAX, usize::MAX)] {
-        assert!(read(&|record| record.shape = (Recorded::Order, populations, individuals, genes, 2)).is_err());
+        assert!(read(&|record| record.shape = (RecordKind::Order, populations, individuals, genes, 2)).is_err());
     }
     let values = |bytes: [u8; 8]| {
         let frames = [&[0][..], &bytes].concat();
-        let forged = ForgedRecord { shape: (Recorded::Values, 1, 1, 3, 2), frames, keyframes: Vec::new() };
+        let forged = ForgedRecord { shape: (RecordKind::Values, 1, 1, 3, 2), frames, keyframes: Vec::new() };
         from_bytes::<Record>(&to_allocvec(&forged).unwrap())
     };
     assert!(values([0xff; 8]).is_err() && values([0; 8]).is_ok(), "a fitness that is NaN");

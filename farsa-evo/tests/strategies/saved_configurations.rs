@@ -2,11 +2,13 @@
 
 use core::fmt::Debug;
 
-use farsa_evo::{
-    ArchiveRule, CosyneConfig, Crossover, CvtCells, EvolutionStrategyConfig, GeneralistConfig, GridCells,
-    MapElitesConfig, NoveltyConfig, Nsga2Config, Permutation, RealGaConfig, RealMutation, Selection, SteadyStateConfig,
-    StepSizes, Survival, WordCode, WordGene, WordMap,
+use farsa_evo::archives::{ArchiveRule, CvtCells, GridCells, MapElitesConfig, NoveltyConfig};
+use farsa_evo::coevolution::{CosyneConfig, GeneralistConfig, Permutation};
+use farsa_evo::pareto::Nsga2Config;
+use farsa_evo::real::{
+    Crossover, EvolutionStrategyConfig, RealGaConfig, RealMutation, Selection, SteadyStateConfig, StepSizes, Survival,
 };
+use farsa_evo::words::{WordCode, WordGene, WordMap};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 

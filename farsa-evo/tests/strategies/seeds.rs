@@ -1,13 +1,20 @@
 //! What every strategy tells of itself: the seed that it was given, and whose best its champion is.
 
-use farsa_evo::{
-    Ars, ArsConfig, CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, Coevolution, Cosyne,
-    CosyneConfig, EvolutionStrategy, EvolutionStrategyConfig, GaConfig, GeneralistCoevolution, GeneralistConfig,
-    GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch, Nsga2, Nsga2Config, OnePlusOne,
-    OnePlusOneConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig, RandomSearch, RealGa, RealGaConfig, RestartSchedule,
-    SeparableCmaEs, SeparableCmaEsConfig, SideBySide, Snes, SnesConfig, SteadyState, SteadyStateConfig, Strategy,
-    TruncationGa, Xnes, XnesConfig,
+use farsa_evo::Strategy;
+use farsa_evo::archives::{GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch};
+use farsa_evo::coevolution::{Coevolution, Cosyne, CosyneConfig, GeneralistCoevolution, GeneralistConfig, Populations};
+use farsa_evo::covariance::{
+    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
+    SeparableCmaEsConfig,
 };
+use farsa_evo::gradient::{
+    Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig, Snes, SnesConfig, Xnes, XnesConfig,
+};
+use farsa_evo::pareto::{Nsga2, Nsga2Config};
+use farsa_evo::real::{
+    EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, SteadyState, SteadyStateConfig,
+};
+use farsa_evo::words::{GaConfig, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
 
 #[test]
 fn the_seed_is_the_one_that_was_given() {
@@ -50,15 +57,15 @@ fn who_keeps_an_archive_or_only_guesses_keeps_its_champion() {
     let novel = NoveltyConfig::new(2);
     let (alone, two) = (TruncationGa::new(GaConfig::new(3), 5).unwrap(), Coevolution::new(&[GaConfig::new(3); 2], 5));
     let told = [
-        TruncationGa::new(GaConfig::new(3), 5).unwrap().keeps_champion(),
-        CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 5).unwrap().keeps_champion(),
-        Nsga2::new(Nsga2Config::new(bounds.clone(), 2), 5).unwrap().keeps_champion(),
-        MapElites::new(MapElitesConfig::new(bounds), cells, 5).unwrap().keeps_champion(),
-        guesses(5).unwrap().keeps_champion(),
-        NoveltySearch::new(novel, alone, 5).unwrap().keeps_champion(),
+        TruncationGa::new(GaConfig::new(3), 5).unwrap().champion_is_best_ever(),
+        CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 5).unwrap().champion_is_best_ever(),
+        Nsga2::new(Nsga2Config::new(bounds.clone(), 2), 5).unwrap().champion_is_best_ever(),
+        MapElites::new(MapElitesConfig::new(bounds), cells, 5).unwrap().champion_is_best_ever(),
+        guesses(5).unwrap().champion_is_best_ever(),
+        NoveltySearch::new(novel, alone, 5).unwrap().champion_is_best_ever(),
         // Where populations may meet, fitness of one generation is not that of another.
-        SideBySide::new(2, 5, guesses).unwrap().keeps_champion(),
-        NoveltySearch::new(novel, two.unwrap(), 5).unwrap().keeps_champion(),
+        Populations::new(2, 5, guesses).unwrap().champion_is_best_ever(),
+        NoveltySearch::new(novel, two.unwrap(), 5).unwrap().champion_is_best_ever(),
     ];
     assert_eq!(told, [false, false, true, true, true, true, false, false]);
 }

@@ -1,6 +1,7 @@
 //! The steady state strategy: beside a transcription of its source, on known functions, and its bits.
 
-use farsa_evo::{EvoError, SteadyState, SteadyStateConfig, Strategy, check_strategy};
+use farsa_evo::real::{SteadyState, SteadyStateConfig};
+use farsa_evo::{EvoError, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -1,6 +1,7 @@
 //! Maps of words: both ways, beside the decoding that exists.
 
-use farsa_evo::{EvoError, GeneRange, WordCode, WordGene, WordMap, decode};
+use farsa_evo::EvoError;
+use farsa_evo::words::{GeneRange, WordCode, WordGene, WordMap, decode};
 use proptest::prelude::*;
 
 fn word(bits: u32, low: f32, high: f32, code: WordCode) -> WordGene {

@@ -1,6 +1,7 @@
 //! Normalised observations in every experiment whose controllers observe something, alone and in lanes.
 
-use farsa_evo::{ObservationStatistics, randomize};
+use farsa_evo::ObservationStatistics;
+use farsa_evo::words::randomize;
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Settings, Value};
 use farsa_num::{Domain, Instructions, Stream};
 

@@ -122,7 +122,7 @@ fn within(value: f64, [first, other]: [f64; 2]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_evo::{GeneRange, decode};
+    use farsa_evo::words::{GeneRange, decode};
     use proptest::prelude::*;
 
     fn genotype(ends: &[[f64; 2]], bits: u32) -> Genotype {

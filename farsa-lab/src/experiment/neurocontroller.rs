@@ -250,7 +250,7 @@ mod tests {
     use super::*;
     use farsa_body::testing::PointWorld;
     use farsa_body::{ActuatorId, JointId, JointPosition, JointSpeed, Muscles, TorqueMotor, World as _};
-    use farsa_evo::{GeneRange, decode};
+    use farsa_evo::words::{GeneRange, decode};
     use farsa_nn::{Leak, LeakyNetwork, LeakyParameter};
     use farsa_view::Recording;
 

@@ -1,6 +1,6 @@
 //! `archive.csv` and its picture: what a strategy keeps beyond a generation, the elites of an archive or a front.
 
-use farsa_evo::{Collection, JudgementShape, Member};
+use farsa_evo::{Collection, Member, ScoreShape};
 
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
@@ -22,7 +22,7 @@ impl CollectionTable {
     /// The table of a strategy that keeps something; none of another.
     pub(crate) fn new(search: &Search, evaluator: &dyn Evaluator) -> Option<Self> {
         search.collection()?;
-        let JudgementShape { objectives, descriptors, .. } = search.judged_by();
+        let ScoreShape { objectives, measures: descriptors, .. } = search.score_shape();
         let behaviour = evaluator.behaviour();
         let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
         let values = behaviour.map(Behaviour::descriptors).unwrap_or_default();
@@ -61,7 +61,7 @@ impl CollectionTable {
             let cell = member.cell.map_or_else(String::new, |cell| cell.to_string());
             let origin = [cell, member.generation.to_string(), member.individual.to_string()];
             // The debug form is the shortest that reads back as the same number.
-            let numbers = member.objectives.iter().chain(member.descriptor).map(|x| format!("{x:?}"));
+            let numbers = member.objectives.iter().chain(member.measures).map(|x| format!("{x:?}"));
             writer.write_record(origin.into_iter().chain(numbers))?;
         }
         writer.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))
@@ -73,7 +73,7 @@ impl CollectionTable {
             self.descriptors.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
         axes.extend(self.objectives.iter().map(|name| (name.as_str(), None)));
         let place = |member: &Member<'_>| {
-            let mut numbers = member.descriptor.iter().chain(member.objectives).copied();
+            let mut numbers = member.measures.iter().chain(member.objectives).copied();
             [numbers.next().unwrap_or(0.0), numbers.next().unwrap_or(0.0)]
         };
         let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);

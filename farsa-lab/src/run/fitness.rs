@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
-use farsa_evo::{EvoError, JudgementShape, Judgements, ObservationStatistics};
+use farsa_evo::{EvoError, ObservationStatistics, ScoreShape, Scores};
 use farsa_num::Digest;
 
 use crate::error::Error;
@@ -36,7 +36,7 @@ pub(crate) struct Generation<'g> {
 
 /// What a generation comes to.
 pub(crate) struct Judged {
-    pub(crate) judgements: Judgements,
+    pub(crate) judgements: Scores,
     pub(crate) failed: Vec<FailedEvaluation>,
     /// What was observed in it, individual after individual and trial after trial, where observations are normalised; those of
     /// individuals that failed are left out.
@@ -74,7 +74,7 @@ impl<'g> Opponents<'g> {
 pub(crate) fn judgements_of_all(
     by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
-    shape: JudgementShape,
+    shape: ScoreShape,
     advance: &(dyn Fn() + Sync),
 ) -> Result<Judged, Unfinished> {
     let trials = by.evaluator().trials();
@@ -102,7 +102,7 @@ pub(crate) fn judgements_of_all(
             }
         }
     }
-    let judgements = Judgements::nan_as_failed(shape, all).map_err(other)?;
+    let judgements = Scores::nan_as_failed(shape, all).map_err(other)?;
     Ok(Judged { judgements, failed, observed })
 }
 
@@ -111,7 +111,7 @@ pub(crate) fn judgements_of_all(
 pub(crate) fn individuals(
     by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
-    shape: JudgementShape,
+    shape: ScoreShape,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
     let count = of.parameters.len();
@@ -147,7 +147,7 @@ fn add_observed(all: &mut ObservationStatistics, trials: &[Outcome]) -> Result<(
 /// opponents are told apart, the objectives behind the fitness are that of the trials against each.
 fn row(
     evaluator: &dyn Evaluator,
-    shape: JudgementShape,
+    shape: ScoreShape,
     told_apart: Option<usize>,
     trials: &[Outcome],
 ) -> Result<Vec<f64>, String> {
@@ -165,7 +165,7 @@ fn row(
             }
             row.push(fitness);
         }
-    } else if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != JudgementShape::FITNESS) {
+    } else if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != ScoreShape::FITNESS) {
         let names: Vec<String> =
             behaviour.objectives().into_iter().chain(behaviour.descriptors().into_iter().map(|one| one.name)).collect();
         let described = behaviour.describe(trials);
@@ -179,7 +179,7 @@ fn row(
         // A strategy may want fewer objectives than there are, and wants all descriptor values or none.
         let objectives = behaviour.objectives().len();
         row.extend(described.iter().take(objectives.min(shape.objectives.saturating_sub(1))));
-        row.extend(described.iter().skip(objectives).take(shape.descriptors));
+        row.extend(described.iter().skip(objectives).take(shape.measures));
     }
     let (expected, found) = (shape.width(), row.len());
     if expected == found { Ok(row) } else { Err(format!("{found} numbers where the strategy wants {expected}")) }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use farsa_evo::{JudgementShape, ObservationStatistics};
+use farsa_evo::{ObservationStatistics, ScoreShape};
 use farsa_num::crc32;
 
 use crate::error::Error;
@@ -175,19 +175,19 @@ impl<'e> Plan<'e> {
                 found.0, found.1
             )));
         }
-        let wanted = strategy.judged_by();
+        let wanted = strategy.score_shape();
         if let Some(opponents) = strategy.opponents() {
             let (name, experiment) = (self.definition().name(), self.experiment.name());
-            if wanted != JudgementShape::new(1 + opponents, 0) || !(1..=trials).contains(&opponents) {
+            if wanted != ScoreShape::new(1 + opponents, 0) || !(1..=trials).contains(&opponents) {
                 return Err(Error::Other(format!(
                     "the strategy `{name}` wants {wanted} of {opponents} opponents where {experiment} has {trials} trials"
                 )));
             }
             return Ok(strategy);
         }
-        if wanted.objectives > objectives || ![0, descriptors.len()].contains(&wanted.descriptors) {
+        if wanted.objectives > objectives || ![0, descriptors.len()].contains(&wanted.measures) {
             let (name, experiment) = (self.definition().name(), self.experiment.name());
-            let found = JudgementShape::new(objectives, descriptors.len());
+            let found = ScoreShape::new(objectives, descriptors.len());
             return Err(Error::Other(format!("the strategy `{name}` wants {wanted} where {experiment} has {found}")));
         }
         Ok(strategy)

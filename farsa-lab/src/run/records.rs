@@ -40,7 +40,7 @@ pub(crate) struct RecordHead {
 }
 
 /// `champion.bin`: the best individual of the last generation, equals by index, in each population; or of all generations, the first
-/// of equals, by a strategy that [keeps it](farsa_evo::Strategy::keeps_champion).
+/// of equals, by a strategy that [keeps it](farsa_evo::Strategy::champion_is_best_ever).
 #[derive(Debug)]
 pub(crate) struct Champions {
     pub(crate) identity: Identity,

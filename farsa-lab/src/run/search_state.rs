@@ -1,6 +1,6 @@
 //! A search in progress: what proposes individuals, what it was told, and whom they meet. Every rank of a run holds the same.
 
-use farsa_evo::{EvoError, Fitness, Judgements, ObservationStatistics, Statistics};
+use farsa_evo::{EvoError, Fitness, ObservationStatistics, Scores, Statistics};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
@@ -57,7 +57,7 @@ impl SearchState {
         &mut self,
         by: &mut dyn EvaluationBackend,
         advance: &(dyn Fn() + Sync),
-        tell: impl FnOnce(&mut Search, &Judgements) -> Result<(), EvoError>,
+        tell: impl FnOnce(&mut Search, &Scores) -> Result<(), EvoError>,
     ) -> Result<GenerationResult, Unfinished> {
         let generation = self.search.generation();
         let individuals = self.search.individuals();
@@ -75,7 +75,7 @@ impl SearchState {
         let opponents = opponents.ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1, told_apart };
-        let shape = self.search.judged_by();
+        let shape = self.search.score_shape();
         let normalisation = self.observed.clone();
         let of = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
         let Judged { judgements, failed, observed } = judgements_of_all(by, of, shape, advance)?;

@@ -1,6 +1,7 @@
 //! What the command has to know of a strategy.
 
-use farsa_evo::{EvoError, SideBySide, Snapshot, Strategy};
+use farsa_evo::coevolution::Populations;
+use farsa_evo::{EvoError, Snapshot, Strategy};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
@@ -18,7 +19,7 @@ use crate::strategy::settings::NORMALISE;
 /// ```
 /// use std::process::ExitCode;
 ///
-/// use farsa_evo::RandomSearch;
+/// use farsa_evo::words::RandomSearch;
 /// use farsa_lab::{Error, Experiment, Laboratory, Search, Setting, StrategyDefinition, StrategyStart};
 ///
 /// /// A generation of guesses after the other.
@@ -134,7 +135,7 @@ impl StrategyStart<'_> {
         Ok(if self.populations == 1 {
             Search::from_words(search(self.seed).map_err(refused)?)
         } else {
-            Search::from_words(SideBySide::new(self.populations, self.seed, search).map_err(refused)?)
+            Search::from_words(Populations::new(self.populations, self.seed, search).map_err(refused)?)
         })
     }
 
@@ -149,7 +150,7 @@ impl StrategyStart<'_> {
         Ok(if self.populations == 1 {
             Search::from_reals(search(self.seed).map_err(refused)?)
         } else {
-            Search::from_reals(SideBySide::new(self.populations, self.seed, search).map_err(refused)?)
+            Search::from_reals(Populations::new(self.populations, self.seed, search).map_err(refused)?)
         })
     }
 }

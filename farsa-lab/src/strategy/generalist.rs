@@ -1,6 +1,7 @@
 //! Competitive co-evolution with generalist selection.
 
-use farsa_evo::{EvoError, GeneralistCoevolution, GeneralistConfig};
+use farsa_evo::EvoError;
+use farsa_evo::coevolution::{GeneralistCoevolution, GeneralistConfig};
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
@@ -14,7 +15,7 @@ const NEWCOMERS: &str = "strategy.newcomers";
 const OPPONENTS: &str = "strategy.opponents";
 const ITERATIONS: &str = "strategy.iterations";
 
-/// Generalist selection, [`farsa_evo::GeneralistCoevolution`], of experiments of two populations.
+/// Generalist selection, [`farsa_evo::coevolution::GeneralistCoevolution`], of experiments of two populations.
 pub(super) static GENERALIST: SimpleStrategy = SimpleStrategy {
     name: "generalist",
     summary: "What newcomers learned against some opponents stays if it is better against all; wants two populations [Simione2020].",

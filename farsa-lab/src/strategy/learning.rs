@@ -1,6 +1,6 @@
 //! Learning as a strategy: one individual, which is trained by an iteration after each generation.
 
-use farsa_evo::{EvoError, Fitness, Population, Recorded, Snapshot, Strategy};
+use farsa_evo::{EvoError, Fitness, Population, RecordKind, Snapshot, Strategy};
 
 use crate::error::Error;
 use crate::experiment::evaluator::{Evaluator, Iteration};
@@ -119,8 +119,8 @@ impl Strategy for Trainee {
         Ok(())
     }
 
-    fn recorded(&self) -> Recorded {
-        Recorded::Genomes
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Genomes
     }
 
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {

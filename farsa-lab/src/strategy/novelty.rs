@@ -1,6 +1,7 @@
 //! Novelty search over the truncation algorithm.
 
-use farsa_evo::{ArchiveRule, NoveltyConfig, NoveltySearch, TruncationGa};
+use farsa_evo::archives::{ArchiveRule, NoveltyConfig, NoveltySearch};
+use farsa_evo::words::TruncationGa;
 
 use crate::experiment::settings::Setting;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition as _};
@@ -10,7 +11,7 @@ use crate::strategy::truncation::{Truncation, config};
 const NEIGHBOURS: &str = "strategy.neighbours";
 const RATE: &str = "strategy.archive_rate";
 
-/// Novelty search, [`farsa_evo::NoveltySearch`].
+/// Novelty search, [`farsa_evo::archives::NoveltySearch`].
 pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
     name: "novelty-search",
     summary: "The truncation algorithm for new behaviours in the place of fitness; wants a behaviour descriptor [Lehman2011].",

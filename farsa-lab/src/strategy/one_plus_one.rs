@@ -1,6 +1,7 @@
 //! One parent and one mutant.
 
-use farsa_evo::{EvoError, OnePlusOneConfig};
+use farsa_evo::EvoError;
+use farsa_evo::words::OnePlusOneConfig;
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
@@ -12,7 +13,7 @@ const FIRST_RATE: &str = "evolution.first_rate";
 const RATE_STEP: &str = "evolution.rate_step";
 const LAST_RATE: &str = "evolution.last_rate";
 
-/// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::OnePlusOne`], with the defaults of
+/// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::words::OnePlusOne`], with the defaults of
 /// the original's discrimination experiment.
 ///
 /// The log of such a run is about the mean fitness of the parent over all its evaluations and the fitness of the mutant: the
@@ -52,7 +53,7 @@ impl StrategyDefinition for OnePlusOne {
             return Err(Error::Other(format!("one parent and one mutant of {} populations", start.populations)));
         }
         let config = config(start.settings, start.genes, start.gene_bits)?;
-        let search = farsa_evo::OnePlusOne::new(config, start.seed);
+        let search = farsa_evo::words::OnePlusOne::new(config, start.seed);
         Ok(Search::from_words(search.map_err(|error| Error::Other(error.to_string()))?))
     }
 }

@@ -165,7 +165,9 @@ impl Hall {
 mod tests {
     use super::*;
     use crate::experiment::parameter::Parameter;
-    use farsa_evo::{Coevolution, Fitness, GaConfig, Record, Strategy};
+    use farsa_evo::coevolution::Coevolution;
+    use farsa_evo::words::GaConfig;
+    use farsa_evo::{Fitness, Record, Strategy};
 
     #[test]
     fn earlier_champions_come_first_then_peers() {

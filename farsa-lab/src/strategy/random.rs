@@ -1,12 +1,12 @@
 //! Search without selection, as the null model.
 
-use farsa_evo::RandomSearch;
+use farsa_evo::words::RandomSearch;
 
 use crate::experiment::settings::Setting;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 use crate::strategy::simple::SimpleStrategy;
 
-/// Genomes that are drawn anew in every generation, [`farsa_evo::RandomSearch`].
+/// Genomes that are drawn anew in every generation, [`farsa_evo::words::RandomSearch`].
 pub(super) static RANDOM: SimpleStrategy = SimpleStrategy {
     name: "random-search",
     summary: "Every genome is drawn anew: what other strategies find beyond this is owed to selection.",

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use farsa_evo::{
-    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Meetings, Population, Record, RecordWriter,
+    Collection, EvoError, Fitness, Genealogy, Opponents, Population, Record, RecordWriter, ScoreShape, Scores,
     Snapshot, Strategy,
 };
 
@@ -107,13 +107,13 @@ impl Search {
     }
 
     /// How many objectives and descriptor values it is told of each individual.
-    pub fn judged_by(&self) -> JudgementShape {
-        each!(self, strategy => strategy.judged_by())
+    pub fn score_shape(&self) -> ScoreShape {
+        each!(self, strategy => strategy.score_shape())
     }
 
     /// How many opponents each individual meets by the strategy's own choice, where it makes one.
     pub(crate) fn opponents(&self) -> Option<usize> {
-        each!(self, strategy => strategy.meetings().map(Meetings::count))
+        each!(self, strategy => strategy.opponents().map(Opponents::count))
     }
 
     /// The genomes that an individual meets in a trial by the strategy's own choice, one of each other population.
@@ -121,13 +121,13 @@ impl Search {
         let number = |count: usize| trial as usize % count.max(1);
         Some(match self {
             Self::Words(strategy) => {
-                let meetings = strategy.meetings()?;
-                let met = meetings.met(individual, number(meetings.count()));
+                let meetings = strategy.opponents()?;
+                let met = meetings.opponents_of(individual, number(meetings.count()));
                 met.into_iter().map(|genes| Genome::Words(genes.to_vec())).collect()
             }
             Self::Reals(strategy) => {
-                let meetings = strategy.meetings()?;
-                let met = meetings.met(individual, number(meetings.count()));
+                let meetings = strategy.opponents()?;
+                let met = meetings.opponents_of(individual, number(meetings.count()));
                 met.into_iter().map(|genes| Genome::Reals(genes.to_vec())).collect()
             }
         })
@@ -140,22 +140,22 @@ impl Search {
 
     /// Whether its champion is the best of all generations instead of the last one's.
     pub(crate) fn keeps_champion(&self) -> bool {
-        each!(self, strategy => strategy.keeps_champion())
+        each!(self, strategy => strategy.champion_is_best_ever())
     }
 
     /// Tells the judgements of the current generation and records them.
-    pub(crate) fn tell(&mut self, record: &mut RecordWriter, judgements: &Judgements) -> Result<(), EvoError> {
+    pub(crate) fn tell(&mut self, record: &mut RecordWriter, judgements: &Scores) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {
-            JudgementShape::FITNESS => record.tell(strategy.as_mut(), &judgements.fitness()),
-            _ => record.tell_judgements(strategy.as_mut(), judgements),
+            ScoreShape::FITNESS => record.tell(strategy.as_mut(), &judgements.fitness()),
+            _ => record.tell_scores(strategy.as_mut(), judgements),
         })
     }
 
     /// The same without a record.
-    pub(crate) fn tell_unrecorded(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+    pub(crate) fn tell_unrecorded(&mut self, judgements: &Scores) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {
-            JudgementShape::FITNESS => strategy.tell(&judgements.fitness()),
-            _ => strategy.tell_judgements(judgements),
+            ScoreShape::FITNESS => strategy.tell(&judgements.fitness()),
+            _ => strategy.tell_scores(judgements),
         })
     }
 

@@ -1,6 +1,6 @@
 //! The settings that strategies share, and the table of an experiment with those of its strategy.
 
-use farsa_evo::Mutation;
+use farsa_evo::words::Mutation;
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};

@@ -8,7 +8,7 @@ use crate::strategy::search::Search;
 /// A [`StrategyDefinition`] that is all said by its name, a line, a table and a function.
 ///
 /// ```
-/// use farsa_evo::{Snes, SnesConfig};
+/// use farsa_evo::gradient::{Snes, SnesConfig};
 /// use farsa_lab::{Setting, SimpleStrategy};
 ///
 /// static NARROW: SimpleStrategy = SimpleStrategy {

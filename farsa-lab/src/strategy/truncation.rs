@@ -1,6 +1,8 @@
 //! The truncation algorithm, in one population or several.
 
-use farsa_evo::{Coevolution, EvoError, GaConfig, TruncationGa};
+use farsa_evo::EvoError;
+use farsa_evo::coevolution::Coevolution;
+use farsa_evo::words::{GaConfig, TruncationGa};
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
@@ -11,8 +13,8 @@ use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 const PARENTS: &str = "evolution.parents";
 pub(super) const RATE: &str = "evolution.mutation_rate";
 
-/// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of them,
-/// [`farsa_evo::Coevolution`]. Defaults of \[Ferrauto2010\].
+/// The best of a generation make mutated copies, [`farsa_evo::words::TruncationGa`]; with several populations within each of them,
+/// [`farsa_evo::coevolution::Coevolution`]. Defaults of \[Ferrauto2010\].
 #[derive(Debug, Clone, Copy)]
 pub struct Truncation;
 

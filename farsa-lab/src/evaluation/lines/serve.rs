@@ -3,7 +3,7 @@
 use std::io::{BufRead, Write};
 use std::sync::atomic::AtomicBool;
 
-use farsa_evo::JudgementShape;
+use farsa_evo::ScoreShape;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -82,7 +82,7 @@ fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'
     let behaviour = pool.evaluator().behaviour();
     let (objectives, descriptors) =
         behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
-    let shape = JudgementShape::new(1 + objectives, descriptors);
+    let shape = ScoreShape::new(1 + objectives, descriptors);
     let trials = pool.evaluator().trials();
     let mut all: Vec<(&str, Vec<Judged>)> = Vec::new();
     for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {

@@ -1,6 +1,6 @@
 //! Cooperative co-evolution of weights.
 
-use farsa_evo::{Cosyne, CosyneConfig, Permutation};
+use farsa_evo::coevolution::{Cosyne, CosyneConfig, Permutation};
 
 use super::{SIGMA, count_or, sizes};
 use crate::experiment::settings::Setting;
@@ -12,7 +12,7 @@ const OFFSPRING: &str = "strategy.offspring";
 const MUTATION_RATE: &str = "strategy.mutation_rate";
 const PERMUTATION: &str = "strategy.permutation";
 
-/// Cooperative Synapse Neuroevolution, [`farsa_evo::Cosyne`].
+/// Cooperative Synapse Neuroevolution, [`farsa_evo::coevolution::Cosyne`].
 pub(in crate::strategy) static COSYNE: SimpleStrategy = SimpleStrategy {
     name: "cosyne",
     summary: "A subpopulation for each parameter, which is tried in other individuals in every generation [Gomez2008].",

@@ -1,6 +1,6 @@
 //! Covariance matrix adaptation, full and separable.
 
-use farsa_evo::{
+use farsa_evo::covariance::{
     CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
     SeparableCmaEsConfig,
 };
@@ -23,7 +23,7 @@ const SHAPE: DiagnosticsChart = DiagnosticsChart {
     curves: &[("step size", "step size"), ("axis ratio", "longest axis by shortest")],
 };
 
-/// Covariance matrix adaptation, [`farsa_evo::CmaEs`], with or without restarts, [`farsa_evo::CmaEsRestarts`].
+/// Covariance matrix adaptation, [`farsa_evo::covariance::CmaEs`], with or without restarts, [`farsa_evo::covariance::CmaEsRestarts`].
 pub(in crate::strategy) static CMA_ES: SimpleStrategy = SimpleStrategy {
     name: "cma-es",
     summary: "Covariance matrix adaptation, a normal distribution of every scale and correlation [Hansen2016].",
@@ -58,7 +58,7 @@ fn config(settings: &Settings, genes: usize) -> Result<CmaEsConfig, Error> {
     Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, ..plain })
 }
 
-/// The same by a triangular factor in the place of axes, [`farsa_evo::CholeskyCmaEs`].
+/// The same by a triangular factor in the place of axes, [`farsa_evo::covariance::CholeskyCmaEs`].
 pub(in crate::strategy) static CHOLESKY_CMA_ES: SimpleStrategy = SimpleStrategy {
     name: "cholesky-cma-es",
     summary: "Covariance matrix adaptation by a Cholesky factor, for some hundreds of genes [Krause2016].",
@@ -84,7 +84,7 @@ pub(in crate::strategy) static CHOLESKY_CMA_ES: SimpleStrategy = SimpleStrategy 
     }),
 };
 
-/// The same with a scale for each gene and no correlations, [`farsa_evo::SeparableCmaEs`].
+/// The same with a scale for each gene and no correlations, [`farsa_evo::covariance::SeparableCmaEs`].
 pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy {
     name: "separable-cma-es",
     summary: "Covariance matrix adaptation without correlations, for many genes [Ros2008].",

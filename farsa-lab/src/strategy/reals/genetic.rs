@@ -1,6 +1,6 @@
 //! Genetic algorithms and evolution strategies.
 
-use farsa_evo::{
+use farsa_evo::real::{
     Crossover, EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, RealMutation, Recombination,
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
@@ -38,7 +38,7 @@ const STEP_SIZE: Diagnostics = Diagnostics {
     charts: &[DiagnosticsChart { title: "step size", axis: "mean", curves: &[("step size", "of the parents")] }],
 };
 
-/// A generational genetic algorithm, [`farsa_evo::RealGa`].
+/// A generational genetic algorithm, [`farsa_evo::real::RealGa`].
 pub(in crate::strategy) static REAL_GA: SimpleStrategy = SimpleStrategy {
     name: "real-ga",
     summary: "A generational genetic algorithm: selection, crossover, mutation, elites [Goldberg1991] [Deb1995].",
@@ -96,7 +96,7 @@ fn mutation(settings: &Settings, genes: usize) -> Result<RealMutation, Error> {
     })
 }
 
-/// The steady state strategy of evorobotpy, [`farsa_evo::SteadyState`].
+/// The steady state strategy of evorobotpy, [`farsa_evo::real::SteadyState`].
 pub(in crate::strategy) static STEADY_STATE: SimpleStrategy = SimpleStrategy {
     name: "sss",
     summary: "The steady state strategy of evorobotpy: the better half stays, each of it with one mutant [Nolfi2021].",
@@ -125,7 +125,7 @@ pub(in crate::strategy) static STEADY_STATE: SimpleStrategy = SimpleStrategy {
     diagnostics: None,
 };
 
-/// An evolution strategy with self-adaptation, [`farsa_evo::EvolutionStrategy`].
+/// An evolution strategy with self-adaptation, [`farsa_evo::real::EvolutionStrategy`].
 pub(in crate::strategy) static EVOLUTION_STRATEGY: SimpleStrategy = SimpleStrategy {
     name: "evolution-strategy",
     summary: "(mu, lambda) and (mu + lambda) with recombination and self-adapted step sizes [Beyer2002].",

@@ -1,6 +1,6 @@
 //! Strategies that estimate a gradient.
 
-use farsa_evo::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness};
+use farsa_evo::gradient::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness};
 
 use super::{SIGMA, STEPS, count_or, number_or, pairs, population_of_pairs, sigma, sizes};
 use crate::experiment::settings::Setting;
@@ -23,7 +23,7 @@ fn normalise() -> Setting {
     )
 }
 
-/// The evolution strategy of `OpenAI`, [`farsa_evo::OpenAiEs`].
+/// The evolution strategy of `OpenAI`, [`farsa_evo::gradient::OpenAiEs`].
 pub(in crate::strategy) static OPEN_AI_ES: SimpleStrategy = SimpleStrategy {
     name: "open-ai-es",
     summary: "A gradient estimated from mirrored noise of one size, followed by Adam [Salimans2017].",
@@ -54,7 +54,7 @@ pub(in crate::strategy) static OPEN_AI_ES: SimpleStrategy = SimpleStrategy {
     diagnostics: Some(STEPS),
 };
 
-/// Policy gradients with parameter-based exploration, [`farsa_evo::Pgpe`].
+/// Policy gradients with parameter-based exploration, [`farsa_evo::gradient::Pgpe`].
 pub(in crate::strategy) static PGPE: SimpleStrategy = SimpleStrategy {
     name: "pgpe",
     summary: "Policy gradients with parameter-based exploration, followed by ClipUp [Toklu2020].",
@@ -92,7 +92,7 @@ pub(in crate::strategy) static PGPE: SimpleStrategy = SimpleStrategy {
     diagnostics: None,
 };
 
-/// Augmented random search, [`farsa_evo::Ars`].
+/// Augmented random search, [`farsa_evo::gradient::Ars`].
 pub(in crate::strategy) static ARS: SimpleStrategy = SimpleStrategy {
     name: "ars",
     summary: "Augmented random search along the best of mirrored directions [Mania2018].",

@@ -1,6 +1,6 @@
 //! Archives of individuals that behave differently.
 
-use farsa_evo::{Cells, CvtCells, Emitter, GridCells, MapElites, MapElitesConfig};
+use farsa_evo::archives::{Cells, CvtCells, Emitter, GridCells, MapElites, MapElitesConfig};
 
 use super::{SIGMA, bounds, sizes};
 use crate::error::Error;
@@ -39,7 +39,7 @@ const ARCHIVE: Diagnostics = Diagnostics {
     ],
 };
 
-/// MAP-Elites with the iso-line or Gaussian emitter, [`farsa_evo::MapElites`].
+/// MAP-Elites with the iso-line or Gaussian emitter, [`farsa_evo::archives::MapElites`].
 pub(in crate::strategy) static MAP_ELITES: SimpleStrategy = SimpleStrategy {
     name: "map-elites",
     summary: "The best individual of each cell of behaviours; wants a behaviour descriptor [Mouret2015] [Mouret2018].",

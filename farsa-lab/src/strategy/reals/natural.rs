@@ -1,6 +1,6 @@
 //! Natural evolution strategies.
 
-use farsa_evo::{Snes, SnesConfig, Xnes, XnesConfig};
+use farsa_evo::gradient::{Snes, SnesConfig, Xnes, XnesConfig};
 
 use super::{SIGMA, count_or, number_or, population_of_genes, sigma, sizes};
 use crate::experiment::settings::Setting;
@@ -22,7 +22,7 @@ fn mean_rate() -> Setting {
     Setting::number(MEAN_RATE, 1.0, 0.0..=10.0).given().doc("Learning rate of the mean.")
 }
 
-/// Exponential natural evolution, [`farsa_evo::Xnes`].
+/// Exponential natural evolution, [`farsa_evo::gradient::Xnes`].
 pub(in crate::strategy) static XNES: SimpleStrategy = SimpleStrategy {
     name: "xnes",
     summary: "Exponential natural evolution, of every scale and correlation of up to 1024 genes [Wierstra2014].",
@@ -46,7 +46,7 @@ pub(in crate::strategy) static XNES: SimpleStrategy = SimpleStrategy {
     diagnostics: None,
 };
 
-/// Separable natural evolution, [`farsa_evo::Snes`].
+/// Separable natural evolution, [`farsa_evo::gradient::Snes`].
 pub(in crate::strategy) static SNES: SimpleStrategy = SimpleStrategy {
     name: "snes",
     summary: "Natural evolution without correlations, for many genes [Wierstra2014].",

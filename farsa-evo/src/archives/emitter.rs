@@ -1,0 +1,79 @@
+//! Where new individuals come from.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::real::bounds::check_setting;
+
+/// An emitter of a [`MapElites`](crate::archives::MapElites): how it makes its part of each generation.
+///
+/// The first two choose elites uniformly and reflect what leaves the bounds; while the archive is empty, their individuals are
+/// uniform within the bounds.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Emitter {
+    /// An elite plus normal numbers: the random variation of \[Mouret2015\], which says nothing of its kind.
+    Gaussian {
+        /// Individuals of a generation, at least 1.
+        batch: usize,
+        /// The standard deviation as a share of each gene's range, 0 to 1.
+        sigma: f64,
+    },
+    /// An elite, plus normal numbers, plus a normal number times the difference to another elite: the directional variation
+    /// of \[Mouret2018\], where the deviations are 0.01 and 0.2 and the range of genes is 1.
+    IsoLine {
+        /// Individuals of a generation, at least 1.
+        batch: usize,
+        /// The standard deviation as a share of each gene's range `sigma_1`, 0 to 1.
+        iso_sigma: f64,
+        /// The standard deviation along the line between the elites `sigma_2`, 0 to 10.
+        line_sigma: f64,
+    },
+    /// The improvement emitter of \[Fontaine2020\]: CMA-ES whose parents are all that the archive took, the first of
+    /// their cells before those that are better than an elite, by objective and by the difference of objectives. When the
+    /// archive takes none it starts again from an elite. Deviations: individuals out of bounds are drawn again up to a
+    /// hundred times and then put at the bounds (the source has none); it also starts again where the distribution has
+    /// collapsed.
+    Improvement {
+        /// Individuals of a generation, at least 2.
+        batch: usize,
+        /// The first mean \[genes\], within the bounds.
+        mean: Vec<f64>,
+        /// The step size at every start, 1e-100 to 1e100, in the unit of the genes.
+        sigma: f64,
+    },
+}
+
+impl Emitter {
+    /// Individuals of a generation.
+    pub fn batch(&self) -> usize {
+        let (Self::Gaussian { batch, .. } | Self::IsoLine { batch, .. } | Self::Improvement { batch, .. }) = self;
+        *batch
+    }
+
+    pub(super) fn check(&self, bounds: &[[f64; 2]]) -> Result<(), EvoError> {
+        let batch = self.batch();
+        check_setting(batch > 0, "the batch of an emitter", batch as f64, "1 or more, 2 or more for improvement")?;
+        match *self {
+            Self::Gaussian { sigma, .. } => {
+                check_setting((0.0..=1.0).contains(&sigma), "sigma of the Gaussian emitter", sigma, "0 to 1")
+            }
+            Self::IsoLine { iso_sigma, line_sigma, .. } => {
+                let within = (0.0..=1.0).contains(&iso_sigma);
+                check_setting(within, "iso_sigma of the iso-line emitter", iso_sigma, "0 to 1")?;
+                let within = (0.0..=10.0).contains(&line_sigma);
+                check_setting(within, "line_sigma of the iso-line emitter", line_sigma, "0 to 10")
+            }
+            Self::Improvement { ref mean, sigma, .. } => {
+                check_setting(batch > 1, "the batch of an emitter", batch as f64, "2 or more for improvement")?;
+                let (found, wanted) = (mean.len(), bounds.len());
+                check_setting(found == wanted, "the number of genes of a mean", found as f64, "one for each range")?;
+                for (&x, &[low, high]) in mean.iter().zip(bounds) {
+                    check_setting((low..=high).contains(&x), "the mean of an emitter", x, "within the bounds")?;
+                }
+                let within = (1e-100..=1e100).contains(&sigma);
+                check_setting(within, "sigma of the improvement emitter", sigma, "1e-100 to 1e100")
+            }
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Novelty in the place of fitness.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Stream};
+
+use crate::archives::behaviors::novelty;
+use crate::archives::novelty_config::{ArchiveRule, NoveltyConfig};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::population::Population;
+use crate::real::bounds::check_setting;
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_scored};
+
+/// The limits of a threshold.
+const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
+
+/// Novelty search: a strategy of any kind is told how new the behaviour of each individual is, in the place of its fitness.
+///
+/// The novelty of a behaviour is the mean distance of its measures to the k nearest among the others of the generation and
+/// an archive of earlier ones. It is judged by the fitness, by which alone individuals are logged and champions named, and
+/// the measures. A failed evaluation has no behaviour: the strategy is told that it failed.
+///
+/// After the generation was judged, behaviours enter the archive by index. Where they do so by chance, individual `i` of
+/// generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). The archive grows without an end.
+///
+/// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: any strategy, where the source has NEAT; an archive
+/// by chance, which the source has not; all of a generation are compared with the archive before any of them enters it.
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::archives::{NoveltyConfig, NoveltySearch};
+/// use farsa_evo::words::{GaConfig, TruncationGa};
+///
+/// let inner = TruncationGa::new(GaConfig { population: 20, parents: 5, ..GaConfig::new(2) }, 1)?;
+/// let mut search = NoveltySearch::new(NoveltyConfig::new(2), inner, 1)?;
+/// // Fitness is not what it searches for, but what is reported.
+/// let champion = search.evolve(10, |genes, row| {
+///     let [x, y] = [0, 1].map(|i| f64::from(genes[i]) / 65_535.0);
+///     row.copy_from_slice(&[x + y, x, y]);
+/// })?;
+/// assert!(champion.fitness.get() > 1.0 && search.novelty().len() == 20);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoveltySearch<S> {
+    config: NoveltyConfig,
+    seed: u64,
+    inner: S,
+    /// What each measure is divided by before distances are taken \[d\].
+    units: Vec<f64>,
+    /// The archive [behaviours x d].
+    archive: Vec<f64>,
+    /// The threshold of the archive, of effect only where it has one.
+    threshold: f64,
+    /// Generations since the latest addition, or since the threshold was lowered.
+    idle: u32,
+    /// The novelty of the generation that was told last.
+    novelty: Vec<Fitness>,
+}
+
+impl<S> NoveltySearch<S> {
+    /// A search that drives a strategy, with an empty archive.
+    ///
+    /// # Errors
+    /// Those of [`NoveltyConfig::validate`]; [`EvoError::AlreadyTold`] and [`EvoError::ScoreShape`] for a strategy that was told
+    /// something, or that wants more than fitness.
+    pub fn new<G: Gene>(config: NoveltyConfig, inner: S, seed: u64) -> Result<Self, EvoError>
+    where
+        S: Strategy<G> + Snapshot,
+    {
+        config.validate()?;
+        if inner.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: inner.generation() });
+        }
+        ScoreShape::FITNESS.check(inner.score_shape())?;
+        let threshold = match config.archive {
+            ArchiveRule::Threshold { first, .. } => first,
+            ArchiveRule::Random { .. } => THRESHOLDS[0],
+        };
+        let units = vec![1.0; config.measures];
+        Ok(Self { config, seed, inner, units, archive: Vec::new(), threshold, idle: 0, novelty: Vec::new() })
+    }
+
+    /// The same where each measure is divided by a unit \[d\], such as its range, before distances are taken.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for another number of units, and for one that is not from 1e-100 to 1e100; [`EvoError::AlreadyTold`].
+    pub fn with_units<G: Gene>(self, units: &[f64]) -> Result<Self, EvoError>
+    where
+        S: Strategy<G>,
+    {
+        if self.inner.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: self.inner.generation() });
+        }
+        let found = units.len();
+        check_setting(found == self.units.len(), "the number of units", found as f64, "one for each descriptor value")?;
+        for &unit in units {
+            check_setting((1e-100..=1e100).contains(&unit), "the unit of a descriptor value", unit, "1e-100 to 1e100")?;
+        }
+        Ok(Self { units: units.to_vec(), ..self })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &NoveltyConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The strategy that is driven.
+    pub fn inner(&self) -> &S {
+        &self.inner
+    }
+
+    /// The archive [behaviours x d], in the units of each value.
+    pub fn archive(&self) -> &[f64] {
+        &self.archive
+    }
+
+    /// The threshold of novelty of the archive, in the unit of the measures, if it has one.
+    pub fn threshold(&self) -> Option<f64> {
+        matches!(self.config.archive, ArchiveRule::Threshold { .. }).then_some(self.threshold)
+    }
+
+    /// The novelty \[individuals\] of the generation that was told last, in the unit of the measures; empty before, and after a
+    /// state was restored.
+    pub fn novelty(&self) -> &[Fitness] {
+        &self.novelty
+    }
+
+    /// Adds behaviours of a generation to the archive.
+    fn remember(&mut self, rows: &[Option<&[f64]>], novelty: &[Option<f64>], generation: u32) {
+        let before = self.archive.len();
+        for (individual, (row, novelty)) in rows.iter().zip(novelty).enumerate() {
+            let (Some(row), Some(novelty)) = (row, novelty) else { continue };
+            let enters = match self.config.archive {
+                ArchiveRule::Random { rate } => {
+                    let mut stream = Stream::new(self.seed, Domain::General, 1, individual as u32, generation);
+                    stream.uniform_f64() < rate
+                }
+                ArchiveRule::Threshold { .. } => *novelty > self.threshold,
+            };
+            if enters {
+                self.archive.extend_from_slice(row);
+            }
+        }
+        if let ArchiveRule::Threshold { most, patience, .. } = self.config.archive {
+            let added = (self.archive.len() - before) / self.config.measures;
+            self.idle = if added == 0 { self.idle.saturating_add(1) } else { 0 };
+            if added > most {
+                self.threshold = (1.2 * self.threshold).min(THRESHOLDS[1]);
+            } else if self.idle >= patience {
+                (self.threshold, self.idle) = ((0.95 * self.threshold).max(THRESHOLDS[0]), 0);
+            }
+        }
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
+    fn generation(&self) -> u32 {
+        self.inner.generation()
+    }
+
+    fn ask(&self) -> &Population<G> {
+        self.inner.ask()
+    }
+
+    fn score_shape(&self) -> ScoreShape {
+        ScoreShape::new(1, self.config.measures)
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.tell_scores(&Scores::from_fitness(fitness))
+    }
+
+    fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
+        let (count, shape) = (self.inner.ask().len(), ScoreShape::new(1, self.config.measures));
+        let generation = self.inner.generation();
+        next_scored(generation, count, shape, scores)?;
+        let in_units = |measures: &[f64]| measures.iter().zip(&self.units).map(|(x, unit)| x / unit).collect();
+        let row = |individual| (!scores.is_failed(individual)).then(|| in_units(scores.measures(individual)));
+        let scaled: Vec<Option<Vec<f64>>> = (0..count).map(row).collect();
+        let rows: Vec<Option<&[f64]>> = scaled.iter().map(Option::as_deref).collect();
+        let found = novelty(&rows, &self.archive, self.config.measures, self.config.neighbours);
+        let told: Vec<Fitness> =
+            found.iter().map(|novelty| novelty.map_or(Fitness::WORST, Fitness::nan_as_failed)).collect();
+        self.inner.tell(&told)?;
+        self.novelty = told;
+        self.remember(&rows, &found, generation);
+        Ok(())
+    }
+
+    fn populations(&self) -> usize {
+        self.inner.populations()
+    }
+
+    fn record_kind(&self) -> RecordKind {
+        match self.inner.record_kind() {
+            RecordKind::Genomes => RecordKind::Genomes,
+            _ => RecordKind::Values,
+        }
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        self.inner.genealogy()
+    }
+
+    /// Of one population: the fitness of a generation is nothing that the search improves.
+    fn champion_is_best_ever(&self) -> bool {
+        self.populations() == 1
+    }
+
+    /// The behaviours in the archive, the largest novelty of the generation that was told last, and what the strategy that is
+    /// driven says.
+    fn diagnostics(&self) -> Vec<f64> {
+        let largest = self.novelty.iter().max().map_or(0.0, |novelty| novelty.get());
+        let mut all = vec![(self.archive.len() / self.config.measures) as f64, largest];
+        all.extend(self.inner.diagnostics());
+        all
+    }
+}
+
+/// The strategy's state, with its length in front, then the threshold and the archive, with the number of its behaviours.
+impl<S: Snapshot> Snapshot for NoveltySearch<S> {
+    fn snapshot_interval(&self) -> u32 {
+        self.inner.snapshot_interval()
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let inner = self.inner.save();
+        let mut state = Vec::with_capacity(28 + inner.len() + 8 * self.archive.len());
+        state.extend((inner.len() as u64).to_le_bytes());
+        state.extend(inner);
+        state.extend(self.idle.to_le_bytes());
+        push_reals(&mut state, &[self.threshold]);
+        state.extend(((self.archive.len() / self.config.measures) as u64).to_le_bytes());
+        push_reals(&mut state, &self.archive);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let size = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        let length = size(StateReader::new(state, state.len())?.u64()?);
+        let short = EvoError::StateLength { expected: length.saturating_add(28), found: state.len() };
+        let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or(short)?;
+        let mut header = StateReader::new(own, own.len())?;
+        let (idle, threshold, behaviours) = (header.u32()?, header.real()?, size(header.u64()?));
+        let numbers = behaviours.saturating_mul(self.config.measures);
+        let mut reader = StateReader::new(own, numbers.saturating_mul(8).saturating_add(20))?;
+        let _ = (reader.u32()?, reader.real()?, reader.u64()?);
+        if !(THRESHOLDS[0]..=THRESHOLDS[1]).contains(&threshold) {
+            return Err(EvoError::StateContent { what: "a threshold of novelty", found: threshold.to_bits() });
+        }
+        let mut archive = vec![0.0; numbers];
+        reader.reals(&mut archive)?;
+        self.inner.restore(inner)?;
+        (self.idle, self.threshold, self.archive) = (idle, threshold, archive);
+        self.novelty.clear();
+        Ok(())
+    }
+}

@@ -1,0 +1,298 @@
+//! Cooperative co-evolution of the weights of a network.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+use farsa_num::{Domain, Stream, exp, ln, sin_cos};
+
+use crate::coevolution::cosyne_config::{CosyneConfig, Permutation};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::real::ranking::ranking;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+
+/// The trial of the streams that permute subpopulations; those of offspring have 0.
+const PERMUTATION: u32 = 1;
+
+/// Cooperative Synapse Neuroevolution, `CoSyNE`: each gene, the weight of a connection, has a subpopulation of its own, and
+/// an individual is a network of one weight of each. Genes are unbounded reals.
+///
+/// In each generation the best make offspring by crossover and mutation, which replace the worst; then the weights change
+/// places within their subpopulations, so that each is tried in another network. Small networks are found in few evaluations;
+/// with many genes good combinations are lost, which [`Permutation::ByFitness`] is against.
+///
+/// Individuals stand in the order of their fitness in the generation before, the best first, equals by index, failed ones
+/// last; the offspring follow. A pair of offspring has two parents that are drawn uniformly, the second again until it is
+/// another one if there is one. Each segment is cut at a place that is uniform from before its first gene to after its last.
+///
+/// Offspring `2 i` and `2 i + 1` of generation `g` draw from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`), the
+/// permutation of gene `i` from (seed, [`Domain::Mutation`], trial 1, `i`, `g`). Individual `i` of generation 0 draws from
+/// (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+///
+/// Source: \[Gomez2008\] algorithm 2, with the crossover and mutation of section 4. Its number of offspring and its choice of
+/// parents are not given; see above and [`CosyneConfig::new`].
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::coevolution::{Cosyne, CosyneConfig};
+///
+/// let mut search = Cosyne::new(CosyneConfig::new(3), 1)?;
+/// let goal = [1.0, -2.0, 0.5];
+/// let champion = search.maximize(200, |x| -x.iter().zip(goal).map(|(x, goal)| (x - goal) * (x - goal)).sum::<f64>())?;
+/// assert!(champion.fitness.get() > -0.1);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cosyne {
+    config: CosyneConfig,
+    seed: u64,
+    generation: u32,
+    /// Where each gene was in the generation before [individuals x genes]; empty in generation 0.
+    origins: Vec<u32>,
+    population: Population<f64>,
+}
+
+impl Cosyne {
+    /// A search at its random initial generation.
+    ///
+    /// # Errors
+    /// Those of [`CosyneConfig::validate`].
+    pub fn new(config: CosyneConfig, seed: u64) -> Result<Self, EvoError> {
+        config.validate()?;
+        let mut population = Population::new(config.population, config.genes())?;
+        for (individual, genes) in population.iter_mut().enumerate() {
+            let mut stream = Stream::new(seed, Domain::InitialGenome, 0, individual as u32, 0);
+            for gene in genes {
+                *gene = stream.range_f64(-config.range, config.range);
+            }
+        }
+        Ok(Self { config, seed, generation: 0, origins: Vec::new(), population })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &CosyneConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Crosses two parents: one of them for each gene of the first child, the other for the second child \[genes\].
+    fn cross(&self, [first, second]: [u32; 2], stream: &mut Stream, children: &mut [Vec<u32>; 2]) {
+        let [one, other] = children;
+        one.clear();
+        other.clear();
+        for &segment in &self.config.segments {
+            let cut = stream.below(segment as u32 + 1) as usize;
+            for gene in 0..segment {
+                let (a, b) = if gene < cut { (first, second) } else { (second, first) };
+                one.push(a);
+                other.push(b);
+            }
+        }
+    }
+
+    /// Replaces the worst by offspring of the best, in a population that is sorted.
+    fn breed(&self, generation: u32, order: &[usize], population: &mut Population<f64>, origins: &mut [u32]) {
+        let CosyneConfig { parents, offspring, mutation_rate, mutation_scale, .. } = self.config;
+        let (size, genes) = (population.len(), population.genome_len());
+        let first = (size - offspring) * genes;
+        let origins = origins.get_mut(first..).unwrap_or_default();
+        let pairs = population.as_mut_slice().get_mut(first..).unwrap_or_default().chunks_mut(2 * genes);
+        let mut children = [Vec::with_capacity(genes), Vec::with_capacity(genes)];
+        for (pair, (new, origins)) in pairs.zip(origins.chunks_mut(2 * genes)).enumerate() {
+            let mut stream = Stream::new(self.seed, Domain::Mutation, 0, pair as u32, generation);
+            let mut draw = || stream.below(parents as u32);
+            let one = draw();
+            let mut other = draw();
+            while other == one && parents > 1 {
+                other = draw();
+            }
+            let of = |rank: u32| order.get(rank as usize).map_or(0, |individual| *individual as u32);
+            self.cross([of(one), of(other)], &mut stream, &mut children);
+            for ((new, origins), from) in new.chunks_mut(genes).zip(origins.chunks_mut(genes)).zip(&children) {
+                origins.copy_from_slice(from);
+                for (index, (gene, from)) in new.iter_mut().zip(from).enumerate() {
+                    let inherited = self.population.get(*from as usize).and_then(|genes| genes.get(index));
+                    *gene = inherited.copied().unwrap_or_default();
+                    if stream.uniform_f64() < mutation_rate {
+                        *gene += mutation_scale * cauchy(&mut stream);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Permutes the weights of the individuals that are no offspring, each subpopulation by itself.
+    fn permute(&self, generation: u32, chances: &[f64], population: &mut Population<f64>, origins: &mut [u32]) {
+        let genes = population.genome_len();
+        let mut marked: Vec<usize> = Vec::with_capacity(chances.len());
+        for gene in 0..genes {
+            let mut stream = Stream::new(self.seed, Domain::Mutation, PERMUTATION, gene as u32, generation);
+            marked.clear();
+            match self.config.permutation {
+                Permutation::All => marked.extend(0..chances.len()),
+                Permutation::ByFitness => {
+                    let chosen = chances.iter().enumerate().filter(|(_, chance)| stream.uniform_f64() < **chance);
+                    marked.extend(chosen.map(|(individual, _)| individual));
+                }
+            }
+            for last in (1..marked.len()).rev() {
+                let other = stream.below(last as u32 + 1) as usize;
+                let (a, b) = (marked[last] * genes + gene, marked[other] * genes + gene);
+                population.as_mut_slice().swap(a, b);
+                origins.swap(a, b);
+            }
+        }
+    }
+
+    /// Bytes of a state at a generation.
+    fn state_length(&self, generation: u32) -> usize {
+        let bytes = if generation == 0 { 8 } else { 12 };
+        4 + bytes * self.population.as_slice().len()
+    }
+}
+
+/// A number of the standard Cauchy distribution: the tangent of a uniform angle.
+fn cauchy(stream: &mut Stream) -> f64 {
+    let (sine, cosine) = sin_cos(PI * (stream.uniform_f64() - 0.5));
+    sine / cosine
+}
+
+/// The probability that a weight of each individual is permuted, given their fitness, best first; equation 1.
+fn chances(fitness: &[Fitness], genes: usize) -> Vec<f64> {
+    let succeeded = || fitness.iter().filter(|fitness| !fitness.is_failed());
+    let (Some(most), Some(least)) = (succeeded().max(), succeeded().min()) else { return vec![1.0; fitness.len()] };
+    // Halves, so that no difference overflows.
+    let half = |fitness: &Fitness| 0.5 * fitness.get();
+    let chance = |fitness: &Fitness| {
+        if fitness.is_failed() || most == least {
+            1.0
+        } else if fitness == most {
+            0.0
+        } else {
+            let part = (half(fitness) - half(least)) / (half(most) - half(least));
+            1.0 - exp(ln(part) / genes as f64)
+        }
+    };
+    fitness.iter().map(chance).collect()
+}
+
+impl Strategy<f64> for Cosyne {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        let generation = next_generation(self.generation, self.population.len(), fitness)?;
+        let order = ranking(fitness);
+        let genes = self.population.genome_len();
+        let mut population = self.population.clone();
+        let mut origins = vec![0; population.as_slice().len()];
+        for ((row, origins), &from) in population.iter_mut().zip(origins.chunks_mut(genes)).zip(&order) {
+            row.copy_from_slice(self.population.get(from).unwrap_or_default());
+            origins.fill(from as u32);
+        }
+        self.breed(generation, &order, &mut population, &mut origins);
+        let sorted: Vec<Fitness> = order.iter().filter_map(|&individual| fitness.get(individual)).copied().collect();
+        let chances = chances(&sorted, genes);
+        let kept = chances.get(..sorted.len() - self.config.offspring).unwrap_or_default();
+        self.permute(generation, kept, &mut population, &mut origins);
+        (self.generation, self.origins, self.population) = (generation, origins, population);
+        Ok(())
+    }
+
+    fn record_kind(&self) -> RecordKind {
+        match self.config.permutation {
+            Permutation::All => RecordKind::Order,
+            Permutation::ByFitness => RecordKind::Values,
+        }
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
+    }
+}
+
+impl Genealogy for Cosyne {
+    /// All whose weights it has, in rising order.
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let origins = self.origins.chunks(self.population.genome_len()).nth(individual).unwrap_or_default();
+        let mut parents: Vec<usize> = origins.iter().map(|&origin| origin as usize).collect();
+        parents.sort_unstable();
+        parents.dedup();
+        parents
+    }
+}
+
+impl Snapshot for Cosyne {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(self.state_length(self.generation));
+        state.extend(self.generation.to_le_bytes());
+        state.extend(self.origins.iter().flat_map(|origin| origin.to_le_bytes()));
+        push_reals(&mut state, self.population.as_slice());
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let generation = StateReader::new(state, state.len())?.u32()?;
+        let mut reader = StateReader::new(state, self.state_length(generation))?;
+        reader.u32()?;
+        let size = self.population.len();
+        let mut origins = Vec::new();
+        for _ in 0..if generation == 0 { 0 } else { self.population.as_slice().len() } {
+            let origin = reader.u32()?;
+            if origin as usize >= size {
+                return Err(EvoError::NoSuchIndividual { individual: origin as usize, population: size });
+            }
+            origins.push(origin);
+        }
+        let mut population = Population::new(size, self.population.genome_len())?;
+        reader.reals(population.as_mut_slice())?;
+        (self.generation, self.origins, self.population) = (generation, origins, population);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chances_are_those_of_the_equation() {
+        let fitness = [8.0, 2.0, 1.0, 0.0, f64::NAN].map(Fitness::nan_as_failed);
+        let found = chances(&fitness, 3);
+        // Third roots of 1, 1/4, 1/8 and 0.
+        let want = [0.0, 1.0 - 0.629_960_524_947_436_6, 0.5, 1.0, 1.0];
+        assert!(found.iter().zip(want).all(|(found, want)| (found - want).abs() < 1e-12), "{found:?}");
+        assert_eq!(chances(&[Fitness::WORST; 2], 3), [1.0; 2]);
+        assert_eq!(chances(&[2.0, 2.0, f64::NAN].map(Fitness::nan_as_failed), 3), [1.0; 3]);
+        let wide = [f64::INFINITY, f64::MAX, f64::MIN].map(Fitness::nan_as_failed);
+        assert_eq!(chances(&wide, 1), [0.0, 1.0, 1.0]);
+        assert_eq!(chances(&wide[1..], 1), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn half_of_the_mutations_are_within_the_scale() {
+        let mut stream = Stream::from_seed(4);
+        let numbers: Vec<f64> = (0..100_000).map(|_| cauchy(&mut stream)).collect();
+        // Of the distribution function 1/2 + atan(x) / pi: 1/4, 1/2 and 3/4 at -1, 0 and 1, and 0.9 at 3.078.
+        for (x, want) in [(-1.0, 0.25), (0.0, 0.5), (1.0, 0.75), (3.077_683_5, 0.9)] {
+            let part = numbers.iter().filter(|number| **number < x).count() as f64 / 1e5;
+            assert!((part - want).abs() < 0.008, "{x}: {part}");
+        }
+    }
+}

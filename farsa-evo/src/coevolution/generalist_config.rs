@@ -1,0 +1,83 @@
+//! What competitive co-evolution with generalist selection needs to know.
+
+use crate::error::EvoError;
+use crate::population::Population;
+use crate::real::bounds::check_setting;
+use crate::words::mutation::{BitMutation, Mutation, check_gene_bits};
+
+/// What a [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution) needs to know; a plain value that is checked where it is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct GeneralistConfig {
+    /// Number of genes of a genome.
+    pub genes: usize,
+    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    pub gene_bits: u32,
+    /// Members of each population, a multiple of the newcomers.
+    pub members: usize,
+    /// Members of which a copy is trained in each round, at least 1: the newcomers that may replace members.
+    pub newcomers: usize,
+    /// Opponents m that each individual meets in a generation, 1 to `members`.
+    pub opponents: usize,
+    /// Generations of training in a round, at least 1.
+    pub iterations: u32,
+    /// Probability, 0 to 1, that mutation hits a bit.
+    pub mutation_rate: f64,
+    /// What happens to a bit that is hit.
+    pub mutation: Mutation,
+}
+
+impl GeneralistConfig {
+    /// The sizes of the program of \[Simione2020\] for genomes of this many genes of 16 bits: 80 members and 10 newcomers of
+    /// each population, trained for 20 generations against 10 opponents; mutation as in [`GaConfig::new`](crate::GaConfig::new).
+    pub const fn new(genes: usize) -> Self {
+        let (members, newcomers, opponents, iterations) = (80, 10, 10, 20);
+        let (gene_bits, mutation_rate, mutation) = (u16::BITS, 0.015, Mutation::Resample);
+        Self { genes, gene_bits, members, newcomers, opponents, iterations, mutation_rate, mutation }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`],
+    /// [`EvoError::GeneBits`] or [`EvoError::Rate`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        let Self { genes, members, newcomers, opponents, iterations, .. } = *self;
+        Population::check(members, genes)?;
+        let even = newcomers > 0 && members.is_multiple_of(newcomers);
+        check_setting(even, "the number of newcomers", newcomers as f64, "a divisor of the members")?;
+        let size = members.saturating_add(newcomers);
+        Population::check(size.saturating_mul(2), genes)?;
+        // Everyone meets everyone of the other population.
+        Population::check(size.saturating_mul(2), size)?;
+        let some = (1..=members).contains(&opponents);
+        check_setting(some, "the number of opponents", opponents as f64, "1 to all members")?;
+        check_setting(iterations > 0, "the generations of training", f64::from(iterations), "1 or more")?;
+        check_gene_bits(self.gene_bits)?;
+        self.bit_mutation().map(|_| ())
+    }
+
+    /// Number of individuals of each population in a generation: members and newcomers.
+    pub const fn size(&self) -> usize {
+        self.members.saturating_add(self.newcomers)
+    }
+
+    /// Generations of a round in which everyone meets everyone of the other population; of a valid configuration only.
+    pub const fn encounters(&self) -> u32 {
+        self.size().div_ceil(self.opponents) as u32
+    }
+
+    /// Generations of a round: the encounters, then the training; of a valid configuration only.
+    pub const fn round(&self) -> u32 {
+        self.encounters().saturating_add(self.iterations)
+    }
+
+    /// Individuals that are tried for each newcomer in a generation of training; of a valid configuration only.
+    pub(crate) const fn candidates(&self) -> usize {
+        self.size() / self.newcomers
+    }
+
+    pub(crate) fn bit_mutation(&self) -> Result<BitMutation, EvoError> {
+        BitMutation::new(self.mutation, self.mutation_rate)?.with_gene_bits(self.gene_bits)
+    }
+}

@@ -1,0 +1,136 @@
+//! Who did how well against whom, and what co-evolving populations select by it.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use farsa_num::Stream;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::real::bounds::check_setting;
+
+/// A newcomer that takes the place of a member of a population, [`Outcomes::replacements`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replacement {
+    /// The member that goes.
+    pub member: usize,
+    /// The individual, a row of the outcomes, that comes in its place.
+    pub newcomer: usize,
+}
+
+/// What each individual earned against each opponent: larger is better for the individual.
+///
+/// It holds what generalist selection needs: fitness is the mean against all opponents, those that evolving individuals train
+/// against are opponents against which others earn most differently, and of those that have trained only the ones stay that
+/// do better against *all* opponents. What was learned against some and lost against others does not pass.
+///
+/// Who meets whom, and how those that are chosen evolve in between, is the caller's.
+///
+/// Source: \[Simione2020\] and its program `generalist.py`. Deviations: the matrix is of one side, whatever the range of its
+/// outcomes (there the other side earns 1 less the outcome); among equals the lower index is chosen, so that a newcomer has to
+/// be better than the one whose place it takes; one that failed against an opponent ranks last.
+///
+/// ```
+/// use farsa_evo::coevolution::{Outcomes, Replacement};
+///
+/// // Three members and a newcomer, against three opponents: the second member beats one and loses against all others.
+/// let outcomes = [0.5, 0.5, 0.4, 1.0, 0.0, 0.0, 0.3, 0.6, 0.5, 0.4, 0.5, 0.6];
+/// let outcomes = Outcomes::new(3, outcomes.to_vec())?;
+/// assert_eq!(outcomes.replacements(1)?, [Replacement { member: 1, newcomer: 3 }]);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcomes {
+    opponents: usize,
+    /// [individuals x opponents].
+    values: Vec<Fitness>,
+}
+
+impl Outcomes {
+    /// What individuals earned against so many opponents [individuals x opponents]; a NaN is a failed evaluation.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`] for no opponents or no values, [`EvoError::FitnessCount`] if the last individual has fewer
+    /// values than there are opponents, [`EvoError::TooLarge`].
+    pub fn new(opponents: usize, values: Vec<f64>) -> Result<Self, EvoError> {
+        if opponents == 0 || values.is_empty() {
+            return Err(EvoError::NoIndividuals);
+        }
+        let individuals = values.len().div_ceil(opponents);
+        Population::check(individuals, opponents)?;
+        if individuals * opponents != values.len() {
+            return Err(EvoError::FitnessCount { expected: individuals * opponents, found: values.len() });
+        }
+        Ok(Self { opponents, values: values.into_iter().map(Fitness::nan_as_failed).collect() })
+    }
+
+    /// Number of individuals.
+    pub fn individuals(&self) -> usize {
+        self.values.len() / self.opponents
+    }
+
+    /// Number of opponents.
+    pub fn opponents(&self) -> usize {
+        self.opponents
+    }
+
+    /// What an individual earned against each opponent \[opponents\], none beyond the last individual.
+    pub fn of(&self, individual: usize) -> Option<&[Fitness]> {
+        self.values.chunks_exact(self.opponents).nth(individual)
+    }
+
+    /// The fitness of each individual \[individuals\]: the mean against all opponents.
+    pub fn fitness(&self) -> Vec<Fitness> {
+        let mean = |row: &[Fitness]| {
+            let sum: f64 = row.iter().map(|fitness| fitness.get()).sum();
+            Fitness::nan_as_failed(sum / self.opponents as f64)
+        };
+        self.values.chunks_exact(self.opponents).map(mean).collect()
+    }
+
+    /// So many opponents against which individuals earn as differently as possible: the first is drawn, each of the others has
+    /// the largest sum of differences, over all individuals, from those before it. Outcomes that are not finite do not count.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for none, or more than there are.
+    pub fn differing_opponents(&self, count: usize, stream: &mut Stream) -> Result<Vec<usize>, EvoError> {
+        let possible = (1..=self.opponents).contains(&count);
+        check_setting(possible, "the number of opponents", count as f64, "1 to all opponents")?;
+        let mut chosen = vec![stream.below(self.opponents as u32) as usize];
+        // For each opponent the differences from all chosen so far.
+        let mut apart = vec![0.0; self.opponents];
+        while let Some(&latest) = chosen.last().filter(|_| chosen.len() < count) {
+            for row in self.values.chunks_exact(self.opponents) {
+                let reference = row.get(latest).map_or(0.0, |outcome| outcome.get());
+                for (apart, outcome) in apart.iter_mut().zip(row) {
+                    let difference = (outcome.get() - reference).abs();
+                    *apart += if difference.is_finite() { difference } else { 0.0 };
+                }
+            }
+            let others = (0..self.opponents).filter(|opponent| !chosen.contains(opponent));
+            let next = others.max_by(|&a, &b| apart[a].total_cmp(&apart[b]).then(b.cmp(&a)));
+            chosen.extend(next);
+        }
+        Ok(chosen)
+    }
+
+    /// Which members of a population, the first individuals, give way to which of the last so many, the newcomers: of all,
+    /// as many of the best stay as there are members. Worse newcomers take the places of worse members.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for as many newcomers as individuals, or more.
+    pub fn replacements(&self, newcomers: usize) -> Result<Vec<Replacement>, EvoError> {
+        let all = self.individuals();
+        check_setting(newcomers < all, "the number of newcomers", newcomers as f64, "0 to all individuals but one")?;
+        let members = all - newcomers;
+        let fitness = self.fitness();
+        let mut order: Vec<usize> = (0..all).collect();
+        order.sort_by_key(|&individual| Reverse(fitness[individual]));
+        let (stay, go) = order.split_at(members);
+        let leaving = go.iter().rev().filter(|&&individual| individual < members);
+        let coming = stay.iter().rev().filter(|&&individual| individual >= members);
+        Ok(leaving.zip(coming).map(|(&member, &newcomer)| Replacement { member, newcomer }).collect())
+    }
+}

@@ -1,0 +1,364 @@
+//! Several searches of one kind beside each other, a population each.
+
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::population::Population;
+use crate::score_shape::ScoreShape;
+use crate::scores::Scores;
+use crate::snapshot::{Snapshot, StateReader};
+use crate::strategy::{Collection, Member};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+
+/// Two or more searches of the same kind and size, each told the fitness, or the scores, of its own individuals.
+///
+/// The individuals of all stand in one [`Population`], one search after the other: individual `i` of population `p` is number
+/// `p * size + i`. Who meets whom is the caller's business. For bit strings of unequal lengths there is
+/// [`Coevolution`](crate::coevolution::Coevolution).
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::coevolution::Populations;
+/// use farsa_evo::covariance::{CmaEs, CmaEsConfig};
+///
+/// let search = |seed| CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), seed);
+/// let mut pair = Populations::new(2, 11, search)?;
+/// assert_eq!((pair.populations(), pair.size()), (2, 7));
+/// for _ in 0..60 {
+///     let size = pair.size();
+///     let aim = |i: usize| if i < size { 1.0 } else { -1.0 };
+///     let error = |(i, x): (usize, &[f64])| -x.iter().map(|x| (x - aim(i)) * (x - aim(i))).sum::<f64>();
+///     let values: Vec<f64> = pair.ask().iter().enumerate().map(error).collect();
+///     pair.tell_values(&values)?;
+/// }
+/// assert!((pair.members()[1].mean()[0] + 1.0).abs() < 0.01);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Populations<S, G = f64> {
+    /// At least two, of the same number of individuals and of genes.
+    members: Vec<S>,
+    population: Population<G>,
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
+    /// So many searches of those that `search` makes, each of a seed of its own. The first has `seed`; the seed of number
+    /// `p` is drawn from the stream (`seed`, [`Domain::General`], trial 0, `p`, generation 0).
+    ///
+    /// # Errors
+    /// [`EvoError::FewPopulations`] for fewer than two, [`EvoError::UnequalPopulations`] and [`EvoError::Lengths`] for searches
+    /// of unequal sizes, [`EvoError::TooLarge`], and those of `search`.
+    pub fn new(populations: usize, seed: u64, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Self, EvoError> {
+        if populations < 2 {
+            return Err(EvoError::FewPopulations { populations });
+        }
+        let first = search(seed)?;
+        let (size, genes) = (first.ask().len(), first.ask().genome_len());
+        Population::check(size.saturating_mul(populations), genes)?;
+        let mut members = Vec::with_capacity(populations);
+        members.push(first);
+        for number in 1..populations {
+            let mut stream = Stream::new(seed, Domain::General, 0, number as u32, 0);
+            let own = u64::from(stream.next_u32()) | u64::from(stream.next_u32()) << 32;
+            let member = search(own)?;
+            let (individuals, found) = (member.ask().len(), member.ask().genome_len());
+            if individuals != size {
+                return Err(EvoError::UnequalPopulations { first: size, population: number, individuals });
+            }
+            if found != genes {
+                return Err(EvoError::Lengths { genes: found, ranges: genes, out: genes });
+            }
+            members.push(member);
+        }
+        let mut all = Self { members, population: Population::new(size * populations, genes)? };
+        all.gather();
+        Ok(all)
+    }
+
+    /// The searches, one for each population.
+    pub fn members(&self) -> &[S] {
+        &self.members
+    }
+
+    /// Number of individuals of each population.
+    pub fn size(&self) -> usize {
+        self.population.len() / self.members.len()
+    }
+
+    /// Copies the genomes of all searches.
+    fn gather(&mut self) {
+        let own = self.members.iter().flat_map(|member| member.ask().as_slice());
+        self.population.as_mut_slice().iter_mut().zip(own).for_each(|(gene, own)| *gene = *own);
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for Populations<S, G> {
+    fn generation(&self) -> u32 {
+        self.members.first().map_or(0, Strategy::generation)
+    }
+
+    fn ask(&self) -> &Population<G> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        // Checked for all before any is told: none of them can refuse afterwards.
+        self.score_shape().check(ScoreShape::FITNESS)?;
+        next_generation(self.generation(), self.population.len(), fitness)?;
+        let size = self.size();
+        for (member, fitness) in self.members.iter_mut().zip(fitness.chunks(size)) {
+            member.tell(fitness)?;
+        }
+        self.gather();
+        Ok(())
+    }
+
+    fn score_shape(&self) -> ScoreShape {
+        self.members.first().map_or(ScoreShape::FITNESS, Strategy::score_shape)
+    }
+
+    fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
+        scores.check(self.score_shape(), self.population.len())?;
+        self.generation().checked_add(1).ok_or(EvoError::LastGeneration)?;
+        let numbers = self.size() * scores.shape().width();
+        for (member, own) in self.members.iter_mut().zip(scores.values().chunks(numbers)) {
+            member.tell_scores(&Scores::nan_as_failed(scores.shape(), own.to_vec())?)?;
+        }
+        self.gather();
+        Ok(())
+    }
+
+    fn populations(&self) -> usize {
+        self.members.len()
+    }
+
+    /// That of the searches; but values where only their order counts, because an order of all says nothing of each.
+    fn record_kind(&self) -> RecordKind {
+        match self.members.first().map(Strategy::record_kind) {
+            Some(RecordKind::Genomes) => RecordKind::Genomes,
+            _ => RecordKind::Values,
+        }
+    }
+
+    fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
+        let own = self.members.iter().zip(fitness.chunks(self.size()));
+        own.flat_map(|(member, fitness)| member.ranked_by(fitness)).collect()
+    }
+
+    fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
+        let size = self.size();
+        let own = self.members.iter().zip(ranked_by.chunks(size)).enumerate();
+        own.flat_map(|(number, (member, fitness))| {
+            member.champions(fitness).into_iter().map(move |best| number * size + best)
+        })
+        .collect()
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        self.members.first()?.genealogy().map(|_| self as &dyn Genealogy)
+    }
+
+    fn collection(&self) -> Option<&dyn Collection> {
+        self.members.first()?.collection().map(|_| self as &dyn Collection)
+    }
+
+    /// Never: populations may meet, and what an individual earns depends on whom it met.
+    fn champion_is_best_ever(&self) -> bool {
+        false
+    }
+
+    /// Those of one search after the other.
+    fn diagnostics(&self) -> Vec<f64> {
+        self.members.iter().flat_map(Strategy::diagnostics).collect()
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Collection for Populations<S, G> {
+    fn members(&self) -> Vec<Member<'_>> {
+        let (size, mut all) = (self.size(), Vec::new());
+        for (number, member) in self.members.iter().enumerate() {
+            let own = member.collection().map(Collection::members).unwrap_or_default();
+            let counted = |member: Member<'_>| member.individual + number * size;
+            all.extend(own.into_iter().map(|member| Member { individual: counted(member), ..member }));
+        }
+        all
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Genealogy for Populations<S, G> {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let (size, number) = (self.size(), individual / self.size());
+        let own = self.members.get(number).and_then(|member| Some(member.genealogy()?.parents_of(individual % size)));
+        own.unwrap_or_default().into_iter().map(|parent| number * size + parent).collect()
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Snapshot for Populations<S, G> {
+    fn snapshot_interval(&self) -> u32 {
+        self.members.iter().map(Snapshot::snapshot_interval).min().unwrap_or(u32::MAX)
+    }
+
+    /// The states of the searches, each with its length in front.
+    fn save(&self) -> Vec<u8> {
+        let mut all = Vec::new();
+        for state in self.members.iter().map(Snapshot::save) {
+            all.extend((state.len() as u64).to_le_bytes());
+            all.extend(state);
+        }
+        all
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        // Taken back where a later one is refused.
+        let before: Vec<Vec<u8>> = self.members.iter().map(Snapshot::save).collect();
+        let restored = self.restore_members(state);
+        if restored.is_err() {
+            for (member, state) in self.members.iter_mut().zip(&before) {
+                member.restore(state)?;
+            }
+        }
+        self.gather();
+        restored
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
+    fn restore_members(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let mut rest = state;
+        for member in &mut self.members {
+            let expected = StateReader::new(rest, rest.len())?.u64()?;
+            let expected = usize::try_from(expected).unwrap_or(usize::MAX);
+            let short = EvoError::StateLength { expected, found: rest.len() };
+            let own = rest.get(8..).and_then(|rest| rest.split_at_checked(expected));
+            let (own, behind) = own.ok_or(short)?;
+            member.restore(own)?;
+            rest = behind;
+        }
+        if !rest.is_empty() {
+            return Err(EvoError::StateLength { expected: state.len() - rest.len(), found: state.len() });
+        }
+        let generation = self.generation();
+        match self.members.iter().find(|member| member.generation() != generation) {
+            None => Ok(()),
+            Some(other) => {
+                Err(EvoError::StateContent { what: "the generation of a population", found: other.generation().into() })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::check_strategy;
+    use crate::covariance::{CmaEs, CmaEsConfig};
+    use crate::real::{RealGa, RealGaConfig};
+    use crate::words::{GaConfig, TruncationGa};
+    use alloc::vec;
+
+    fn searches() -> Populations<CmaEs> {
+        Populations::new(3, 5, |seed| CmaEs::new(CmaEsConfig::new(vec![0.0; 4], 0.5), seed)).unwrap()
+    }
+
+    fn told(generation: u32, count: usize) -> Vec<Fitness> {
+        (0..count).map(|i| Fitness::nan_as_failed(f64::from((i as u32 * 7 + generation * 5) % 11))).collect()
+    }
+
+    #[test]
+    fn each_is_a_lone_search_of_its_own_seed() {
+        let mut all = searches();
+        let seeds = all.members().iter().map(CmaEs::seed).collect::<Vec<_>>();
+        assert_eq!(seeds[0], 5);
+        assert!(seeds[1] != seeds[2] && seeds[1] != 5 && seeds[2] != 5);
+        let alone = |seed: &u64| CmaEs::new(CmaEsConfig::new(vec![0.0; 4], 0.5), *seed).unwrap();
+        let mut alone: Vec<CmaEs> = seeds.iter().map(alone).collect();
+        let size = all.size();
+        for generation in 0..20 {
+            for (number, member) in alone.iter().enumerate() {
+                for (i, genome) in member.ask().iter().enumerate() {
+                    assert_eq!(all.ask().get(number * size + i), Some(genome));
+                }
+            }
+            let fitness = told(generation, all.ask().len());
+            let champions = all.champions(&all.ranked_by(&fitness));
+            for (number, (member, fitness)) in alone.iter_mut().zip(fitness.chunks(size)).enumerate() {
+                assert_eq!(champions[number], number * size + member.champions(fitness)[0]);
+                member.tell(fitness).unwrap();
+            }
+            all.tell(&fitness).unwrap();
+        }
+    }
+
+    #[test]
+    fn they_keep_to_what_strategies_say() {
+        check_strategy(|| Ok(searches()), 12).unwrap();
+        let config = GaConfig { population: 10, parents: 5, ..GaConfig::new(4) };
+        check_strategy::<u16, _>(|| Populations::new(2, 3, |seed| TruncationGa::new(config, seed)), 12).unwrap();
+        let config = RealGaConfig::new(vec![[-1.0, 1.0]; 3]);
+        let three = || Populations::new(3, 3, |seed| RealGa::new(config.clone(), seed));
+        check_strategy(three, 12).unwrap();
+        let mut three = three().unwrap();
+        three.tell(&told(0, 300)).unwrap();
+        for individual in [0, 99, 150, 200, 250, 299] {
+            let (number, own) = (individual / 100, individual % 100);
+            let parents = three.parents_of(individual);
+            let wanted: Vec<usize> =
+                three.members[number].parents_of(own).into_iter().map(|parent| 100 * number + parent).collect();
+            assert!(!parents.is_empty() && parents == wanted, "{parents:?}");
+            // It has parents where its searches do.
+            let said = Strategy::genealogy(&three).map(|genealogy| genealogy.parents_of(individual));
+            assert_eq!(said, Some(parents));
+        }
+        assert!(three.parents_of(300).is_empty());
+        assert!(Strategy::genealogy(&searches()).is_none());
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_refused() {
+        let search = |seed| CmaEs::new(CmaEsConfig::new(vec![0.0; 4], 0.5), seed);
+        assert_eq!(Populations::new(1, 5, search), Err(EvoError::FewPopulations { populations: 1 }));
+        let sized = |seed| {
+            let population = if seed == 5 { 10 } else { 12 };
+            CmaEs::new(CmaEsConfig { population, ..CmaEsConfig::new(vec![0.0; 4], 0.5) }, seed)
+        };
+        let unequal = EvoError::UnequalPopulations { first: 10, population: 1, individuals: 12 };
+        assert_eq!(Populations::new(2, 5, sized), Err(unequal));
+        let long = |seed| {
+            CmaEs::new(
+                CmaEsConfig { population: 9, ..CmaEsConfig::new(vec![0.0; 4 + usize::from(seed != 5)], 0.5) },
+                seed,
+            )
+        };
+        assert_eq!(Populations::new(2, 5, long), Err(EvoError::Lengths { genes: 5, ranges: 4, out: 4 }));
+        let mut all = searches();
+        let before = all.clone();
+        let expected = all.ask().len();
+        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::FitnessCount { expected, found: 6 }));
+        assert_eq!(all, before);
+    }
+
+    #[test]
+    fn damaged_states_are_refused_whole() {
+        let mut all = searches();
+        let fresh = all.save();
+        all.tell(&told(0, all.ask().len())).unwrap();
+        let (before, state) = (all.clone(), all.save());
+        let other = [&fresh[..fresh.len() / 3], &state[fresh.len() / 3..]].concat();
+        let cut = (0..state.len()).step_by(7).map(|length| state[..length].to_vec());
+        let long = [&state[..], &[0]].concat();
+        for damaged in cut.chain([long, other]) {
+            assert!(all.restore(&damaged).is_err());
+            assert_eq!(all, before);
+        }
+        all.restore(&fresh).unwrap();
+        assert_eq!(all, searches());
+    }
+}

@@ -1,0 +1,6 @@
+//! The names of a first program, for `use farsa_evo::prelude::*`.
+
+pub use crate::archives::{GridCells, MapElites, MapElitesConfig};
+pub use crate::covariance::{CmaEs, CmaEsConfig};
+pub use crate::words::{GaConfig, GeneRange, TruncationGa, decode};
+pub use crate::{Champion, EvoError, Fitness, Population, Record, Scores, Strategy};

@@ -1,0 +1,37 @@
+//! How many numbers an evaluation gives.
+
+use core::fmt;
+
+/// How many numbers an evaluation gives of each individual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ScoreShape {
+    /// Number of objectives m, at least 1; the first is the fitness that logs and champions go by.
+    pub objectives: usize,
+    /// Number of values d that describe the behaviour.
+    #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
+    pub measures: usize,
+}
+
+impl ScoreShape {
+    /// One objective and no measures: what [`Strategy::tell`](crate::Strategy::tell) takes.
+    pub const FITNESS: Self = Self { objectives: 1, measures: 0 };
+
+    /// So many objectives and measures.
+    pub const fn new(objectives: usize, measures: usize) -> Self {
+        Self { objectives, measures }
+    }
+
+    /// Numbers of one individual.
+    pub const fn width(self) -> usize {
+        self.objectives.saturating_add(self.measures)
+    }
+}
+
+impl fmt::Display for ScoreShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plural = |count: usize| if count == 1 { "" } else { "s" };
+        let (m, d) = (self.objectives, self.measures);
+        write!(f, "{m} objective{} and {d} descriptor value{}", plural(m), plural(d))
+    }
+}

@@ -1,0 +1,233 @@
+//! What an evaluation says of an individual where one number is not enough.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::score_shape::ScoreShape;
+
+impl ScoreShape {
+    /// Refuses another shape than this one.
+    ///
+    /// # Errors
+    /// [`EvoError::ScoreShape`].
+    pub const fn check(self, found: Self) -> Result<(), EvoError> {
+        if self.objectives == found.objectives && self.measures == found.measures {
+            Ok(())
+        } else {
+            Err(EvoError::ScoreShape { expected: self, found })
+        }
+    }
+}
+
+/// The objectives and the measures of each individual of a generation, row after row.
+///
+/// Objectives are [`Fitness`]: larger is better, never NaN, minus infinity where the evaluation failed. Descriptor values are
+/// finite. An evaluation that broke one of these rules has failed as a whole: its objectives are minus infinity and its
+/// measures is zero.
+///
+/// ```
+/// use farsa_evo::{ScoreShape, Scores};
+///
+/// // Speed and minus the energy, and where the robot came to rest.
+/// let shape = ScoreShape::new(2, 1);
+/// let told = Scores::nan_as_failed(shape, vec![0.5, -3.0, 1.25, 0.7, f64::NAN, 2.0])?;
+/// assert_eq!((told.objectives(0), told.measures(0)), (&[0.5, -3.0][..], &[1.25][..]));
+/// assert!(told.is_failed(1));
+/// assert_eq!(told.fitness()[0].get(), 0.5);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
+/// Under the feature `serde` a failed evaluation's objectives are absent numbers, as those of [`Fitness`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawScores", into = "RawScores"))]
+pub struct Scores {
+    shape: ScoreShape,
+    /// Objectives, then measures, of each individual [individuals x width].
+    values: Vec<f64>,
+}
+
+impl Scores {
+    /// Scores of this shape, given the objectives and then the measures of each individual [individuals x (m + d)];
+    /// a NaN, or an infinite measure, is a failed evaluation, as is an objective of minus infinity.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for a shape without objectives, [`EvoError::ScoreCount`] for a last row that is not whole.
+    pub fn nan_as_failed(shape: ScoreShape, mut values: Vec<f64>) -> Result<Self, EvoError> {
+        if shape.objectives == 0 {
+            return Err(EvoError::Setting { name: "the number of objectives", value: 0.0, allowed: "1 or more" });
+        }
+        let (width, found) = (shape.width(), values.len());
+        if !found.is_multiple_of(width) {
+            return Err(EvoError::ScoreCount { width, found });
+        }
+        for row in values.chunks_exact_mut(width) {
+            let (objectives, measures) = row.split_at_mut(shape.objectives);
+            let mut failed = measures.iter().any(|x| !x.is_finite());
+            for x in objectives.iter_mut() {
+                let fitness = Fitness::nan_as_failed(*x);
+                failed |= fitness.is_failed();
+                *x = fitness.get();
+            }
+            // Minus zero becomes zero, so that equal values have equal bits.
+            for x in measures.iter_mut() {
+                *x += 0.0;
+            }
+            if failed {
+                objectives.fill(f64::NEG_INFINITY);
+                measures.fill(0.0);
+            }
+        }
+        Ok(Self { shape, values })
+    }
+
+    /// The same where no number may be NaN.
+    ///
+    /// # Errors
+    /// [`EvoError::NanFitness`], and those of [`nan_as_failed`](Self::nan_as_failed).
+    pub fn new(shape: ScoreShape, values: Vec<f64>) -> Result<Self, EvoError> {
+        if values.iter().any(|x| x.is_nan()) {
+            return Err(EvoError::NanFitness);
+        }
+        Self::nan_as_failed(shape, values)
+    }
+
+    /// Scores of one objective, the fitness \[individuals\].
+    pub fn from_fitness(fitness: &[Fitness]) -> Self {
+        Self { shape: ScoreShape::FITNESS, values: fitness.iter().map(|fitness| fitness.get()).collect() }
+    }
+
+    /// How many numbers there are of each individual.
+    pub fn shape(&self) -> ScoreShape {
+        self.shape
+    }
+
+    /// Number of individuals.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.shape.width().max(1)
+    }
+
+    /// Whether there are no individuals.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// All numbers [individuals x (m + d)].
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The objectives \[m\] of an individual, minus infinity where its evaluation failed; empty beyond the last.
+    pub fn objectives(&self, individual: usize) -> &[f64] {
+        self.row(individual).0
+    }
+
+    /// The measures \[d\] of an individual, zero where its evaluation failed; empty beyond the last.
+    pub fn measures(&self, individual: usize) -> &[f64] {
+        self.row(individual).1
+    }
+
+    /// Whether the evaluation of an individual failed; no for one that does not exist.
+    pub fn is_failed(&self, individual: usize) -> bool {
+        self.objectives(individual).first() == Some(&f64::NEG_INFINITY)
+    }
+
+    /// The first objective \[individuals\]: what logs and champions go by.
+    pub fn fitness(&self) -> Vec<Fitness> {
+        let rows = self.values.chunks_exact(self.shape.width().max(1));
+        rows.map(|row| row.first().map_or(Fitness::WORST, |x| Fitness::nan_as_failed(*x))).collect()
+    }
+
+    /// Refuses scores that are not of this shape and of so many individuals, as a strategy does that is told them.
+    ///
+    /// # Errors
+    /// [`EvoError::ScoreShape`], [`EvoError::FitnessCount`].
+    pub fn check(&self, shape: ScoreShape, individuals: usize) -> Result<(), EvoError> {
+        shape.check(self.shape)?;
+        let (expected, found) = (individuals, self.len());
+        if found == expected { Ok(()) } else { Err(EvoError::FitnessCount { expected, found }) }
+    }
+
+    fn row(&self, individual: usize) -> (&[f64], &[f64]) {
+        let width = self.shape.width();
+        let start = individual.saturating_mul(width);
+        let row = self.values.get(start..start.saturating_add(width)).unwrap_or_default();
+        row.split_at_checked(self.shape.objectives).unwrap_or_default()
+    }
+}
+
+/// Scores as they are saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Judgements")]
+struct RawScores {
+    shape: ScoreShape,
+    values: Vec<Option<f64>>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Scores> for RawScores {
+    fn from(Scores { shape, values }: Scores) -> Self {
+        let present = |x: f64| (x > f64::NEG_INFINITY).then_some(x);
+        Self { shape, values: values.into_iter().map(present).collect() }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawScores> for Scores {
+    type Error = EvoError;
+
+    fn try_from(RawScores { shape, values }: RawScores) -> Result<Self, EvoError> {
+        Self::new(shape, values.into_iter().map(|x| x.unwrap_or(f64::NEG_INFINITY)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_is_not_whole_is_refused() {
+        let shape = ScoreShape::new(2, 1);
+        assert_eq!(Scores::new(shape, vec![0.0; 4]), Err(EvoError::ScoreCount { width: 3, found: 4 }));
+        assert_eq!(Scores::new(shape, vec![0.0, 1.0, f64::NAN]), Err(EvoError::NanFitness));
+        let none = Scores::new(ScoreShape::new(0, 3), Vec::new());
+        assert!(matches!(none, Err(EvoError::Setting { name: "the number of objectives", value: 0.0, .. })));
+        let told = Scores::new(shape, vec![0.0; 6]).unwrap();
+        let fewer = EvoError::ScoreShape { expected: ScoreShape::FITNESS, found: shape };
+        assert_eq!(told.check(ScoreShape::FITNESS, 2), Err(fewer));
+        assert_eq!(told.check(shape, 3), Err(EvoError::FitnessCount { expected: 3, found: 2 }));
+        assert_eq!((told.objectives(2), told.measures(2), told.is_failed(2)), (&[][..], &[][..], false));
+    }
+
+    proptest! {
+        #[test]
+        fn a_row_is_whole_or_failed(
+            m in 1_usize..4,
+            d in 0_usize..3,
+            mut values in proptest::collection::vec(proptest::num::f64::ANY, 0..60),
+        ) {
+            let shape = ScoreShape::new(m, d);
+            values.truncate(values.len() / shape.width() * shape.width());
+            let told = Scores::nan_as_failed(shape, values.clone()).unwrap();
+            prop_assert_eq!(told.len(), values.len() / shape.width());
+            for (individual, row) in values.chunks(shape.width()).enumerate() {
+                let good = row[..m].iter().all(|x| *x > f64::NEG_INFINITY) && row[m..].iter().all(|x| x.is_finite());
+                prop_assert_eq!(told.is_failed(individual), !good);
+                let (objectives, measures) = (told.objectives(individual), told.measures(individual));
+                if good {
+                    prop_assert!(objectives == &row[..m] && measures == &row[m..]);
+                } else {
+                    let worst = objectives.iter().all(|x| *x == f64::NEG_INFINITY);
+                    prop_assert!(worst && measures.iter().all(|x| *x == 0.0));
+                }
+                prop_assert_eq!(told.fitness()[individual].get(), objectives[0]);
+            }
+            // What was made of it once stays as it is.
+            prop_assert_eq!(Scores::new(shape, told.values().to_vec()), Ok(told));
+        }
+    }
+}

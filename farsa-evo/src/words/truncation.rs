@@ -1,0 +1,250 @@
+//! The genetic algorithm of the reference experiments: the best survive and make mutated copies.
+
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::SavedStrategy;
+use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::words::config::GaConfig;
+use crate::words::mutation::{BitMutation, randomize_bits};
+
+/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
+/// multiple of its parents.
+///
+/// Each generation the `parents` best individuals make `population / parents` copies each: the first unchanged, the
+/// others mutated. Parents are ranked by fitness, equals by index, the lower first; failed individuals are selected
+/// only when too few succeeded. With as many parents as individuals nothing is ever mutated.
+///
+/// Child `i` of a generation descends from the parent of rank `i / copies` of the generation before, `copies` being
+/// population / parents; it is unchanged when `i % copies == 0` and mutated otherwise, with the numbers of the stream
+/// (seed, [`Domain::Mutation`], trial 0, individual `i`, generation of the child). Individual `i` of generation 0 is
+/// drawn from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+///
+/// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: everyone is
+/// evaluated again in every generation, the unchanged copies too, and ties go to the lower index; the source says
+/// neither.
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::words::{GaConfig, TruncationGa};
+///
+/// let mut evolution = TruncationGa::new(GaConfig { population: 40, parents: 8, ..GaConfig::new(3) }, 7)?;
+/// while evolution.generation() < 20 {
+///     let values: Vec<f64> = evolution.ask().iter().map(|genes| -f64::from(genes[0].abs_diff(20_000))).collect();
+///     evolution.tell_values(&values)?;
+/// }
+/// // The first copy of the best is unchanged.
+/// assert!(evolution.ask().iter().next().is_some_and(|genes| genes[0].abs_diff(20_000) < 200));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<GaConfig>"))]
+pub struct TruncationGa {
+    config: GaConfig,
+    mutation: BitMutation,
+    seed: u64,
+    /// Which of several populations of a search this is: the trial of its streams.
+    number: u32,
+    generation: u32,
+    /// The individuals selected from the generation before, best first \[parents\]; empty in generation 0.
+    selected: Vec<u32>,
+    population: Population,
+}
+
+impl TruncationGa {
+    /// An evolution at its random initial generation.
+    ///
+    /// # Errors
+    /// Those of [`GaConfig::validate`].
+    pub fn new(config: GaConfig, seed: u64) -> Result<Self, EvoError> {
+        Self::numbered(config, seed, 0)
+    }
+
+    /// The same as the population with a number among several.
+    pub(crate) fn numbered(config: GaConfig, seed: u64, number: u32) -> Result<Self, EvoError> {
+        config.validate()?;
+        let mutation = config.bit_mutation()?;
+        let mut population = Population::new(config.population, config.genes)?;
+        for (individual, genes) in population.iter_mut().enumerate() {
+            let mut stream = Stream::new(seed, Domain::InitialGenome, number, individual as u32, 0);
+            randomize_bits(genes, config.gene_bits, &mut stream);
+        }
+        Ok(Self { config, mutation, seed, number, generation: 0, selected: Vec::new(), population })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &GaConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The individuals selected from the generation before the current one, best first \[parents\]; empty in generation 0.
+    pub fn selected(&self) -> &[u32] {
+        &self.selected
+    }
+
+    /// Bytes of a state at a generation.
+    fn state_length(&self, generation: u32) -> usize {
+        let parents = if generation == 0 { 0 } else { self.config.parents };
+        4 + 4 * parents + 2 * self.population.as_slice().len()
+    }
+}
+
+impl Strategy for TruncationGa {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        let config = self.config;
+        let generation = next_generation(self.generation, config.population, fitness)?;
+        let selected = best(fitness, config.parents);
+        let mut children = Population::new(config.population, config.genes)?;
+        let parents = selected.iter().filter_map(|&parent| self.population.get(parent as usize));
+        let heirs = parents.flat_map(|parent| core::iter::repeat_n(parent, config.copies()));
+        for (individual, (child, parent)) in children.iter_mut().zip(heirs).enumerate() {
+            child.copy_from_slice(parent);
+            if !individual.is_multiple_of(config.copies()) {
+                let mut stream = Stream::new(self.seed, Domain::Mutation, self.number, individual as u32, generation);
+                self.mutation.apply(child, &mut stream);
+            }
+        }
+        (self.generation, self.selected, self.population) = (generation, selected, children);
+        Ok(())
+    }
+
+    fn record_kind(&self) -> RecordKind {
+        RecordKind::Order
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
+    }
+}
+
+impl Genealogy for TruncationGa {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let parent = self.selected.get(individual / self.config.copies());
+        parent.map(|&parent| parent as usize).into_iter().collect()
+    }
+}
+
+impl Snapshot for TruncationGa {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(self.state_length(self.generation));
+        state.extend(self.generation.to_le_bytes());
+        state.extend(self.selected.iter().flat_map(|parent| parent.to_le_bytes()));
+        push_genes(&mut state, &self.population);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let generation = StateReader::new(state, state.len())?.u32()?;
+        let mut reader = StateReader::new(state, self.state_length(generation))?;
+        reader.u32()?;
+        let mut selected: Vec<u32> = Vec::new();
+        for _ in 0..if generation == 0 { 0 } else { self.config.parents } {
+            let parent = reader.u32()?;
+            let (individual, population) = (parent as usize, self.config.population);
+            if individual >= population {
+                return Err(EvoError::NoSuchIndividual { individual, population });
+            }
+            selected.push(parent);
+        }
+        let mut sorted = selected.clone();
+        sorted.sort_unstable();
+        if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(EvoError::SelectedTwice { individual: twice[0] as usize });
+        }
+        let mut population = Population::new(self.config.population, self.config.genes)?;
+        reader.genes(&mut population, largest(self.config.gene_bits))?;
+        (self.generation, self.selected, self.population) = (generation, selected, population);
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for TruncationGa {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        SavedStrategy::new(self.config, self.seed, self).serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<SavedStrategy<GaConfig>> for TruncationGa {
+    type Error = EvoError;
+
+    fn try_from(saved: SavedStrategy<GaConfig>) -> Result<Self, EvoError> {
+        saved.holds(saved.config.population, saved.config.genes)?;
+        let mut strategy = Self::new(saved.config, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
+    }
+}
+
+/// The indices of the `count` best, best first, equals by index.
+fn best(fitness: &[Fitness], count: usize) -> Vec<u32> {
+    let mut ranked: Vec<(Fitness, u32)> = fitness.iter().copied().zip(0..).collect();
+    ranked.sort_unstable_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
+    ranked.into_iter().take(count).map(|(_, index)| index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(change: impl FnOnce(&mut GaConfig)) -> EvoError {
+        let mut config = GaConfig::new(10);
+        change(&mut config);
+        TruncationGa::new(config, 0).unwrap_err()
+    }
+
+    #[test]
+    fn impossible_configurations_are_refused() {
+        assert_eq!(refused(|c| c.genes = 0), EvoError::NoGenes);
+        assert_eq!(refused(|c| c.population = 0), EvoError::NoIndividuals);
+        assert_eq!(refused(|c| c.parents = 0), EvoError::NoParents);
+        assert_eq!(refused(|c| c.parents = 101), EvoError::TooManyParents { population: 100, parents: 101 });
+        assert_eq!(refused(|c| c.parents = 30), EvoError::UnevenCopies { population: 100, parents: 30 });
+        assert_eq!(refused(|c| c.mutation_rate = 1.5), EvoError::Rate { rate: 1.5 });
+        assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Rate { .. }));
+        assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::TooLarge { population: 100, genes: usize::MAX });
+    }
+
+    #[test]
+    fn ties_go_to_the_lower_index() {
+        let fitness = [1.0, 5.0, f64::NAN, 5.0, 1.0, f64::NAN].map(Fitness::nan_as_failed);
+        assert_eq!(best(&fitness, 6), [1, 3, 0, 4, 2, 5]);
+        assert_eq!(best(&fitness, 3), [1, 3, 0]);
+    }
+
+    #[test]
+    fn a_wrong_number_of_fitness_values_changes_nothing() {
+        let mut ga = TruncationGa::new(GaConfig::new(10), 0).unwrap();
+        let before = ga.clone();
+        for found in [0, 99, 101] {
+            let told = alloc::vec![Fitness::WORST; found];
+            assert_eq!(ga.tell(&told), Err(EvoError::FitnessCount { expected: 100, found }));
+        }
+        assert_eq!(ga, before);
+    }
+}

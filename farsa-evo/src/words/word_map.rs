@@ -1,0 +1,189 @@
+//! What each word of a genome stands for, both ways.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::words::decode::GeneRange;
+
+/// How the bits of a word number the values of a gene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum WordCode {
+    /// The binary number that they are.
+    #[default]
+    Plain,
+    /// The reflected binary code \[Gray1953\]: neighbouring values differ by one bit.
+    Gray,
+}
+
+/// What one parameter is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum WordGene {
+    /// A word of a genome: 0 stands for the low end, the largest number of its bits for the high end, linear between.
+    Word {
+        /// Bits that count, the lowest of the word, 1 to 16; the others mean nothing.
+        bits: u32,
+        /// The low end, in the unit of the parameter.
+        low: f32,
+        /// The high end, not below the low one.
+        high: f32,
+        /// How the bits number the values.
+        code: WordCode,
+    },
+    /// No word: the parameter is always this.
+    Frozen(f32),
+}
+
+/// The parameters that a genome of words stands for, each with bits, range and code of its own, or frozen; and back.
+///
+/// Where a range has 16 bits and the plain code, the values are those of [`decode`](crate::words::decode).
+///
+/// ```
+/// use farsa_evo::words::{WordCode, WordGene, WordMap};
+///
+/// let weight = WordGene::Word { bits: 8, low: -5.0, high: 5.0, code: WordCode::Gray };
+/// let map = WordMap::new(vec![weight, WordGene::Frozen(1.5), weight])?;
+/// assert_eq!((map.words(), map.parameters()), (2, 3));
+/// let mut words = [0; 2];
+/// map.encode(&[-5.0, 1.5, 3.0], &mut words)?;
+/// assert_eq!(words, [0, 204 ^ 204 >> 1]);
+/// let mut parameters = [0.0; 3];
+/// map.decode(&words, &mut parameters)?;
+/// assert_eq!(parameters, [-5.0, 1.5, 3.0]);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<WordGene>", into = "Vec<WordGene>"))]
+pub struct WordMap {
+    genes: Vec<WordGene>,
+    /// The range of each parameter, of which a frozen one's is that value.
+    ranges: Vec<GeneRange>,
+    words: usize,
+}
+
+impl WordMap {
+    /// The map of these genes \[parameters\].
+    ///
+    /// # Errors
+    /// [`EvoError::NoGenes`], [`EvoError::GeneBits`], [`EvoError::Range`] of ends, or of a frozen value, that are not
+    /// finite or not low to high.
+    pub fn new(genes: Vec<WordGene>) -> Result<Self, EvoError> {
+        if genes.is_empty() {
+            return Err(EvoError::NoGenes);
+        }
+        let range = |gene: &WordGene| match *gene {
+            WordGene::Word { bits, low, high, .. } => GeneRange::new(1, low, high)?.with_gene_bits(bits),
+            WordGene::Frozen(value) => GeneRange::new(0, value, value),
+        };
+        let ranges: Vec<GeneRange> = genes.iter().map(range).collect::<Result<_, _>>()?;
+        let words = ranges.iter().map(|range| range.count()).sum();
+        Ok(Self { genes, ranges, words })
+    }
+
+    /// What the parameters are made of \[parameters\].
+    pub fn genes(&self) -> &[WordGene] {
+        &self.genes
+    }
+
+    /// Number of words of a genome: parameters that are not frozen.
+    pub fn words(&self) -> usize {
+        self.words
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.genes.len()
+    }
+
+    /// Writes what words \[words\] stand for into a row of parameters \[parameters\], without allocating.
+    ///
+    /// # Errors
+    /// [`EvoError::Lengths`]; the row is then unchanged.
+    pub fn decode(&self, words: &[u16], parameters: &mut [f32]) -> Result<(), EvoError> {
+        self.check(words.len(), parameters.len())?;
+        let mut words = words.iter().copied();
+        for ((gene, range), parameter) in self.genes.iter().zip(&self.ranges).zip(parameters) {
+            *parameter = match *gene {
+                WordGene::Frozen(value) => value,
+                WordGene::Word { bits, code, .. } => range.decode(number(words.next().unwrap_or_default(), bits, code)),
+            };
+        }
+        Ok(())
+    }
+
+    /// Writes words \[words\] whose values are nearest to a row of parameters \[parameters\]; what is out of range becomes its
+    /// end. Bits that do not count are 0, and values of frozen parameters mean nothing.
+    ///
+    /// Parameters that were decoded from words are decoded from these again; the words are the same, but for bits that do not
+    /// count, unless a range has fewer numbers than words.
+    ///
+    /// # Errors
+    /// [`EvoError::Lengths`]; [`EvoError::Setting`] for a NaN where there is a word; the words are then unchanged.
+    pub fn encode(&self, parameters: &[f32], words: &mut [u16]) -> Result<(), EvoError> {
+        self.check(words.len(), parameters.len())?;
+        let pairs = || self.genes.iter().zip(&self.ranges).zip(parameters).filter(|((_, range), _)| range.count() > 0);
+        if pairs().any(|(_, parameter)| parameter.is_nan()) {
+            return Err(EvoError::Setting { name: "a parameter", value: f64::NAN, allowed: "a number" });
+        }
+        for (((gene, range), &parameter), word) in pairs().zip(words) {
+            if let WordGene::Word { bits, low, high, code } = *gene {
+                let number = nearest(*range, largest(bits), [low, high], parameter);
+                *word = if code == WordCode::Gray { number ^ number >> 1 } else { number };
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self, words: usize, parameters: usize) -> Result<(), EvoError> {
+        let fits = words == self.words && parameters == self.genes.len();
+        if fits { Ok(()) } else { Err(EvoError::Lengths { genes: words, ranges: self.words, out: parameters }) }
+    }
+}
+
+fn largest(bits: u32) -> u16 {
+    u16::MAX >> u16::BITS.saturating_sub(bits)
+}
+
+/// The number that the bits of a word are.
+fn number(word: u16, bits: u32, code: WordCode) -> u16 {
+    let word = word & largest(bits);
+    match code {
+        WordCode::Plain => word,
+        // Each bit is the exclusive or of all from it upwards.
+        WordCode::Gray => [1, 2, 4, 8].into_iter().fold(word, |word, shift| word ^ word >> shift),
+    }
+}
+
+/// The number whose value is nearest to a parameter.
+fn nearest(range: GeneRange, largest: u16, [low, high]: [f32; 2], parameter: f32) -> u16 {
+    let parameter = parameter.clamp(low, high);
+    let width = f64::from(high) - f64::from(low);
+    if width <= 0.0 {
+        return 0;
+    }
+    // Rounded, so one beside it may be nearer.
+    let about = ((f64::from(parameter) - f64::from(low)) / width * f64::from(largest)) as u16;
+    let candidates = about.saturating_sub(1)..=about.saturating_add(2).min(largest);
+    let distance = |number: u16| (f64::from(range.decode(number)) - f64::from(parameter)).abs();
+    candidates.min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or_default()
+}
+
+impl From<WordMap> for Vec<WordGene> {
+    fn from(map: WordMap) -> Self {
+        map.genes
+    }
+}
+
+impl TryFrom<Vec<WordGene>> for WordMap {
+    type Error = EvoError;
+
+    /// The map of these genes.
+    ///
+    /// # Errors
+    /// Those of [`WordMap::new`].
+    fn try_from(genes: Vec<WordGene>) -> Result<Self, EvoError> {
+        Self::new(genes)
+    }
+}
