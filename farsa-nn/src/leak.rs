@@ -87,6 +87,7 @@ impl Leak {
 
     /// Turns responses into activations [both as many as there are leaks]; `previous` are the responses of the step before
     /// in [`Leak::TwoTap`].
+    #[inline]
     pub(crate) fn apply(self, responses: &[f32], leaks: &[f32], activations: &mut [f32], previous: &mut [f32]) {
         let neurons = activations.iter_mut().zip(responses).zip(leaks);
         match self {

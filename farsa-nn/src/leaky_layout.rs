@@ -171,6 +171,7 @@ impl LeakyLayout {
     /// Cuts parameters [[`parameter_count`](Self::parameter_count)] into their kinds.
     ///
     /// Where the slice is too short the last kinds are, too; what is longer is left out.
+    #[inline]
     pub fn split<'a>(&self, parameters: &'a [f32]) -> LeakyParts<'a> {
         let part = |kind| {
             let Range { start, end } = self.range(kind);

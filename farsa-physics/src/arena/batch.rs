@@ -92,6 +92,7 @@ impl Batch {
     }
 
     /// One of the worlds; the last one for a number beyond it, which is a mistake.
+    #[inline]
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.lanes, "lane {index} of {}", self.lanes);
         Lane { model: self.alone.model(), words: &mut self.words, lanes: self.lanes, index: index.min(self.lanes - 1) }

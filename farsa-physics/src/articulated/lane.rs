@@ -159,15 +159,18 @@ impl Kinematics for Lane<'_> {
 }
 
 impl Joints for Lane<'_> {
+    #[inline]
     fn position(&self, joint: JointId) -> f32 {
         view::joint_position(self, joint)
     }
+    #[inline]
     fn speed(&self, joint: JointId) -> f32 {
         view::joint_speed(self, joint)
     }
 }
 
 impl Actuated for Lane<'_> {
+    #[inline]
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
         view::command(self, actuator.index(), value);
     }
@@ -183,6 +186,7 @@ impl Contacts for Lane<'_> {
     fn pair_contact(&self, pair: PairId) -> PairContact {
         view::pair_contact(self, pair)
     }
+    #[inline]
     fn touches(&self, pair: PairId) -> bool {
         view::touches(self, pair)
     }
