@@ -140,15 +140,18 @@ macro_rules! ports {
         }
 
         impl Joints for $world {
+            #[inline]
             fn position(&self, joint: JointId) -> f32 {
                 view::joint_position(self, joint)
             }
+            #[inline]
             fn speed(&self, joint: JointId) -> f32 {
                 view::joint_speed(self, joint)
             }
         }
 
         impl Actuated for $world {
+            #[inline]
             fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
                 view::command(self, actuator, value[0]);
             }
@@ -170,6 +173,7 @@ macro_rules! ports {
             fn pair_contact(&self, pair: PairId) -> PairContact {
                 view::pair_contact(self, pair)
             }
+            #[inline]
             fn touches(&self, pair: PairId) -> bool {
                 view::touches(self, pair)
             }
