@@ -6,10 +6,11 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use farsa::body::{
-    Actuated, AnalyticInfrared, Arrange, BodyId, InfraredAnalytic, Kinematics, MobileParts, MobileRobot, Motor as _,
-    Planar, Pose, Sensor as _, Twist, WheelVelocity, World as _,
-};
+use farsa::body::motors::WheelVelocity;
+use farsa::body::ports::{Actuated, Arrange, BodyId, Kinematics, Motor as _, Planar, Sensor as _, World as _};
+use farsa::body::robots::{MobileParts, MobileRobot};
+use farsa::body::sensors::infrared::{InfraredFormula, InfraredModel};
+use farsa::body::{Pose, Twist};
 use farsa::nn::{Controller, Perceptron, PerceptronLanes};
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, ArenaError, Batch, Cylinder, World};
@@ -38,7 +39,7 @@ fn one_through_ports(c: &mut Criterion) -> Result<(), ArenaError> {
     let parts = world.parts(0);
     let mut network = Perceptron::new(6, 2, 1.0, parameters()).expect("finite");
     let (mut x, mut y) = ([0.0; 8], [0.0; 2]);
-    let mut infrared = InfraredAnalytic::for_robot(&MobileRobot::khepera(), parts.body).expect("a Khepera's ring");
+    let mut infrared = InfraredFormula::for_robot(&MobileRobot::khepera(), parts.body).expect("a Khepera's ring");
     let mut wheels = WheelVelocity::new(parts.motors, MOST).expect("a Khepera's wheels");
     group.bench_function("world/sensor and motor", |b| {
         b.iter(|| {
@@ -85,7 +86,7 @@ where
         if near.body == Some(robot) {
             return;
         }
-        let model = AnalyticInfrared::for_radius(near.radius);
+        let model = InfraredModel::for_radius(near.radius);
         let distance = near.distance - radius;
         if distance >= model.range() {
             return;
@@ -100,7 +101,7 @@ where
         }
     });
     for sum in out {
-        *sum = AnalyticInfrared::reading(*sum);
+        *sum = InfraredModel::reading(*sum);
     }
 }
 

@@ -8,7 +8,10 @@ mod scene;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use farsa::body::{ArmAndHand, BodyId, Camera, CameraImage, Channels, Pose, Sensor, Tabletop};
+use farsa::body::Pose;
+use farsa::body::ports::{BodyId, Channels, Sensor};
+use farsa::body::robots::{ArmAndHand, Tabletop};
+use farsa::body::sensors::{Camera, CameraImage};
 use farsa::physics::articulated::{Batch, LANES, Model, Options, World};
 use scene::{Aba, Lanes, Loop, Step};
 

@@ -4,10 +4,12 @@
 
 use std::error::Error;
 
-use farsa::body::{
-    Actuated, Collider, Joint, JointId, Joints, KinematicTree, Law, Motor, MusclePair, Muscles, Pose, Robot, Segment,
-    World as _,
-};
+use farsa::body::Pose;
+use farsa::body::actuators::{Law, MusclePair};
+use farsa::body::kinematics::KinematicTree;
+use farsa::body::motors::Muscles;
+use farsa::body::ports::{Actuated, JointId, Joints, Motor, World as _};
+use farsa::body::robot::{Collider, Joint, Robot, Segment};
 use farsa::physics::articulated::{Model, Options, World};
 
 fn forearm(range: [f64; 2], muscles: MusclePair<f64>) -> Result<(Robot, Muscles), Box<dyn Error>> {

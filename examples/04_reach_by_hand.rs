@@ -4,10 +4,12 @@
 
 use std::error::Error;
 
-use farsa::body::{
-    ActuatorId, ArmAndHand, Goal, InverseKinematics, Joints, KinematicTree, Law, Motor, Muscles, Orientation, Point,
-    World as _,
-};
+use farsa::body::actuators::Law;
+use farsa::body::kinematics::{Goal, InverseKinematics, KinematicTree, Orientation};
+use farsa::body::motors::Muscles;
+use farsa::body::ports::{ActuatorId, Joints, Motor, World as _};
+use farsa::body::robots::ArmAndHand;
+use farsa::body::sensors::Point;
 use farsa::physics::articulated::{Model, Options, World};
 
 fn main() -> Result<(), Box<dyn Error>> {

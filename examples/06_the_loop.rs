@@ -4,10 +4,11 @@
 
 use std::error::Error;
 
-use farsa::body::{
-    ActuatorId, ArmAndHand, Axes, Channels, Contacts, Finger, JointPosition, Kinematics, Motor, Muscles, PairId, Point,
-    Robot, Sensor, ServoGroup, Signal, Tabletop, TargetPosition, Touch, World as _,
-};
+use farsa::body::motors::{Muscles, ServoGroup};
+use farsa::body::ports::{ActuatorId, Channels, Contacts, Kinematics, Motor, PairId, Sensor, World as _};
+use farsa::body::robot::Robot;
+use farsa::body::robots::{ArmAndHand, Finger, Tabletop};
+use farsa::body::sensors::{Axes, JointPosition, Point, Signal, TargetPosition, Touch};
 use farsa::evo::words::{GeneRange, decode, randomize};
 use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Digest, Domain, Stream};

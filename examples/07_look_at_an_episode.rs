@@ -5,10 +5,11 @@
 use std::error::Error;
 use std::fs;
 
-use farsa::body::{
-    ArmAndHand, JointPosition, Kinematics as _, Motor as _, Recorder as _, Sensor as _, ServoGroup, ServoRange,
-    Tabletop, World as _,
-};
+use farsa::body::Recorder as _;
+use farsa::body::motors::{ServoGroup, ServoRange};
+use farsa::body::ports::{Kinematics as _, Motor as _, Sensor as _, World as _};
+use farsa::body::robots::{ArmAndHand, Tabletop};
+use farsa::body::sensors::JointPosition;
 use farsa::physics::articulated::{Model, Options, World};
 use farsa_view::{Camera, Page, Picture, Recording, Schema};
 

@@ -5,10 +5,11 @@
 use std::error::Error;
 use std::fs;
 
-use farsa::body::{
-    Actuated as _, Arrange as _, BodyId, Camera, Chain, Collider, ColorBand, ColorBlobs, Icub, Joint, JointControl,
-    Joints as _, MassProperties, Pose, Recorder as _, Robot, Segment, Sensor as _, Shape, Surface, Twist, World as _,
-};
+use farsa::body::ports::{Actuated as _, Arrange as _, BodyId, Joints as _, Sensor as _, World as _};
+use farsa::body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa::body::robots::{Chain, Icub, JointControl};
+use farsa::body::sensors::{Camera, ColorBand, ColorBlobs};
+use farsa::body::{Pose, Recorder as _, Twist};
 use farsa::physics::articulated::{Model, Options, World};
 use farsa_view::{Page, Recording, Schema};
 

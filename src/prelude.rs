@@ -16,7 +16,7 @@
 //!     let number = square.add_robot(robot.clone(), [0.25, 0.25], 0.3);
 //!     let mut world = arena::World::new(&square)?;
 //!     let parts = world.parts(number);
-//!     let mut sensors = InfraredAnalytic::for_robot(&robot, parts.body)?;
+//!     let mut sensors = InfraredFormula::for_robot(&robot, parts.body)?;
 //!     let mut motors = WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32)?;
 //!
 //!     // A network between the two; its parameters are what evolves.
@@ -52,18 +52,7 @@
 //! }
 //! ```
 
-pub use farsa_body::World as _;
-pub use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, BodyPose, Channels, Contacts, Delayed, Height, JointId, JointPosition,
-    JointSpeed, Joints, Kinematics, LightSensors, LinearCamera, Motor, Muscles, Noise, Noisy, PairId, Planar, Pose,
-    Rays, Recorder, Scaled, Sensor, ServoGroup, Signal, Snapshot, SpeedAndTurn, TargetPosition, TorqueMotor, Touch,
-    Twist, WheelSpeed, WheelVelocity,
-};
-#[cfg(feature = "alloc")]
-pub use farsa_body::{
-    ArmAndHand, Collider, GroundColor, InfraredAnalytic, InfraredRays, Joint, Law, MassProperties, MobileParts,
-    MobileRobot, Robot, Segment, Servo, Shape, Tabletop,
-};
+pub use farsa_body::prelude::*;
 #[cfg(feature = "alloc")]
 pub use farsa_evo::words::{
     GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa, decode,

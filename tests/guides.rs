@@ -180,12 +180,14 @@ mod mistakes {
     //! What the guides say of mistakes, by making them.
 
     use super::guide;
+    use farsa::body::Pose;
+    use farsa::body::actuators::{Law, Servo};
+    use farsa::body::ports::{Actuated, ActuatorId, BodyId, Channels, JointId, Kinematics, Motor, Sensor};
+    use farsa::body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+    use farsa::body::robots::{ArmAndHand, InfraredRing, MobileRobot};
+    use farsa::body::sensors::infrared::InfraredRays;
     use farsa::body::testing::{check_motor, check_sensor};
-    use farsa::body::{
-        Actuated, ActuatorId, ArmAndHand, BodyId, Channels, Collider, InfraredRays, InfraredRing, Joint, JointId,
-        Kinematics, Law, MassProperties, MobileRobot, Motor, Noise, Noisy, Pose, Robot, Segment, Sensor, Servo, Shape,
-        Surface,
-    };
+    use farsa::body::wrappers::{Noise, Noisy};
     use farsa::num::{Domain, Stream};
     use farsa::physics::arena::{Arena, World};
     use farsa::physics::articulated::{Model, Options};

@@ -20,7 +20,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use engine::{Engine, Ours, Theirs};
-use farsa::body::{ArmAndHand, Contacts, PairId, Snapshot, Tabletop, World as _};
+use farsa::body::ports::{Contacts, PairId, Snapshot, World as _};
+use farsa::body::robots::{ArmAndHand, Tabletop};
 use farsa::num::Scalar;
 use farsa::physics::articulated::{Precision, World};
 use farsa_experiments::reach_grasp_lift::{Config, Scene};

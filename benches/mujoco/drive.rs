@@ -1,6 +1,7 @@
 //! Commands of the arm and hand that a script makes up.
 
-use farsa::body::{Actuated, ActuatorId, ArmAndHand, BodyId, Handles, JointId, Joints};
+use farsa::body::ports::{Actuated, ActuatorId, BodyId, Handles, JointId, Joints};
+use farsa::body::robots::ArmAndHand;
 use farsa_experiments::reach_grasp_lift::{Statics, Timetable};
 
 use crate::phase::{JOINTS, MUSCLES, WORDS};

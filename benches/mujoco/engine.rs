@@ -5,7 +5,8 @@ use std::io::{BufRead, BufReader, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 
-use farsa::body::{ActuatorId, ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, PairId, Tabletop, World as _};
+use farsa::body::ports::{ActuatorId, BodyId, Contacts, Handles, JointId, Joints, PairId, World as _};
+use farsa::body::robots::{ArmAndHand, Tabletop};
 use farsa::physics::articulated;
 use farsa_experiments::reach_grasp_lift::Scene;
 

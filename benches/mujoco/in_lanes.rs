@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use farsa::body::World as _;
+use farsa::body::ports::World as _;
 use farsa::num::Scalar;
 use farsa::num::fearless_simd::{Level, Simd, f32x8, f32x16};
 use farsa::physics::articulated::{Model, Scratch, World, step};

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use farsa::body::{ArmAndHand, Finger, Motor as _, Pose, Twist};
+use farsa::body::ports::Motor as _;
+use farsa::body::robots::{ArmAndHand, Finger};
+use farsa::body::{Pose, Twist};
 use farsa::num::Scalar;
 use farsa_experiments::reach_grasp_lift::{GraspPlan, Motors, Scene, Statics, Timetable};
 use farsa_lab::EpisodeId;

@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use farsa::body::{Actuated, ActuatorId, ArmAndHand, Arrange, Joints, Kinematics, Law, Pose, Tabletop, Twist};
+use farsa::body::actuators::Law;
+use farsa::body::ports::{Actuated, ActuatorId, Arrange, Joints, Kinematics};
+use farsa::body::robots::{ArmAndHand, Tabletop};
+use farsa::body::{Pose, Twist};
 use farsa::physics::articulated::{Model, Options, Precision, World};
 use farsa_experiments::reach_grasp_lift::Scene;
 

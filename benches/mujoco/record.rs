@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use farsa::body::{ArmAndHand, Arrange, Motor as _, Pose, Tabletop, Twist, World as _};
+use farsa::body::ports::{Arrange, Motor as _, World as _};
+use farsa::body::robots::{ArmAndHand, Tabletop};
+use farsa::body::{Pose, Twist};
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa_experiments::reach_grasp_lift::{Scene, ScriptEpisode, Statics, Timetable};
 use farsa_lab::{Episode, EpisodeId};

@@ -10,10 +10,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use farsa::body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Chain, Contacts, Icub, JointId, Law, Pair, PairId, Robot,
-    Snapshot, World as _,
-};
+use farsa::body::actuators::Law;
+use farsa::body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, PairId, Snapshot, World as _};
+use farsa::body::robot::{Pair, Robot};
+use farsa::body::robots::{ArmAndHand, Chain, Icub};
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa::physics::articulated::{Batch, Model, Options, World};
 use farsa_models::{MjcfOptions, mjcf};

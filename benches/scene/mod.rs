@@ -4,10 +4,10 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-use farsa::body::{
-    ArmAndHand, BodyId, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Sensor, Snapshot, Tabletop,
-    World as _,
-};
+use farsa::body::actuators::{Law, MusclePair};
+use farsa::body::ports::{BodyId, Channels, Contacts, Motor, PairId, Sensor, Snapshot, World as _};
+use farsa::body::robot::Robot;
+use farsa::body::robots::{ArmAndHand, Tabletop};
 use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Instructions, Stream};
 use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};

@@ -3,10 +3,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa::body::{
-    ArmAndHand, Channels, Contacts, InfraredAnalytic, JointPosition, JointSpeed, MobileRobot, Motor, Muscles, PairId,
-    Sensor, ServoGroup, Tabletop, Touch, WheelSpeed, WheelVelocity, World as _,
-};
+use farsa::body::motors::{Muscles, ServoGroup, WheelVelocity};
+use farsa::body::ports::{Channels, Contacts, Motor, PairId, Sensor, World as _};
+use farsa::body::robots::{ArmAndHand, MobileRobot, Tabletop};
+use farsa::body::sensors::{JointPosition, JointSpeed, Touch, WheelSpeed};
+use farsa::body::sensors::infrared::InfraredFormula;
 use farsa::nn::block::{Architecture, BlockNetwork};
 use farsa::nn::{Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork};
 use farsa::num::{Domain, Stream};
@@ -69,7 +70,7 @@ fn arm_and_hand() -> Result<(), i32> {
     let mut speeds: Vec<_> = ArmAndHand::joints().into_iter().map(JointSpeed::new).collect();
     let pairs = 0..world.pairs() as u16;
     let mut touch = made(Touch::new(pairs.clone().map(PairId).collect::<Vec<_>>(), 3.0))?;
-    let mut muscles: Vec<_> = (0..7).map(|pair| Muscles::new(farsa::body::ActuatorId(pair))).collect();
+    let mut muscles: Vec<_> = (0..7).map(|pair| Muscles::new(farsa::body::ports::ActuatorId(pair))).collect();
     let mut hand = made(arm.servo_groups().into_iter().map(ServoGroup::new).collect::<Result<Vec<_>, _>>())?;
     let mut stream = Stream::new(1, Domain::Motor, 0, 0, 0);
     let mut x = vec![0.0; positions.channels().max(speeds.channels())];
@@ -109,7 +110,7 @@ fn kheperas() -> Result<(), i32> {
     let (mut rings, mut felt, mut wheels) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..usize::from(ROBOTS) {
         let parts = world.parts(i);
-        rings.push(made(InfraredAnalytic::for_robot(&robot, parts.body))?);
+        rings.push(made(InfraredFormula::for_robot(&robot, parts.body))?);
         felt.push(made(WheelSpeed::new(parts.wheels, fastest))?);
         wheels.push(made(WheelVelocity::new(parts.motors, fastest))?);
     }
@@ -155,7 +156,7 @@ fn networks() -> Result<(), i32> {
 
 #[cfg(feature = "lanes")]
 fn lanes() -> Result<(), i32> {
-    use farsa::body::{Actuated, ActuatorId};
+    use farsa::body::ports::{Actuated, ActuatorId};
     use farsa::num::Instructions;
 
     let robot = made(Tabletop::default().scene(&ArmAndHand::default()))?;

@@ -20,9 +20,10 @@ mod whole;
 
 use core::hint::black_box;
 
-use farsa::body::{
-    Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
-};
+use farsa::body::actuators::{Law, Torque};
+use farsa::body::motors::TorqueMotor;
+use farsa::body::ports::{Actuated, ActuatorId, Channels, Handles, JointId, Joints, Motor, Sensor};
+use farsa::body::sensors::JointPosition;
 use farsa::nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
 use farsa::nn::bytes::{Aligned, BlockNetworkBytes, PerceptronBytes};
 use farsa::nn::{Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Perceptron};

@@ -1,6 +1,7 @@
 //! With a heap: a description, a world of arm, hand, sphere and table, and evolution of words and of reals.
 
-use farsa::body::{ArmAndHand, Tabletop, World as _};
+use farsa::body::ports::World as _;
+use farsa::body::robots::{ArmAndHand, Tabletop};
 use farsa::evo::{EvoError, Strategy};
 use farsa::evo::covariance::{CmaEs, CmaEsConfig};
 use farsa::evo::words::{GaConfig, TruncationGa};

@@ -3,7 +3,9 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use farsa::body::{Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, JointId, Pose, Tabletop, Twist, World as _};
+use farsa::body::ports::{Actuated, ActuatorId, Arrange, BodyId, JointId, World as _};
+use farsa::body::robots::{ArmAndHand, Tabletop};
+use farsa::body::{Pose, Twist};
 use farsa::num::{Domain, Stream};
 use farsa::physics::rapier::{Options, World};
 use rapier3d::geometry::SolverFlags;

@@ -1,6 +1,10 @@
 //! An experiment of one's own: a Khepera learns to find a lamp.
 
-use farsa::body::{Beam, BodyId, LightSensors, MobileRobot, Pose, Twist, WheelVelocity};
+use farsa::body::motors::WheelVelocity;
+use farsa::body::ports::BodyId;
+use farsa::body::robots::MobileRobot;
+use farsa::body::sensors::{Beam, LightSensors};
+use farsa::body::{Pose, Twist};
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, Cylinder};
 use farsa_lab::{Controlled, EpisodeId, Error, Evaluator, InWorld, Neurocontroller, Objective, PlanarWorld};

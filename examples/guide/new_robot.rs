@@ -3,12 +3,12 @@
 use std::error::Error;
 use std::fs;
 
+use farsa::body::actuators::{Law, MusclePair, Servo};
+use farsa::body::motors::{Muscles, ServoGroup, ServoRange};
+use farsa::body::ports::{Contacts as _, JointId, Joints as _, Kinematics as _, Motor as _, World as _};
+use farsa::body::robot::{Collider, Joint, MassProperties, Robot, RobotError, Segment, Shape, Surface};
 use farsa::body::testing::{Probe, check_arrange, check_world};
-use farsa::body::{
-    Collider, Contacts as _, Joint, JointId, Joints as _, Kinematics as _, Law, MassProperties, Motor as _, MusclePair,
-    Muscles, Pose, Recorder as _, Robot, RobotError, Segment, Servo, ServoGroup, ServoRange, Shape, Surface,
-    World as _,
-};
+use farsa::body::{Pose, Recorder as _};
 use farsa::physics::articulated::{Model, Options, World};
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use farsa_view::{Camera, Page, Recording, Schema};

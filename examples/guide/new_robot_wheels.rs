@@ -3,10 +3,11 @@
 use std::error::Error;
 use std::fs;
 
-use farsa::body::{
-    Channels as _, Contacts as _, InfraredRays, InfraredRing, Kinematics as _, MobileRobot, Motor as _, PairId,
-    Recorder as _, Sensor as _, WheelVelocity, World as _,
-};
+use farsa::body::Recorder as _;
+use farsa::body::motors::WheelVelocity;
+use farsa::body::ports::{Channels as _, Contacts as _, Kinematics as _, Motor as _, PairId, Sensor as _, World as _};
+use farsa::body::robots::{InfraredRing, MobileRobot};
+use farsa::body::sensors::infrared::InfraredRays;
 use farsa::physics::arena::{Arena, Cylinder, World};
 use farsa_view::{Camera, Recording, Schema};
 

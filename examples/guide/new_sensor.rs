@@ -2,11 +2,11 @@
 
 use std::error::Error;
 
+use farsa::body::ports::{Actuated, Channels, Kinematics, Motor, Sensor, World as _};
+use farsa::body::robots::{ArmAndHand, MobileRobot, Tabletop};
+use farsa::body::sensors::infrared::InfraredRays;
 use farsa::body::testing::{check_motor, check_sensor};
-use farsa::body::{
-    Actuated, ArmAndHand, Channels, Delayed, InfraredRays, Kinematics, MobileRobot, Motor, Noise, Noisy, Sensor,
-    Tabletop, World as _,
-};
+use farsa::body::wrappers::{Delayed, Noise, Noisy};
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, Cylinder, World};
 use farsa::physics::articulated;

@@ -299,7 +299,7 @@ pub trait Channels {
 /// A sensor of one's own names the ports it needs and works in every world that has them:
 ///
 /// ```
-/// use farsa_body::{Channels, Kinematics, Sensor};
+/// use farsa_body::ports::{Channels, Kinematics, Sensor};
 ///
 /// /// How upright a body is: 1 upright, -1 upside down.
 /// struct Upright<B>(B);

@@ -14,7 +14,8 @@ use crate::pose::Pose;
 /// in a tick replaces or adds as the method says; what is not recorded is missing (NaN in a table).
 ///
 /// ```
-/// use farsa_body::{BodyId, Pose, Recorder};
+/// use farsa_body::ports::BodyId;
+/// use farsa_body::{Pose, Recorder};
 ///
 /// /// The greatest height that a body reached [m].
 /// struct Highest(BodyId, f32);
@@ -189,8 +190,9 @@ mod tests {
 
     #[test]
     fn a_world_tells_its_bodies_and_what_touches() {
+        use crate::Twist;
+        use crate::ports::{ActuatorId, JointId};
         use crate::ports::{Contacts, Handles};
-        use crate::{ActuatorId, JointId, Twist};
 
         struct Still;
         impl Handles for Still {

@@ -2,7 +2,9 @@
 #![cfg(feature = "alloc")]
 #![allow(missing_docs)]
 
-use farsa_body::{ArmAndHand, Goal, InverseKinematics, KinematicTree, Law, MusclePair, Orientation, Servo, Tabletop};
+use farsa_body::actuators::{Law, MusclePair, Servo};
+use farsa_body::kinematics::{Goal, InverseKinematics, KinematicTree, Orientation};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_num::{Digest, Real};
 
 fn efforts<R: Real>(digest: &mut Digest) {

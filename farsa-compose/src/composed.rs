@@ -1,6 +1,7 @@
 //! A composed experiment as it is evaluated, in any world.
 
-use farsa_body::{Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::robot::Robot;
 use farsa_lab::{
     Anatomy, Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive,
     MotorExport, NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,

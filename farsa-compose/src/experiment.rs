@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_body::Robot;
+use farsa_body::robot::Robot;
 use farsa_lab::{
     EpisodeId, Error, Evaluator, Experiment, InWorld, Lanes, PlanarWorld, Setting, Settings, StrategyDefinition,
     Truncation, Value as Given, read_text_file,

@@ -7,7 +7,10 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, Pose, Robot, Tabletop, Twist, World as _};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, World as _};
+use farsa_body::robot::Robot;
+use farsa_body::robots::Tabletop;
+use farsa_body::{Pose, Twist};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable};
 use farsa_lab::{EpisodeId, run_episode};
 use farsa_num::{Domain, Stream, sin_cos};
@@ -56,7 +59,7 @@ fn rest<R: Precision>(scene: &Scene, substeps: u32) -> [f64; 3] {
     let mut world = World::new(model);
     let at = [0.25, 0.1, scene.config.sphere_radius as f32];
     world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
-    world.place_joint(farsa_body::JointId(1), 1.0, 0.0);
+    world.place_joint(farsa_body::ports::JointId(1), 1.0, 0.0);
     world.finish_placement();
     for joint in 0..7_u16 {
         world.command(ActuatorId(joint), [0.0, 0.6]);

@@ -3,7 +3,7 @@
 //!
 //! Lengths are in legs, masses in hips, times in sqrt(leg length / gravity).
 
-use farsa_body::World as _;
+use farsa_body::ports::World as _;
 use farsa_experiments::WalkingModel;
 use farsa_experiments::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerEpisode};
 use farsa_lab::{Episode as _, EpisodeId};

@@ -1,6 +1,6 @@
 //! Settings that are joint angles of an iCub.
 
-use farsa_body::{Chain, Icub};
+use farsa_body::robots::{Chain, Icub};
 use farsa_lab::Error;
 
 /// Whether the angles of a chain \[deg\], the setting `key`, are within its joints' limits.

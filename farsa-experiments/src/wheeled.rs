@@ -1,6 +1,9 @@
 //! What is recorded and exported of wheeled robots in every experiment alike.
 
-use farsa_body::{AnalyticInfrared, BodyId, Handles, Kinematics, MobileRobot, Recorder};
+use farsa_body::Recorder;
+use farsa_body::ports::{BodyId, Handles, Kinematics};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared;
 use farsa_lab::{Evaluation, Intervention, Interventions, MotorExport, SensorExport, SensorReading, Task};
 use farsa_view::Schema;
 
@@ -54,7 +57,7 @@ pub(crate) fn infrared_exports<'a>(
 ) -> impl Iterator<Item = SensorExport> + 'a {
     let (linear, [zero, one]) = match model {
         InfraredModel::Rays => (true, [robot.infrared.range, 0.0]),
-        InfraredModel::Analytic => (false, AnalyticInfrared::WALL_ENDS),
+        InfraredModel::Analytic => (false, infrared::InfraredModel::WALL_ENDS),
         InfraredModel::Sampled(_) => (false, [robot.infrared.range, 0.0]),
     };
     names.into_iter().zip(angles).map(move |(name, angle)| {

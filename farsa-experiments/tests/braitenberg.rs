@@ -3,7 +3,7 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{Kinematics as _, World as _};
+use farsa_body::ports::{Kinematics as _, World as _};
 use farsa_experiments::Braitenberg;
 use farsa_experiments::braitenberg::{Config, Vehicle, VehicleEpisode};
 use farsa_lab::{Episode as _, EpisodeId, Evaluation, Experiment as _, Note, Outcome, Settings, Value};

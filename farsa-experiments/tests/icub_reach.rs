@@ -5,7 +5,7 @@ mod common;
 
 use std::sync::Arc;
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated as _, ActuatorId, Arrange as _, Contacts as _, JointId, Joints as _, Kinematics as _, PairId, World as _,
 };
 use farsa_experiments::icub_reach::{

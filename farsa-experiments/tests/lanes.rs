@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::Tabletop;
+use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
 use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey};

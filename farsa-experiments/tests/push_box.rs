@@ -2,7 +2,7 @@
 #![cfg(feature = "rapier")]
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_body::Kinematics as _;
+use farsa_body::ports::Kinematics as _;
 use farsa_experiments::PushBox;
 use farsa_experiments::push_box::{HomingPusher, PushConfig, PushEpisode, PushTrial};
 use farsa_lab::{EpisodeId, Experiment as _, Settings, Value, run_episode};

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use farsa_body::{ArmAndHand, Kinematics, World as _};
+use farsa_body::ports::{Kinematics, World as _};
+use farsa_body::robots::ArmAndHand;
 use farsa_experiments::reach_grasp_lift::{Config, Phase, Rewards, Scene, ScriptEpisode, TRIALS, Timetable, Trial};
 use farsa_lab::{Episode, EpisodeId};
 use farsa_physics::articulated::{Model, Precision, World};

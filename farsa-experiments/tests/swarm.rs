@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use farsa_body::BodyId;
+use farsa_body::ports::BodyId;
 use farsa_evo::words::randomize;
 use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, Gathering, aggregate};
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};

@@ -227,7 +227,7 @@ macro_rules! others {
 }
 
 others!(
-    farsa_body::RobotError,
+    farsa_body::robot::RobotError,
     farsa_models::ReadError,
     farsa_body::ChannelError,
     farsa_physics::articulated::ModelError,
@@ -459,8 +459,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_built_says_why() {
-        fn wheels() -> Result<farsa_body::WheelVelocity<u8>, Error> {
-            Ok(farsa_body::WheelVelocity::new([0, 1], -2.0)?)
+        fn wheels() -> Result<farsa_body::motors::WheelVelocity<u8>, Error> {
+            Ok(farsa_body::motors::WheelVelocity::new([0, 1], -2.0)?)
         }
         let error = wheels().unwrap_err();
         assert_eq!((error.to_string().as_str(), error.exit_code()), ("largest speed is -2", 1));

@@ -1,6 +1,6 @@
 //! How large the numbers of a model may be. What is read is within them, so that it is read again when it was written.
 
-use farsa_body::{Robot, RobotError, Shape};
+use farsa_body::robot::{Robot, RobotError, Shape};
 
 /// A radius, half a length and half an edge are below this [m].
 pub(crate) const LARGEST: f64 = 1e9;

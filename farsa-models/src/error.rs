@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use farsa_body::RobotError;
+use farsa_body::robot::RobotError;
 
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,7 @@
 //! Where the parts of the file are in the robot.
 
-use farsa_body::{BodyId, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
 /// Where a link or body of the file is in the robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_body::Robot;
+use farsa_body::robot::Robot;
 
 use crate::context::Context;
 use crate::error::ReadError;
@@ -17,7 +17,7 @@ use crate::xml::tree::Tree;
 /// A robot that was read from a file.
 ///
 /// **What is read.** URDF: links, inertials, joints but `planar` and `spherical` ones, limits, damping, collision shapes;
-/// a joint's largest effort makes a [`Torque`](farsa_body::Torque) of the joint's name. MJCF: `compiler`, `default` classes,
+/// a joint's largest effort makes a [`Torque`](farsa_body::actuators::Torque) of the joint's name. MJCF: `compiler`, `default` classes,
 /// `include`, bodies and `frame`s, inertials or the geoms' inertias, hinges, slides and free joints with range, damping,
 /// armature and `ref`, geoms, contact pairs with exclusions and surfaces as they are at rest, motors, position and velocity
 /// actuators on joints (also as `general`). Names that the format does not know are errors, with the nearest that it does.
@@ -36,7 +36,7 @@ use crate::xml::tree::Tree;
 /// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that hold all their points, the
 ///   latter two along the mesh's own axes or the principal axes of its surface; meshes that can touch nothing are left out.
 /// - *What is only drawn*: visuals of a URDF, unless a link has one of a mesh, and geoms of an MJCF of group 1 or 2 that can touch
-///   nothing, become [`Visual`](farsa_body::Visual)s with the colours that they have without a texture. Colours of other geoms are
+///   nothing, become [`Visual`](farsa_body::robot::Visual)s with the colours that they have without a texture. Colours of other geoms are
 ///   listed: what cameras see is not the look.
 /// - *Bounds*: radii and halves of lengths and edges are below 1e9 m, or an error; ends of ranges and efforts from 1e9 on are
 ///   none. What was read is written and read back as the same robot, but for what [`mjcf::write`](crate::mjcf::write()) and

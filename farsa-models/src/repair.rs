@@ -1,6 +1,8 @@
 //! Masses of segments that were read: what moves needs one, and only some inertias can be.
 
-use farsa_body::{BodyId, JointKind, MassProperties, Pose, Robot};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, MassProperties, Robot};
 
 use crate::error::{ReadError, SourceLocation};
 use crate::mesh::principal_axes::principal_axes;
@@ -88,7 +90,7 @@ fn move_fixed_masses(robot: &mut Robot, locations: &[SourceLocation], warnings: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{Joint, Segment};
+    use farsa_body::robot::{Joint, Segment};
 
     #[test]
     fn least_moments_and_balance() {

@@ -3,10 +3,12 @@
 
 use std::path::Path;
 
-use farsa_body::{
-    ArmAndHand, BodyId, Collider, Held, Joint, JointKind, KinematicTree, Law, MassProperties, Pose, Robot, Segment,
-    Shape, Surface, Tabletop, Torque,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Held, Law, Torque};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_models::{Keyframe, MjcfOptions, mjcf, urdf};
 use serde_json::Value;
 

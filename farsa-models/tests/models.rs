@@ -5,7 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_body::{KinematicTree, Pose, Robot};
+use farsa_body::Pose;
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::robot::Robot;
 use farsa_models::{Imported, Meshes, MjcfOptions, ReadOptions, Repair, mjcf, urdf};
 use serde_json::Value;
 

@@ -1,7 +1,8 @@
 //! What no planar world is built from, and places that there are not.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_body::{BodyId, MobileRobot, Sight};
+use farsa_body::ports::{BodyId, Sight};
+use farsa_body::robots::MobileRobot;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Area, Arena, ArenaError, Convex, Cylinder, FreePlace, Part, Wall, World};
 

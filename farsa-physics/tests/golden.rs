@@ -5,7 +5,10 @@
 mod common;
 
 use common::{Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, model, put_in_the_palm, scene};
-use farsa_body::{ArmAndHand, Arrange, BodyId, Contacts, Kinematics, Law, PairId, Rays, Robot, Surface, World as _};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Arrange, BodyId, Contacts, Kinematics, PairId, Rays, World as _};
+use farsa_body::robot::{Robot, Surface};
+use farsa_body::robots::ArmAndHand;
 use farsa_num::{Digest, Domain, Stream};
 use farsa_physics::articulated::{Options, Precision, World};
 

@@ -10,12 +10,15 @@ use std::cell::RefCell;
 
 use channels::channels_conform;
 use common::{Babble, commands, drive, first_point, model, points_of, scene, start};
-use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, Handles, Hit, Joint, JointId, Joints,
-    Kinematics, MassProperties, PairContact, PairId, Pose, Rays, Robot, Segment, ServoRange, Shape, Snapshot, Surface,
-    Twist, World as _,
+use farsa_body::motors::ServoRange;
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
+    Rays, Snapshot, World as _,
 };
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::robots::ArmAndHand;
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Digest, Domain, Instructions, Stream, sin_cos};
 use farsa_physics::articulated::{Batch, LANES, Lane, Model, ModelError, Options, World};
 
@@ -193,7 +196,7 @@ fn sliding_balls_have_the_bits_of_the_world_alone() {
         let model = model(&robot, Options { time_step: 0.1, substeps: 5, ..Options::default() });
         let slides: Vec<JointId> = robot
             .joints()
-            .filter(|joint| robot.segments[joint.index()].joint.kind == farsa_body::JointKind::Prismatic)
+            .filter(|joint| robot.segments[joint.index()].joint.kind == farsa_body::robot::JointKind::Prismatic)
             .collect();
         let of = |lane: usize| Stream::new(21, Domain::General, lane as u32, 0, 0);
         let mut touches = 0;
@@ -322,7 +325,7 @@ impl Handles for Alone {
     type Actuator = ActuatorId;
 }
 
-impl farsa_body::World for Alone {
+impl farsa_body::ports::World for Alone {
     fn step(&mut self) {
         self.batch.get_mut().step();
     }

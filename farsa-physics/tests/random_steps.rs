@@ -4,7 +4,10 @@
 mod common;
 
 use common::{Babble, commands, drive, first_point, half_thickness, model, points_of, start};
-use farsa_body::{ArmAndHand, Robot, ServoRange, Tabletop, World as _};
+use farsa_body::motors::ServoRange;
+use farsa_body::ports::World as _;
+use farsa_body::robot::Robot;
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, Options, World};
 

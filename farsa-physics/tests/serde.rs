@@ -2,7 +2,7 @@
 #![cfg(all(feature = "serde", feature = "alloc"))]
 #![allow(missing_docs)]
 
-use farsa_body::MobileRobot;
+use farsa_body::robots::MobileRobot;
 use farsa_physics::arena::{
     Area, Arena, ArenaError, CollisionRule, Convex, Cylinder, Part, RobotPlacement, Search, Wall, World,
 };
@@ -87,7 +87,9 @@ fn what_no_world_can_be_made_of_is_refused_with_its_number() {
 
 #[cfg(feature = "rapier")]
 mod rapier {
-    use farsa_body::{ArmAndHand, MobileRobot, Pose, Shape};
+    use farsa_body::Pose;
+    use farsa_body::robot::Shape;
+    use farsa_body::robots::{ArmAndHand, MobileRobot};
     use farsa_physics::arena::Arena;
     use farsa_physics::rapier::{
         ArenaOptions, ArenaScene, Block, Chassis, Geometry, Options, RapierError, Scene, SceneObject, World,

@@ -1,7 +1,7 @@
 //! The original's tables of measured infrared sensors: `.sam`.
 #![no_main]
 
-use farsa_body::{InfraredTable, InfraredTables};
+use farsa_body::sensors::infrared::{InfraredTable, InfraredTables};
 use farsa_fuzz::bounded;
 use libfuzzer_sys::fuzz_target;
 

@@ -1,4 +1,5 @@
-use farsa_body::{ArmAndHand, KinematicTree};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::robots::ArmAndHand;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arm = KinematicTree::new(&ArmAndHand::default().robot()?)?;

@@ -1,4 +1,4 @@
-use farsa_body::MusclePair;
+use farsa_body::actuators::MusclePair;
 
 fn main() {
     let elbow = MusclePair::thesis(300.0, 0.02, [-1.0, 1.0]);

@@ -1,4 +1,5 @@
-use farsa_body::{Actuated, Kinematics, MobileRobot, World as _};
+use farsa_body::ports::{Actuated, Kinematics, World as _};
+use farsa_body::robots::MobileRobot;
 use farsa_physics::arena::{Arena, ArenaError, World};
 
 fn main() -> Result<(), ArenaError> {

@@ -99,7 +99,7 @@ impl<R: Real> Velocity<R> {
 }
 
 impl<R: Real> Law<R> {
-    /// The effort at position `q` and speed `qdot` under `command`, as [`crate::Actuated::command`] describes it.
+    /// The effort at position `q` and speed `qdot` under `command`, as [`crate::ports::Actuated::command`] describes it.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let zero = q.constant(0.0);

@@ -8,7 +8,7 @@
 //! | a motor that holds a speed | [`Velocity`] | wanted speed [rad/s or m/s] |
 //! | a law of your own, computed once per control step | [`Held`] | effort, and the position at which it holds |
 //!
-//! A [`Law`] is one of these, in a [`Robot`](crate::Robot)'s description or alone. Laws run on plain floats and on SIMD
+//! A [`Law`] is one of these, in a [`Robot`](crate::robot::Robot)'s description or alone. Laws run on plain floats and on SIMD
 //! lanes, with equal bits.
 
 /// The torque of an actuator, with its stiffness and damping.

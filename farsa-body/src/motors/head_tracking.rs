@@ -13,7 +13,7 @@ use crate::pose::Pose;
 /// point is, to the left for the one and upwards for the other, by so much at most. Of a point that is not in front of the
 /// eye nothing is known, and the servos stay.
 ///
-/// The rule is our own. It is no [`Motor`](crate::Motor): it takes no values of a controller, and moves the servos by itself.
+/// The rule is our own. It is no [`Motor`](crate::ports::Motor): it takes no values of a controller, and moves the servos by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadTracking<B = BodyId, A = ActuatorId> {
     eye: (B, Pose),

@@ -123,7 +123,7 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for TorqueMotor<A> {
 
 /// Drives one joint at a speed, one channel: the speed is (2 y - 1) times the largest.
 ///
-/// The actuator's law is a [`Held`](crate::Held) without stiffness whose damping is the gain: its torque is gain times what is
+/// The actuator's law is a [`Held`](crate::actuators::Held) without stiffness whose damping is the gain: its torque is gain times what is
 /// lacking of the speed, solved implicitly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityMotor<A = ActuatorId> {

@@ -35,7 +35,7 @@ impl<A: Copy, const N: usize, W: Actuated<Actuator = A> + ?Sized> Motor<W> for L
     }
 }
 
-/// Sets what a robot signals to robots that hear it with a [`crate::SignalSensor`], one channel in [0, 1].
+/// Sets what a robot signals to robots that hear it with a [`crate::sensors::SignalSensor`], one channel in [0, 1].
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -12,7 +12,7 @@
 //! | a signal that other robots hear | [`SignalMotor`] | 1 |
 //! | a gripper or another attachment device | [`AttachmentMotor`] | 1 |
 //!
-//! All implement [`Motor`](crate::Motor) for any world with the ports that they name. Tuples, arrays and `Vec`s of motors
+//! All implement [`Motor`](crate::ports::Motor) for any world with the ports that they name. Tuples, arrays and `Vec`s of motors
 //! are motors. A value outside [0, 1] drives like the nearer end, NaN like 0. For noise, delay or damage put a
 //! [wrapper](crate::wrappers) around one. [`HeadTracking`] is no motor but a reflex: it moves two servos by itself.
 

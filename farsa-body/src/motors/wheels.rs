@@ -9,7 +9,7 @@ use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
 /// Drives the left and the right wheel, one channel each: the speed is (2 y - 1) times the largest.
 ///
-/// Of a shorter slice only the left wheel is driven. Wrap it in [`crate::Noisy`] for noise.
+/// Of a shorter slice only the left wheel is driven. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelVelocity<A = ActuatorId> {
     wheels: [A; 2],
@@ -49,7 +49,7 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for WheelVelocity<A> 
 /// largest speed; where one of them is beyond the largest speed, both are slowed down by the same factor, so that the
 /// robot keeps its curve and loses pace. A slice with one value drives straight on.
 ///
-/// Wrap it in [`crate::Noisy`] for noise.
+/// Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedAndTurn<A = ActuatorId> {
     wheels: [A; 2],

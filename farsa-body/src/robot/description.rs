@@ -76,7 +76,7 @@ pub struct Collider {
     /// Its frame in the segment's frame.
     pub placement: Pose<f64>,
     /// What colour it shows to cameras, red, green and blue [0..1]. Without one it is not there for cameras of a plane
-    /// ([`Sight`](crate::Sight)), and hides what is behind it from eyes with an image ([`Vision`](crate::Vision)).
+    /// ([`Sight`](crate::ports::Sight)), and hides what is behind it from eyes with an image ([`Vision`](crate::ports::Vision)).
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }

@@ -265,7 +265,7 @@ impl ArmAndHand {
     /// Upper arm, forearm, palm and phalanges have their collider's inertia as solids; the other segments that of balls
     /// as thick as their neighbours. The pairs are the thumb's two outer phalanges with the other fingers' two outer
     /// ones, neighbouring fingers' distal ones, and the palm with the thumb's two outer phalanges and the others'
-    /// distal ones; use [`crate::Tabletop`] or [`Robot::add_pair`] for others.
+    /// distal ones; use [`crate::robots::Tabletop`] or [`Robot::add_pair`] for others.
     ///
     /// # Errors
     /// What [`Robot::validate`] finds with the numbers given.

@@ -77,7 +77,7 @@ impl Wrist<'_> {
 ///
 /// All numbers are those of the right hand in the palm's frame: it lies in the wrist, x to the fingertips, y to the
 /// thumb, z out of the *back* of the hand. The left hand is its mirror image, y away from the thumb. Joints are named
-/// J8 to J27, with a prefix on a robot of two hands. Deviations from the source: [`crate::ArmAndHand`].
+/// J8 to J27, with a prefix on a robot of two hands. Deviations from the source: [`crate::robots::ArmAndHand`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Hand {

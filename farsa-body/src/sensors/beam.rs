@@ -23,7 +23,7 @@ impl Beam {
     /// and to the left of `angle`, the others evenly between them; a single ray lies in the middle. Without an allocator:
     ///
     /// ```
-    /// use farsa_body::Beam;
+    /// use farsa_body::sensors::Beam;
     ///
     /// let degree = core::f64::consts::PI / 180.0;
     /// let angles = [30.0 * degree, -30.0 * degree];

@@ -8,7 +8,7 @@ use crate::sensors::stance::Stance;
 /// blue.
 ///
 /// After [`GroundColor::rgb`] three a place, red, green and blue. The places are any list of points of the robot's frame.
-/// Wrap it in [`crate::Noisy`] for noise.
+/// Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundColor<L, B = BodyId> {
     body: B,

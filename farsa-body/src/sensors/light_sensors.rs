@@ -20,7 +20,7 @@ use crate::sensors::stance::Stance;
 /// another body or a wall; the own body hides only what is behind the sensor, and a lamp that one carries oneself is not
 /// seen.
 ///
-/// The sensors are any list of [`Beam`]s: where they sit and where they look to. Wrap it in [`crate::Noisy`] for noise.
+/// The sensors are any list of [`Beam`]s: where they sit and where they look to. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSensors<L, B = BodyId> {
     body: B,

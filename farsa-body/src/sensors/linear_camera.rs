@@ -46,13 +46,15 @@ impl ColorBand {
 /// farther one in part only; a channel is the share of its sector's rays that see its colour. Colours are never averaged:
 /// a ray that sees magenta counts for bands that hold magenta, not for red and blue. The own body is not seen.
 ///
-/// The rays and bands are any lists. Wrap it in [`crate::Noisy`] for noise. Red and blue robots to the left and to the
+/// The rays and bands are any lists. Wrap it in [`crate::wrappers::Noisy`] for noise. Red and blue robots to the left and to the
 /// right, each whether or not its other LED shines as well:
 ///
 /// ```
 /// # #[cfg(feature = "alloc")] {
+/// use farsa_body::ports::{Channels, Sensor};
+/// use farsa_body::robots::MobileRobot;
+/// use farsa_body::sensors::{ColorBand, LinearCamera};
 /// use farsa_body::testing::PlaneWorld;
-/// use farsa_body::{Channels, ColorBand, LinearCamera, MobileRobot, Sensor};
 ///
 /// let red = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };
 /// let blue = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0, 0.3, 1.0] };

@@ -21,7 +21,7 @@
 //! | whether the attachment device holds something | [`AttachmentSensor`] | 1 | `Planar` |
 //! | a label, an instruction, a bias that the experiment sets | [`Signal`] | any | none |
 //!
-//! All implement [`Sensor`](crate::Sensor) for any world that has the port. Tuples, arrays and `Vec`s of sensors are
+//! All implement [`Sensor`](crate::ports::Sensor) for any world that has the port. Tuples, arrays and `Vec`s of sensors are
 //! sensors. For noise, delay, another scale or damage put a [wrapper](crate::wrappers) around one.
 
 /// Rays that leave a robot's hull, and fans of them.
@@ -58,11 +58,6 @@ pub use beam::Beam;
 #[cfg(feature = "alloc")]
 pub use camera::{Camera, CameraImage, ColorBlobs, VisualOffset};
 pub use ground_color::GroundColor;
-pub use infrared::{AnalyticInfrared, InfraredAnalytic, InfraredRays};
-#[cfg(feature = "alloc")]
-pub use infrared::{
-    InfraredDrawing, InfraredGroups, InfraredTable, InfraredTableError, InfraredTables, SampledInfrared,
-};
 pub use laser_distance::LaserDistance;
 pub use light_sensors::LightSensors;
 pub use linear_camera::{ColorBand, LinearCamera};

@@ -13,7 +13,7 @@ use crate::sensors::stance::Stance;
 /// around
 /// straight ahead, the others follow counter-clockwise; of four they are ahead, left, behind and right. A robot is heard
 /// as loudly at every distance within the range, and through everything; it belongs to the sector of its centre. Wrap it
-/// in [`crate::Noisy`] for noise.
+/// in [`crate::wrappers::Noisy`] for noise.
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalSensor<const SECTORS: usize, B = BodyId> {

@@ -6,7 +6,7 @@ use crate::ports::{BodyId, Channels, JointId, Joints, Kinematics, Sensor};
 /// Reads how fast wheels turn, one channel each in [0, 1]: 1/2 + speed / (2 largest), 1/2 at rest.
 ///
 /// After [`WheelSpeed::signed`] in [-1, 1]: speed / largest, 0 at rest. A faster wheel reads like one at its largest
-/// speed, one whose speed is NaN like one at rest. Wrap it in [`crate::Noisy`] for noise.
+/// speed, one whose speed is NaN like one at rest. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSpeed<J = JointId, const N: usize = 2> {
     wheels: [J; N],
@@ -48,7 +48,7 @@ impl<J: Copy, const N: usize, W: Joints<Joint = J> + ?Sized> Sensor<W> for Wheel
 ///
 /// It is the robot's velocity less that which its wheels would give it if they rolled freely, in the robot's frame, over
 /// a largest speed: (v - radius (left + right) / 2) / largest and sideways / largest. 0 where nothing pushes it; a robot
-/// that drives against a wall reads -v / largest ahead. NaN reads as 0. Wrap it in [`crate::Noisy`] for noise.
+/// that drives against a wall reads -v / largest ahead. NaN reads as 0. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traction<B = BodyId, J = JointId> {
     body: B,

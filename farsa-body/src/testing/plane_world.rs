@@ -21,8 +21,9 @@ use crate::robots::mobile::{MobileParts, MobileRobot};
 /// effect.
 ///
 /// ```
+/// use farsa_body::ports::{Actuated, Kinematics, World};
+/// use farsa_body::robots::MobileRobot;
 /// use farsa_body::testing::PlaneWorld;
-/// use farsa_body::{Actuated, Kinematics, MobileRobot, World};
 ///
 /// let mut world = PlaneWorld::new();
 /// world.add_wall([[1.0, -1.0], [1.0, 1.0]], [1.0; 3]);

@@ -23,7 +23,7 @@ pub enum Noise {
 ///
 /// The numbers come in the order of ticks and channels from one stream. A reset rewinds the stream: episodes that
 /// should differ in their noise are each given their own with [`Noisy::reseed`]. Noise is never clamped; wrap in
-/// [`crate::Saturated`] what has to stay in a range.
+/// [`crate::wrappers::Saturated`] what has to stay in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noisy<T, M>(Wrapped<T, Source, M>);
 

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use farsa_body::{
-    ActuatorId, ArmAndHand, BodyId, Finger, Goal, InverseKinematics, JointId, KinematicTree, Law, MuscleVariant,
-    Orientation, Pose, Shape, Surface, Tabletop,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, MuscleVariant};
+use farsa_body::kinematics::{Goal, InverseKinematics, KinematicTree, Orientation};
+use farsa_body::ports::{ActuatorId, BodyId, JointId};
+use farsa_body::robot::{Shape, Surface};
+use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
 
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];

@@ -3,8 +3,10 @@
 use core::f32::consts::PI;
 
 use crate::shared::{BLUE, GREEN, RED, bands, read};
+use farsa_body::ports::{BodyId, Kinematics as _, Sight};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::{Beam, LightSensors, LinearCamera};
 use farsa_body::testing::PlaneWorld;
-use farsa_body::{Beam, BodyId, Kinematics as _, LightSensors, LinearCamera, MobileRobot, Sight};
 use proptest::prelude::*;
 
 #[test]

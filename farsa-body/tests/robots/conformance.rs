@@ -2,15 +2,17 @@
 
 use std::cell::Cell;
 
+use farsa_body::motors::{Muscles, TorqueMotor};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, ExternalForces, Handles, Hit, JointId, Joints,
+    Kinematics, Motor, PairContact, PairId, Rays, Sensor, Snapshot, World,
+};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::testing::{
     ConformanceError, PointWorld, Probe, Promise, check_arrange, check_external_forces, check_motor, check_rays,
     check_sensor, check_world,
 };
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, ExternalForces, Handles, Hit, JointId,
-    Joints, Kinematics, Motor, Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor,
-    Twist, World,
-};
+use farsa_body::{Pose, Twist};
 
 const POINTS: usize = 3;
 

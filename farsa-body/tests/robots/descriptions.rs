@@ -1,10 +1,11 @@
 //! Descriptions put together: bodies of bodies, robots of robots, things on tables, covers on colliders.
 
-use farsa_body::{
-    ArmAndHand, BodyId, Collider, Ground, Hand, Icub, IcubTabletop, InverseKinematicsError, Joint, JointId,
-    KinematicTree, Law, MassProperties, Pose, Robot, RobotError, Segment, Shape, Side, Solution, Surface, Tabletop,
-    Torque, Visual,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::kinematics::{InverseKinematicsError, KinematicTree, Solution};
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robot::{Collider, Ground, Joint, MassProperties, Robot, RobotError, Segment, Shape, Surface, Visual};
+use farsa_body::robots::{ArmAndHand, Hand, Icub, IcubTabletop, Side, Tabletop};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
@@ -318,7 +319,7 @@ fn the_hand_of_an_arm_has_the_arms_numbers() {
         palm_centre: [0.06, 0.001, -0.011],
         armature: 6e-4,
         damping: 0.003,
-        servo: farsa_body::Servo { stiffness: 2.0, damping: 0.05, limit: 0.4 },
+        servo: farsa_body::actuators::Servo { stiffness: 2.0, damping: 0.05, limit: 0.4 },
         knuckle_mass: 0.006,
         phalange_masses: [0.013, 0.009, 0.007],
         phalange_radii: [0.007, 0.0065, 0.006],

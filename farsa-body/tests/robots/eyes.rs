@@ -1,10 +1,12 @@
 //! Cameras with an image, by hand and by the kit; a head that follows a thing.
 
-use farsa_body::testing::{PointWorld, Promise, check_sensor, check_vision};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Camera, CameraImage, ChannelError, Channels, ColorBand, ColorBlobs, Handles,
-    HeadTracking, JointId, Kinematics, Pose, Seen, Sensor, ServoRange, Twist, Vision, VisualOffset,
+use farsa_body::motors::{HeadTracking, ServoRange};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Handles, JointId, Kinematics, Seen, Sensor, Vision,
 };
+use farsa_body::sensors::{Camera, CameraImage, ColorBand, ColorBlobs, VisualOffset};
+use farsa_body::testing::{PointWorld, Promise, check_sensor, check_vision};
+use farsa_body::{ChannelError, Pose, Twist};
 use farsa_num::sin_cos;
 
 fn tangent(angle: f64) -> f64 {
@@ -145,7 +147,7 @@ struct Broken(PointWorld, Fault);
 impl Handles for Broken {
     type Body = BodyId;
     type Joint = JointId;
-    type Actuator = farsa_body::ActuatorId;
+    type Actuator = farsa_body::ports::ActuatorId;
 }
 
 impl Vision for Broken {

@@ -1,10 +1,12 @@
 //! The iCub against Pinocchio's reading of its file (fixtures/icub.py), its mirror image, its chains and its errors.
 
 use crate::shared::apart;
-use farsa_body::{
-    ActuatorId, BodyId, Chain, Collider, Finger, Icub, IcubError, IcubPosture, JointControl, JointId, JointKind,
-    KinematicTree, Law, Pose, Robot, Shape, Side,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::{ActuatorId, BodyId, JointId};
+use farsa_body::robot::{Collider, JointKind, Robot, Shape};
+use farsa_body::robots::{Chain, Finger, Icub, IcubError, IcubPosture, JointControl, Side};
 use farsa_num::{Domain, Stream};
 use serde::Deserialize;
 
@@ -350,7 +352,7 @@ fn every_set_of_chains_is_a_robot() {
 #[test]
 fn servo_groups_are_those_of_the_arm_and_hand() {
     let icub = Icub::default();
-    let theirs = farsa_body::ArmAndHand::default().servo_groups();
+    let theirs = farsa_body::robots::ArmAndHand::default().servo_groups();
     for (side, first) in Side::ALL.into_iter().zip([20, 40]) {
         let groups = icub.servo_groups(side).expect("actuated");
         assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), 20);

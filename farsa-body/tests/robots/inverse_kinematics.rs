@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use crate::shared::apart;
-use farsa_body::{
-    BodyId, Goal, InverseKinematics, InverseKinematicsError, Joint, KinematicTree, MassProperties, Orientation, Pose,
-    Robot, Segment,
-};
+use farsa_body::Pose;
+use farsa_body::kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation};
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use proptest::prelude::*;
 
 /// Sliding joints along x, y and z within these ranges: the joint positions are the place of the body.

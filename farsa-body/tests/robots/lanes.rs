@@ -1,7 +1,7 @@
 //! A lane of an actuator's effort is the effort of that lane alone, bit for bit, at every instruction set of this
 //! machine.
 
-use farsa_body::{Effort, Held, Law, MusclePair, Servo, Torque};
+use farsa_body::actuators::{Effort, Held, Law, MusclePair, Servo, Torque};
 use farsa_num::fearless_simd::{dispatch, f32x8, f32x16};
 use farsa_num::{Instructions, Scalar};
 

@@ -3,13 +3,14 @@
 use core::f32::consts::PI;
 
 use crate::shared::{read, robots};
+use farsa_body::motors::{SpeedAndTurn, WheelVelocity};
+use farsa_body::ports::{Actuated, BodyId, Channels, Handles, Hit, JointId, Joints, Kinematics, Rays, Sensor, World};
+use farsa_body::ports::{ActuatorId, Motor};
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredFormula, InfraredRays};
+use farsa_body::sensors::{Beam, LaserDistance, Traction, WheelSpeed};
 use farsa_body::testing::{PlaneWorld, check_motor, check_sensor};
-use farsa_body::{
-    Actuated, Beam, BodyId, ChannelError, Channels, Handles, Hit, InfraredAnalytic, InfraredRays, JointId, Joints,
-    Kinematics, LaserDistance, MobileParts, MobileRobot, Pose, Rays, Sensor, SpeedAndTurn, Traction, Twist, WheelSpeed,
-    WheelVelocity, World,
-};
-use farsa_body::{ActuatorId, Motor};
+use farsa_body::{ChannelError, Pose, Twist};
 use proptest::prelude::*;
 
 /// A robot of this kind among walls and discs.
@@ -47,8 +48,8 @@ fn sensors_and_motors_keep_their_promises() {
         let mut sensors: Vec<Box<dyn Sensor<PlaneWorld>>> = vec![
             Box::new(InfraredRays::for_robot(&robot, parts.body).unwrap()),
             Box::new(InfraredRays::new(parts.body, [beam], 1, 0.0, 0.1).unwrap()),
-            Box::new(InfraredAnalytic::for_robot(&robot, parts.body).unwrap()),
-            Box::new(InfraredAnalytic::new(parts.body, [[1.0, 0.0]], 0.035).unwrap()),
+            Box::new(InfraredFormula::for_robot(&robot, parts.body).unwrap()),
+            Box::new(InfraredFormula::new(parts.body, [[1.0, 0.0]], 0.035).unwrap()),
             Box::new(LaserDistance::new(parts.body, fan(), 0.0, 1.0).unwrap()),
             Box::new(WheelSpeed::new(parts.wheels, largest).unwrap()),
             Box::new(WheelSpeed::new(parts.wheels, largest).unwrap().signed()),
@@ -110,7 +111,7 @@ fn the_analytic_ring_adds_what_is_near() {
     let mut world = PlaneWorld::new();
     let parts = world.add_robot(&robot, [0.0, 0.0], 0.0);
     let ahead = [[1.0, 0.0]];
-    let mut sensor = InfraredAnalytic::new(parts.body, ahead, 0.035).unwrap();
+    let mut sensor = InfraredFormula::new(parts.body, ahead, 0.035).unwrap();
     world.add_wall([[0.035 + 0.023, -1.0], [0.035 + 0.023, 1.0]], [1.0; 3]);
     assert!((read(&mut sensor, &world)[0] - 0.5).abs() < 1e-5);
     let disc = world.add_disc([0.035 + 0.021 + 0.0125, 0.0], 0.0125, [1.0; 3]);
@@ -120,7 +121,7 @@ fn the_analytic_ring_adds_what_is_near() {
     // With its edge beyond the robot's centre it is still on the same side.
     world.place(disc, [0.01, 0.0], 0.0);
     assert_eq!(read(&mut sensor, &world), [1.0]);
-    assert_eq!(read(&mut InfraredAnalytic::new(parts.body, [[-1.0, 0.0]], 0.035).unwrap(), &world), [0.0]);
+    assert_eq!(read(&mut InfraredFormula::new(parts.body, [[-1.0, 0.0]], 0.035).unwrap(), &world), [0.0]);
 }
 
 #[test]
@@ -134,8 +135,8 @@ fn bad_configurations_are_refused_with_their_numbers() {
     assert!(InfraredRays::new(b, &beams, 0, 0.0, 0.1).is_err());
     assert!(InfraredRays::new(b, &beams[..0], 1, 0.0, 0.1).is_err());
     assert!(LaserDistance::new(b, &beams[..0], 0.0, 0.1).is_err());
-    assert!(InfraredAnalytic::new(b, [[0.0; 2]; 0], 0.1).is_err());
-    assert!(InfraredAnalytic::new(b, [[2.0, 0.0]], 0.1).is_err());
+    assert!(InfraredFormula::new(b, [[0.0; 2]; 0], 0.1).is_err());
+    assert!(InfraredFormula::new(b, [[2.0, 0.0]], 0.1).is_err());
     let long = [Beam { from: [0.0; 2], direction: [1.0, 1.0] }];
     assert!(matches!(InfraredRays::new(b, long, 1, 0.0, 0.1), Err(ChannelError::Value { .. })));
     let nowhere = [Beam { from: [f32::NAN, 0.0], direction: [1.0, 0.0] }];
@@ -143,7 +144,7 @@ fn bad_configurations_are_refused_with_their_numbers() {
     for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         assert!(InfraredRays::new(b, &beams, 1, 0.0, bad).is_err());
         assert!(LaserDistance::new(b, &beams, 0.0, bad).is_err());
-        assert!(InfraredAnalytic::new(b, [[1.0, 0.0]], bad).is_err());
+        assert!(InfraredFormula::new(b, [[1.0, 0.0]], bad).is_err());
         assert!(WheelSpeed::new([JointId(0)], bad).is_err());
         assert!(Traction::new(b, [JointId(0); 2], bad, 1.0).is_err());
         assert!(Traction::new(b, [JointId(0); 2], 1.0, bad).is_err());
@@ -153,7 +154,7 @@ fn bad_configurations_are_refused_with_their_numbers() {
     assert!(InfraredRays::new(b, &beams, 1, f32::NAN, 0.1).is_err());
     let mut blind = MobileRobot::khepera();
     blind.infrared.angles.clear();
-    assert!(InfraredRays::for_robot(&blind, b).is_err() && InfraredAnalytic::for_robot(&blind, b).is_err());
+    assert!(InfraredRays::for_robot(&blind, b).is_err() && InfraredFormula::for_robot(&blind, b).is_err());
 }
 
 /// The speeds that a motor's values give the wheels of a robot with a largest speed of 2 rad/s.
@@ -340,7 +341,7 @@ proptest! {
             let ((left, b), (right, _)) = (scene(1.0), scene(-1.0));
             let mut rings: Vec<Box<dyn Sensor<PlaneWorld>>> = vec![
                 Box::new(InfraredRays::for_robot(&robot, b).unwrap()),
-                Box::new(InfraredAnalytic::for_robot(&robot, b).unwrap()),
+                Box::new(InfraredFormula::for_robot(&robot, b).unwrap()),
             ];
             for (ring, name) in rings.iter_mut().zip(["rays", "analytic"]) {
                 let (here, there) = (read(ring.as_mut(), &left), read(ring.as_mut(), &right));
@@ -368,7 +369,7 @@ proptest! {
         let b = b.body;
         let [mut rays, mut analytic] = [
             Box::new(InfraredRays::for_robot(&robot, b).unwrap()) as Box<dyn Sensor<PlaneWorld>>,
-            Box::new(InfraredAnalytic::for_robot(&robot, b).unwrap()),
+            Box::new(InfraredFormula::for_robot(&robot, b).unwrap()),
         ];
         for (ring, range) in [(&mut rays, 0.05), (&mut analytic, 0.033)] {
             let (here, there) = (read(ring.as_mut(), &near), read(ring.as_mut(), &far));

@@ -1,9 +1,10 @@
 //! The kit passes a world of the plane that is right and names what is wrong.
 
-use farsa_body::testing::{ConformanceError, PlaneWorld, Promise, check_planar, check_rays};
-use farsa_body::{
-    Actuated, ActuatorId, BodyId, Handles, JointId, Lamp, MobileRobot, NearbySurface, Planar, PlanarHit, Sight,
+use farsa_body::ports::{
+    Actuated, ActuatorId, BodyId, Handles, JointId, Lamp, NearbySurface, Planar, PlanarHit, Sight,
 };
+use farsa_body::robots::MobileRobot;
+use farsa_body::testing::{ConformanceError, PlaneWorld, Promise, check_planar, check_rays};
 
 const PLACES: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, -0.4], [-0.5, 0.5], [-0.6, 0.6]];
 const RANGE: f32 = 0.7;

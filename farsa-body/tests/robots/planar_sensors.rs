@@ -4,13 +4,16 @@ use core::f32::consts::PI;
 use std::path::{Path, PathBuf};
 
 use crate::shared::{RED, bands, read};
-use farsa_body::testing::{PlaneWorld, check_motor, check_sensor};
-use farsa_body::{
-    Actuated, ActuatorId, AttachmentMotor, AttachmentSensor, Beam, BodyId, ChannelError, ColorBand, GroundColor,
-    Handles, InfraredAnalytic, InfraredTable, InfraredTables, JointId, Kinematics, Lamp, Leds, LightSensors,
-    LinearCamera, MobileParts, MobileRobot, Motor, NearbySurface, Planar, PlanarHit, Pose, SampledInfrared, Sensor,
-    Sight, SignalMotor, SignalSensor, Twist,
+use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor};
+use farsa_body::ports::{
+    Actuated, ActuatorId, BodyId, Handles, JointId, Kinematics, Lamp, Motor, NearbySurface, Planar, PlanarHit, Sensor,
+    Sight,
 };
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredFormula, InfraredTable, InfraredTables, SampledInfrared};
+use farsa_body::sensors::{AttachmentSensor, Beam, ColorBand, GroundColor, LightSensors, LinearCamera, SignalSensor};
+use farsa_body::testing::{PlaneWorld, check_motor, check_sensor};
+use farsa_body::{ChannelError, Pose, Twist};
 use proptest::prelude::*;
 
 /// A `MarXbot` that looks along x, with things around it.
@@ -383,7 +386,7 @@ proptest! {
             Box::new(SignalSensor::<3>::new(b, 1.0).unwrap()),
             Box::new(SignalSensor::<3>::new(b, 1.0).unwrap().mean()),
             Box::new(AttachmentSensor::new(b)),
-            Box::new(InfraredAnalytic::for_robot(&robot, b).unwrap()),
+            Box::new(InfraredFormula::for_robot(&robot, b).unwrap()),
             Box::new(SampledInfrared::new(b, 0.035, tables()).unwrap()),
         ];
         for (i, sensor) in sensors.iter_mut().enumerate() {

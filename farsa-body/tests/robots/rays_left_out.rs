@@ -4,11 +4,14 @@ use core::cell::{Cell, RefCell};
 use core::f32::consts::PI;
 
 use crate::shared::{GREEN, RED, read, robots};
-use farsa_body::testing::PlaneWorld;
-use farsa_body::{
-    ActuatorId, Beam, BodyId, ColorBand, Handles, Hit, InfraredGroups, InfraredRays, JointId, Kinematics, LinearCamera,
-    MobileParts, MobileRobot, NearbySurface, PlanarHit, Pose, Rays, Sensor, Sight, Twist,
+use farsa_body::ports::{
+    ActuatorId, BodyId, Handles, Hit, JointId, Kinematics, NearbySurface, PlanarHit, Rays, Sensor, Sight,
 };
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredGroups, InfraredRays};
+use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
+use farsa_body::testing::PlaneWorld;
+use farsa_body::{Pose, Twist};
 use proptest::prelude::*;
 
 /// Start and direction of a ray.

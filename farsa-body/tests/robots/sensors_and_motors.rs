@@ -3,13 +3,17 @@
 use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
 use crate::shared::read;
-use farsa_body::testing::{PointWorld, check_motor, check_sensor};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, Axes, BodyId, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce,
-    Contacts, Delayed, Handles, Height, JointId, JointPosition, JointSpeed, Joints, Kinematics, Lesioned, Motor,
-    Muscles, Noise, Noisy, PairContact, PairId, Point, Pose, Recorded, Saturated, Scaled, Sensor, ServoGroup,
-    ServoRange, Signal, Stuck, StuckAt, TargetPosition, TorqueMotor, Touch, Twist, VelocityMotor, World,
+use farsa_body::motors::{Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor,
+    PairContact, PairId, Sensor, World,
 };
+use farsa_body::sensors::{
+    Axes, BodyPose, BodyVelocity, ContactForce, Height, JointPosition, JointSpeed, Point, Signal, TargetPosition, Touch,
+};
+use farsa_body::testing::{PointWorld, check_motor, check_sensor};
+use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt};
+use farsa_body::{ChannelError, Pose, Twist};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

@@ -1,11 +1,15 @@
 //! Descriptions and configurations survive being written and read.
 #![cfg(all(feature = "serde", feature = "alloc"))]
 
-use farsa_body::{
-    ActuatorId, ArmAndHand, BodyId, BodyPose, Collider, Goal, Held, Hit, InverseKinematics, Joint, KinematicTree, Law,
-    MassProperties, MobileRobot, MuscleVariant, Muscles, Noise, Orientation, PairContact, Pose, Robot, Segment, Shape,
-    Surface, Tabletop, Torque,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Held, Law, MuscleVariant, Torque};
+use farsa_body::kinematics::{Goal, InverseKinematics, KinematicTree, Orientation};
+use farsa_body::motors::Muscles;
+use farsa_body::ports::{ActuatorId, BodyId, Hit, PairContact};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::robots::{ArmAndHand, MobileRobot, Tabletop};
+use farsa_body::sensors::BodyPose;
+use farsa_body::wrappers::Noise;
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Written and read.

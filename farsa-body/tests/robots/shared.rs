@@ -1,6 +1,8 @@
 //! What several of these tests look through.
 
-use farsa_body::{ColorBand, MobileRobot, Sensor};
+use farsa_body::ports::Sensor;
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::ColorBand;
 
 pub(crate) const RED: [f32; 3] = [1.0, 0.0, 0.0];
 pub(crate) const GREEN: [f32; 3] = [0.0, 1.0, 0.0];

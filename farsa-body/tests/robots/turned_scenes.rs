@@ -4,12 +4,16 @@ use core::f32::consts::PI;
 use std::sync::OnceLock;
 
 use crate::shared::{BLUE, RED, bands, read};
-use farsa_body::testing::PlaneWorld;
-use farsa_body::{
-    Actuated, ActuatorId, BodyId, GroundColor, Handles, InfraredAnalytic, InfraredGroups, InfraredRays, InfraredTable,
-    InfraredTables, JointId, Kinematics, Lamp, LaserDistance, LightSensors, LinearCamera, MobileRobot, NearbySurface,
-    Planar, PlanarHit, Pose, SampledInfrared, Sensor, Sight, SignalSensor, Twist,
+use farsa_body::ports::{
+    Actuated, ActuatorId, BodyId, Handles, JointId, Kinematics, Lamp, NearbySurface, Planar, PlanarHit, Sensor, Sight,
 };
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared::{
+    InfraredFormula, InfraredGroups, InfraredRays, InfraredTable, InfraredTables, SampledInfrared,
+};
+use farsa_body::sensors::{GroundColor, LaserDistance, LightSensors, LinearCamera, SignalSensor};
+use farsa_body::testing::PlaneWorld;
+use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use proptest::prelude::*;
 
@@ -68,7 +72,7 @@ fn planar<W: Planar<Body = BodyId> + Kinematics>(b: BodyId) -> Vec<(Box<dyn Sens
         (Box::new(LinearCamera::for_view(b, 1.5, 2, 40, bands(), 2.0).unwrap()), ray),
         (Box::new(SignalSensor::<4>::new(b, 1.0).unwrap()), 0.0),
         (Box::new(SignalSensor::<3>::new(b, 1.0).unwrap().mean()), 0.0),
-        (Box::new(InfraredAnalytic::for_robot(&robot, b).unwrap()), 1e-3),
+        (Box::new(InfraredFormula::for_robot(&robot, b).unwrap()), 1e-3),
         (Box::new(SampledInfrared::new(b, 0.085, tables()).unwrap()), row),
     ]
 }
@@ -76,7 +80,7 @@ fn planar<W: Planar<Body = BodyId> + Kinematics>(b: BodyId) -> Vec<(Box<dyn Sens
 /// Those that cast rays in space.
 fn rays(b: BodyId) -> Vec<(Box<dyn Sensor<PlaneWorld>>, f32)> {
     let robot = MobileRobot::marxbot();
-    let fan: Vec<_> = (0..7).map(|i| farsa_body::Beam::in_cone(0.085, 0.3, 1.0, i, 7)).collect();
+    let fan: Vec<_> = (0..7).map(|i| farsa_body::sensors::Beam::in_cone(0.085, 0.3, 1.0, i, 7)).collect();
     vec![
         (Box::new(InfraredRays::for_robot(&robot, b).unwrap()), 2e-3),
         (Box::new(InfraredGroups::for_robot(&robot, b, 6).unwrap()), 2e-3),

@@ -3,11 +3,15 @@
 use std::f64::consts::PI;
 
 use crate::shared::robots;
+use farsa_body::actuators::Law;
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::{Channels as _, Kinematics as _, Sensor as _};
+use farsa_body::robot::{Collider, JointKind, Robot, Shape};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::Beam;
+use farsa_body::sensors::infrared::{InfraredDrawing, InfraredRays};
 use farsa_body::testing::PlaneWorld;
-use farsa_body::{
-    Beam, Channels as _, Collider, InfraredDrawing, InfraredRays, JointKind, KinematicTree, Kinematics as _, Law,
-    MobileRobot, Pose, Recorder, Robot, Sensor as _, Shape,
-};
+use farsa_body::{Pose, Recorder};
 
 fn near(value: f64, expected: f64) -> bool {
     (value - expected).abs() <= 1e-6 * expected.abs().max(1e-3)

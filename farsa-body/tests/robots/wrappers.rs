@@ -1,9 +1,9 @@
 //! What the wrappers do to a sensor's and to a motor's values, tick by tick.
 
-use farsa_body::{
-    ChannelError, Channels, Delayed, Lesioned, Motor, Noise, Noisy, Recorded, Saturated, Scaled, Sensor, Signal, Stuck,
-    StuckAt, Thresholded,
-};
+use farsa_body::ChannelError;
+use farsa_body::ports::{Channels, Motor, Sensor};
+use farsa_body::sensors::Signal;
+use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt, Thresholded};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 

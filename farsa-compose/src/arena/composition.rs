@@ -1,6 +1,8 @@
 //! Robots in an arena: all that the trials of an experiment share.
 
-use farsa_body::{BodyId, Channels, InfraredDrawing, MobileRobot, Motor as _, Sensor as _};
+use farsa_body::ports::{BodyId, Channels, Motor as _, Sensor as _};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared::InfraredDrawing;
 use farsa_lab::{Error, PlanarWorld};
 use farsa_num::Stream;
 
@@ -37,7 +39,7 @@ pub(crate) struct Composition {
 /// What a robot senses and does.
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
-    pub(crate) parts: farsa_body::MobileParts,
+    pub(crate) parts: farsa_body::robots::MobileParts,
     pub(crate) sensors: Vec<Sensing>,
     pub(crate) motors: Vec<Driving>,
     /// The infrared sensors that a recording draws, with their first channel.

@@ -1,9 +1,9 @@
 //! Any motor, with what is wrapped around it.
 
-use farsa_body::{
-    ActuatorId, AttachmentMotor, ChannelError, Channels, Leds, MobileParts, MobileRobot, Motor, SignalMotor,
-    SpeedAndTurn, WheelVelocity,
-};
+use farsa_body::ChannelError;
+use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
+use farsa_body::ports::{ActuatorId, Channels, Motor};
+use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::{Error, PlanarWorld};
 
 use crate::arena::scene::Scene;

@@ -1,6 +1,8 @@
 //! An episode of robots in an arena.
 
-use farsa_body::{BodyId, PairId, Pose, Recorder, Robot};
+use farsa_body::ports::{BodyId, PairId};
+use farsa_body::robot::Robot;
+use farsa_body::{Pose, Recorder};
 use farsa_lab::{Episode, EpisodeId, PlanarWorld, seconds};
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
@@ -203,8 +205,8 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
         Composition::reseed(members, streams, self.agents.document.episode.steps);
         for (robot, member) in members.iter_mut().enumerate() {
-            member.sensors.iter_mut().for_each(farsa_body::Channels::reset);
-            member.motors.iter_mut().for_each(farsa_body::Channels::reset);
+            member.sensors.iter_mut().for_each(farsa_body::ports::Channels::reset);
+            member.motors.iter_mut().for_each(farsa_body::ports::Channels::reset);
             self.started[robot] = world.pose(member.parts.body);
             self.before[robot] = [0, 1].map(|k| f64::from(self.started[robot].position[k]));
         }

@@ -1,6 +1,6 @@
 //! What a robot feels of itself.
 
-use farsa_body::{Channels, Sensor};
+use farsa_body::ports::{Channels, Sensor};
 
 use crate::arena::field::Forager;
 

@@ -1,6 +1,8 @@
 //! How food and foragers are recorded and seen.
 
-use farsa_body::{BodyId, MobileRobot, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::robots::MobileRobot;
+use farsa_body::{Pose, Recorder};
 use farsa_view::{Channel, Color, Geometry, ImageChannel, OKABE_ITO, Role, SceneObject, Schema};
 
 use crate::arena::field::Field;

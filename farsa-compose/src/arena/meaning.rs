@@ -1,6 +1,7 @@
 //! What the channels of robots in an arena stand for.
 
-use farsa_body::{AnalyticInfrared, MobileRobot};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared;
 
 use crate::document::{InfraredModel, MotorKind, SensorKind};
 use crate::parts::eye::seen;
@@ -15,7 +16,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
         SensorKind::Infrared { model, groups, .. } => {
             let quantity = format!("distance of what is near, {}", infrared_way(robot, *groups, channel));
             let ends = match model {
-                InfraredModel::Analytic => AnalyticInfrared::WALL_ENDS,
+                InfraredModel::Analytic => infrared::InfraredModel::WALL_ENDS,
                 InfraredModel::Rays | InfraredModel::Tables => [robot.infrared.range, 0.0],
             };
             Meaning { linear: *model == InfraredModel::Rays, ..Meaning::new(quantity, "m", ends) }

@@ -1,6 +1,6 @@
 //! What terms measure of robots.
 
-use farsa_body::BodyId;
+use farsa_body::ports::BodyId;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 

@@ -1,6 +1,7 @@
 //! The arena, and which of its bodies a name means.
 
-use farsa_body::{BodyId, MobileParts, MobileRobot};
+use farsa_body::ports::BodyId;
+use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::Error;
 use farsa_physics::arena::{Area, Arena, Cylinder, Wall};
 

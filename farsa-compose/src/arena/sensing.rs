@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
-    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce, GroundColor, Height,
-    InfraredAnalytic, InfraredGroups, InfraredTables, JointId, JointPosition, JointSpeed, LaserDistance, LightSensors,
-    MobileParts, MobileRobot, PairId, Point, SampledInfrared, Sensor, Signal, SignalSensor, TargetPosition, Touch,
-    Traction, WheelSpeed,
+use farsa_body::ChannelError;
+use farsa_body::ports::{Channels, JointId, PairId, Sensor};
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredFormula, InfraredGroups, InfraredTables, SampledInfrared};
+use farsa_body::sensors::{
+    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ContactForce, GroundColor, Height, JointPosition, JointSpeed,
+    LaserDistance, LightSensors, Point, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
 };
 use farsa_lab::{Error, PlanarWorld};
 
@@ -23,7 +25,7 @@ use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 /// A sensor of a robot in a plane.
 #[derive(Clone, Debug)]
 pub(crate) enum Sensing {
-    Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
+    Analytic(InfraredFormula<Vec<[f32; 2]>>),
     Rays(InfraredGroups),
     Sampled(SampledInfrared<Arc<InfraredTables>>),
     Light(LightSensors<Vec<Beam>>),
@@ -230,7 +232,7 @@ fn bare(
     kind: &SensorKind,
     robot: &MobileRobot,
     parts: &MobileParts,
-    target: Option<farsa_body::BodyId>,
+    target: Option<farsa_body::ports::BodyId>,
     tables: Option<Arc<InfraredTables>>,
     wheels: &[JointId],
 ) -> Result<Sensing, ChannelError> {
@@ -246,7 +248,7 @@ fn bare(
             robot.infrared.angles = first(&robot.infrared.angles, *count)?;
             let sensors = robot.infrared.angles.len();
             match (model, groups) {
-                (InfraredModel::Analytic, 0) => Sensing::Analytic(InfraredAnalytic::for_robot(&robot, body)?),
+                (InfraredModel::Analytic, 0) => Sensing::Analytic(InfraredFormula::for_robot(&robot, body)?),
                 (InfraredModel::Analytic | InfraredModel::Tables, _) => {
                     let field = "groups of sensors by the formula (those of the model `rays` have groups)";
                     return Err(ChannelError::Groups { field, count: *groups as usize, size: 0 });
@@ -303,7 +305,7 @@ fn bare(
     })
 }
 
-fn signal(body: farsa_body::BodyId, range: f32, sectors: u32, mean: bool) -> Result<Sensing, ChannelError> {
+fn signal(body: farsa_body::ports::BodyId, range: f32, sectors: u32, mean: bool) -> Result<Sensing, ChannelError> {
     macro_rules! sensor {
         ($kind:ident) => {{
             let sensor = SignalSensor::new(body, range)?;

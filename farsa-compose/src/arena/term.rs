@@ -1,6 +1,8 @@
 //! What a term of the fitness measures of robots in an arena.
 
-use farsa_body::{BodyId, MobileParts, PairId, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::{BodyId, PairId};
+use farsa_body::robots::MobileParts;
 use farsa_lab::{Error, PlanarWorld};
 use farsa_num::{Scalar, atan2};
 

@@ -1,6 +1,7 @@
 //! The actuators that motors drive: the model's own, or new ones.
 
-use farsa_body::{ActuatorId, Held, JointId, Law, MusclePair, Servo, Torque, Velocity};
+use farsa_body::actuators::{Held, Law, MusclePair, Servo, Torque, Velocity};
+use farsa_body::ports::{ActuatorId, JointId};
 use farsa_lab::Error;
 
 use crate::check::places::Places;

@@ -1,6 +1,9 @@
 //! The robot itself: one of ours, or one from a file.
 
-use farsa_body::{ArmAndHand, BodyId, Pose, Robot};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::Robot;
+use farsa_body::robots::ArmAndHand;
 use farsa_lab::Error;
 use farsa_models::{Imported, Limits, Meshes, ReadOptions};
 

@@ -1,6 +1,7 @@
 //! A robot with joints in its scene: all that the trials of an experiment share.
 
-use farsa_body::{BodyId, Channels as _, JointId, JointKind, PairId};
+use farsa_body::ports::{BodyId, Channels as _, JointId, PairId};
+use farsa_body::robot::JointKind;
 use farsa_lab::Error;
 use farsa_num::Stream;
 use farsa_physics::articulated::Options;

@@ -1,8 +1,9 @@
 //! Any motor, with what is wrapped around it.
 
-use farsa_body::{
-    ChannelError, Channels, JointId, Law, Motor, Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor,
-};
+use farsa_body::ChannelError;
+use farsa_body::actuators::Law;
+use farsa_body::motors::{Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor};
+use farsa_body::ports::{Channels, JointId, Motor};
 use farsa_lab::Error;
 
 use crate::check::places::Places;

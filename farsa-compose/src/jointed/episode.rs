@@ -1,8 +1,8 @@
 //! An episode of a robot with joints.
 
-use farsa_body::{
-    BodyId, Channels as _, Joint, JointKind, MassProperties, Motor as _, Pose, Recorder, Robot, Segment, Sensor as _,
-};
+use farsa_body::ports::{BodyId, Channels as _, Motor as _, Sensor as _};
+use farsa_body::robot::{Joint, JointKind, MassProperties, Robot, Segment};
+use farsa_body::{Pose, Recorder};
 use farsa_lab::{Episode, EpisodeId, seconds};
 use farsa_models::MjcfOptions;
 use farsa_nn::Controller as _;
@@ -112,7 +112,7 @@ impl Embodied for JointedEpisode {
 
     fn places(&self) -> Vec<Channel> {
         let scene = &self.composition.scene;
-        let joint = |joint: &farsa_body::JointId| {
+        let joint = |joint: &farsa_body::ports::JointId| {
             let segment = &scene.robot.segments[joint.index()];
             let unit = if segment.joint.kind == JointKind::Prismatic { "m" } else { "rad" };
             let channel = Channel::new(&format!("{} [{unit}]", segment.joint.name)).group("joint");
@@ -152,7 +152,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
             sensor.reset();
             sensor.look(&self.markers);
         }
-        motors.iter_mut().for_each(farsa_body::Channels::reset);
+        motors.iter_mut().for_each(farsa_body::ports::Channels::reset);
         for term in terms {
             term.begin(world, &self.markers);
         }

@@ -1,6 +1,8 @@
 //! The eyes of a robot with joints: cameras with an image on its bodies.
 
-use farsa_body::{BodyId, Camera, CameraImage, ColorBand, ColorBlobs, Pose, VisualOffset};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::sensors::{Camera, CameraImage, ColorBand, ColorBlobs, VisualOffset};
 use farsa_lab::Error;
 use farsa_num::sin_cos;
 

@@ -1,6 +1,7 @@
 //! Where a marker is, seen from a body.
 
-use farsa_body::{Axes, Channels, Point, Sensor};
+use farsa_body::ports::{Channels, Sensor};
+use farsa_body::sensors::{Axes, Point};
 
 use crate::jointed::SpatialWorld;
 

@@ -1,6 +1,8 @@
 //! What the channels of a robot with joints stand for.
 
-use farsa_body::{JointId, JointKind, Law};
+use farsa_body::actuators::Law;
+use farsa_body::ports::JointId;
+use farsa_body::robot::JointKind;
 
 use crate::document::{MotorKind, SensorKind};
 use crate::jointed::actuation;

@@ -1,6 +1,9 @@
 //! The robot with the floor and the things, and what their names mean.
 
-use farsa_body::{ActuatorId, BodyId, Collider, JointId, PairId, Point, Pose, Robot, Shape, Surface};
+use farsa_body::Pose;
+use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
+use farsa_body::robot::{Collider, Robot, Shape, Surface};
+use farsa_body::sensors::Point;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 use farsa_view::{Geometry, Role, SceneObject};
@@ -107,7 +110,7 @@ impl Scene {
         let mut next = Some(body);
         while let Some(body) = next {
             let segment = &self.robot.segments[body.index()];
-            if segment.joint.kind != farsa_body::JointKind::Fixed {
+            if segment.joint.kind != farsa_body::robot::JointKind::Fixed {
                 return true;
             }
             next = segment.parent;

@@ -1,9 +1,11 @@
 //! Any sensor, with what is wrapped around it.
 
-use farsa_body::{
-    Axes, BodyPose, BodyVelocity, CameraImage, ChannelError, Channels, ColorBlobs, ContactForce, Height, JointPosition,
-    JointSpeed, PairId, Pose, Sensor, Signal, TargetPosition, Touch, VisualOffset,
+use farsa_body::ports::{Channels, PairId, Sensor};
+use farsa_body::sensors::{
+    Axes, BodyPose, BodyVelocity, CameraImage, ColorBlobs, ContactForce, Height, JointPosition, JointSpeed, Signal,
+    TargetPosition, Touch, VisualOffset,
 };
+use farsa_body::{ChannelError, Pose};
 use farsa_lab::Error;
 
 use crate::check::places::Places;
@@ -106,7 +108,7 @@ impl Reseed for Sensing {
 
 impl Sensing {
     /// The camera of which it has an image.
-    pub(crate) fn camera(&self) -> Option<&farsa_body::Camera> {
+    pub(crate) fn camera(&self) -> Option<&farsa_body::sensors::Camera> {
         match self {
             Self::Image(image) => Some(image.camera()),
             Self::Blobs(blobs) => Some(blobs.camera()),

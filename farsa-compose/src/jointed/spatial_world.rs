@@ -1,6 +1,6 @@
 //! What a robot with joints needs of a world.
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,
 };
 use farsa_physics::articulated::{Lane, World};

@@ -1,6 +1,6 @@
 //! A point that a name means.
 
-use farsa_body::Point;
+use farsa_body::sensors::Point;
 
 use crate::jointed::SpatialWorld;
 

@@ -1,6 +1,8 @@
 //! Where a trial puts joints and things.
 
-use farsa_body::{BodyId, JointId, JointKind, Pose, Twist};
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robot::JointKind;
+use farsa_body::{Pose, Twist};
 use farsa_lab::Error;
 use farsa_num::{Scalar, Stream, sin_cos};
 

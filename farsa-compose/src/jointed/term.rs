@@ -1,6 +1,7 @@
 //! What a term of the fitness measures of a robot with joints.
 
-use farsa_body::{BodyId, JointId, PairId, Point};
+use farsa_body::ports::{BodyId, JointId, PairId};
+use farsa_body::sensors::Point;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 

@@ -1,6 +1,8 @@
 //! Things beside the robot, as parts of the scene.
 
-use farsa_body::{BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
 use farsa_lab::Error;
 use farsa_num::{Scalar, sin_cos};
 use farsa_view::{Geometry, Role, SceneObject, screen_color};

@@ -1,6 +1,8 @@
 //! A camera of the document as the sensor that it is.
 
-use farsa_body::{Beam, BodyId, ChannelError, ColorBand, LinearCamera};
+use farsa_body::ChannelError;
+use farsa_body::ports::BodyId;
+use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
 
 use crate::document::{Camera, ColorRange, SensorKind};
 use crate::parts::meaning::Meaning;

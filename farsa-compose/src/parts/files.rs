@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use farsa_body::{InfraredTable, InfraredTables};
+use farsa_body::sensors::infrared::{InfraredTable, InfraredTables};
 use farsa_lab::Error;
 
 use crate::check::places::Places;

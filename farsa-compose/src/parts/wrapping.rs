@@ -2,9 +2,9 @@
 
 use std::ops::Bound;
 
-use farsa_body::{
-    ChannelError, Channels, Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded,
-};
+use farsa_body::ChannelError;
+use farsa_body::ports::Channels;
+use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded};
 use farsa_lab::Error;
 use farsa_num::{Domain, Stream};
 

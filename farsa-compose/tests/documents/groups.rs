@@ -1,6 +1,7 @@
 //! Robots in groups: of different kinds, with one genome or a population each, and things on one of several points.
 
-use farsa_body::{BodyId, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, Outcome, Settings};
 

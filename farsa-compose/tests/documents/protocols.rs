@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use farsa_body::{BodyId, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{
     CaseId, EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, NetworkExport, Outcome, Protocol, Settings,

@@ -37,7 +37,7 @@ struct Steps {
 }
 
 impl Recorder for Steps {
-    fn pose(&mut self, body: farsa_body::BodyId, pose: farsa_body::Pose) {
+    fn pose(&mut self, body: farsa_body::ports::BodyId, pose: farsa_body::Pose) {
         self.poses.resize(self.poses.len().max(usize::from(body.0) + 1), [0.0; 2]);
         self.poses[usize::from(body.0)] = [pose.position[0], pose.position[1]];
     }

@@ -1,6 +1,8 @@
 //! An episode of `aggregation`: robots look for nests, and for each other.
 
-use farsa_body::{BodyId, ColorBand, Pose, Twist};
+use farsa_body::ports::BodyId;
+use farsa_body::sensors::ColorBand;
+use farsa_body::{Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};

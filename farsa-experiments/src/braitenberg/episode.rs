@@ -2,10 +2,14 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, Beam, BodyId, ChannelError, Contacts, Handles, JointId, Kinematics, LightSensors,
-    MobileParts, MobileRobot, Motor as _, PairId, Planar, Pose, Recorder, Sensor as _, Twist, WheelVelocity,
+use farsa_body::motors::WheelVelocity;
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Kinematics, Motor as _, PairId, Planar,
+    Sensor as _,
 };
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::{Beam, LightSensors};
+use farsa_body::{ChannelError, Pose, Recorder, Twist};
 use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};

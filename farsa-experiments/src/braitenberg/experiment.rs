@@ -1,6 +1,7 @@
 //! The experiment `braitenberg`: vehicles wired by hand.
 
-use farsa_body::{Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::robot::Robot;
 use farsa_physics::arena::{Batch, World};
 
 use crate::braitenberg::episode::{Config, LIGHTS, Vehicle, VehicleEpisode};

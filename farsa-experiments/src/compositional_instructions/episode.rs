@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, Handles};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Handles};
 use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};

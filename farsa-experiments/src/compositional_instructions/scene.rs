@@ -1,9 +1,9 @@
 //! The scene of `compositional-instructions`: an arm and three objects in a plane, and how a trial starts.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Collider, Ground, Handles, Joint, JointId, Law, MassProperties, PairId,
-    Pose, Robot, RobotError, Segment, Shape, Surface, Velocity,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Velocity};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, PairId};
+use farsa_body::robot::{Collider, Ground, Joint, MassProperties, Robot, RobotError, Segment, Shape, Surface};
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 use farsa_physics::articulated::Options;

@@ -1,6 +1,7 @@
 //! What an episode of `compositional-instructions` records, by name.
 
-use farsa_body::{Contacts, Handles, PairId, Recorder};
+use farsa_body::Recorder;
+use farsa_body::ports::{Contacts, Handles, PairId};
 use farsa_lab::seconds;
 use farsa_nn::CtrnnParts;
 use farsa_nn::block::Span;

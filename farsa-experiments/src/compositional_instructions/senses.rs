@@ -1,8 +1,8 @@
 //! What the agent senses: colours ahead, touch, its joints, and the two words.
 
-use farsa_body::{
-    Beam, BodyId, ChannelError, ColorBand, Handles, JointId, Joints, Kinematics, LinearCamera, Pose, Sight,
-};
+use farsa_body::ports::{BodyId, Handles, JointId, Joints, Kinematics, Sight};
+use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
+use farsa_body::{ChannelError, Pose};
 use farsa_lab::Error;
 
 use crate::compositional_instructions::config::Config;

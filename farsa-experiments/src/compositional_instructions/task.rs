@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId};
+use farsa_body::robot::Robot;
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, Intervention,
     MotorExport, NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,

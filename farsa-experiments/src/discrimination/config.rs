@@ -1,6 +1,6 @@
 //! The values of `discrimination` and `discrimination-cylinders`, as settings.
 
-use farsa_body::MobileRobot;
+use farsa_body::robots::MobileRobot;
 use farsa_lab::{ENGINE, Error, Setting, Settings};
 use farsa_physics::arena::{Arena, Cylinder, World};
 

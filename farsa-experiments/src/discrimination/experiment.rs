@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::ports::{Arrange, BodyId, Handles, JointId, Kinematics, Planar};
+use farsa_body::robot::Robot;
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 

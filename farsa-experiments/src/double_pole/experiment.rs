@@ -1,6 +1,7 @@
 //! The experiment `double-pole`: two poles on a cart.
 
-use farsa_body::{BodyId, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
     Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,

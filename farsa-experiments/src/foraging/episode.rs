@@ -1,6 +1,8 @@
 //! An episode of `foraging`: robots carry food from a field to their nest, and must return to survive.
 
-use farsa_body::{BodyId, ColorBand, Pose, Recorder, Twist};
+use farsa_body::ports::BodyId;
+use farsa_body::sensors::ColorBand;
+use farsa_body::{Pose, Recorder, Twist};
 use farsa_compose::Field;
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};

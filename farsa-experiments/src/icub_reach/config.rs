@@ -1,6 +1,6 @@
 //! The values of `icub-reach`.
 
-use farsa_body::{Chain, Icub, IcubPosture, JointControl};
+use farsa_body::robots::{Chain, Icub, IcubPosture, JointControl};
 use farsa_lab::Error;
 
 use crate::icub_limits::within_limits;

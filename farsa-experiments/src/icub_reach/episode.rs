@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Joints, Kinematics};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Joints, Kinematics};
 use farsa_lab::{Episode, EpisodeId};
 
 use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};

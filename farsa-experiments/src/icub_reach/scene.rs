@@ -1,9 +1,10 @@
 //! The scene of `icub-reach`: the robot, its six joints, and the targets.
 
-use farsa_body::{
-    Actuated, Actuator, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, JointId, JointKind, KinematicTree,
-    Kinematics, Law, Robot, RobotError, Side, Torque,
-};
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Kinematics};
+use farsa_body::robot::{Actuator, JointKind, Robot, RobotError};
+use farsa_body::robots::{Icub, IcubError, Side};
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::articulated::Options;

@@ -1,6 +1,7 @@
 //! A controller written by hand, which shows that six joints reach all targets.
 
-use farsa_body::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation, Pose};
+use farsa_body::Pose;
+use farsa_body::kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation};
 use farsa_lab::Error;
 
 use crate::icub_reach::config::{Condition, Config};
@@ -40,7 +41,7 @@ impl Script {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = scene.kinematics().map_err(|error| Error::Other(format!("icub-reach: {error}")))?;
         let stiffness = scene.controlled.map(|one| match scene.robot.actuators[one.actuator.index()].law {
-            farsa_body::Law::Servo(servo) => servo.stiffness,
+            farsa_body::actuators::Law::Servo(servo) => servo.stiffness,
             _ => f64::INFINITY,
         });
         let poses = Vec::with_capacity(tree.bodies());

@@ -1,6 +1,6 @@
 //! The values of `icub-reach-grasp`.
 
-use farsa_body::{Chain, Icub, IcubPosture, IcubTabletop, Side};
+use farsa_body::robots::{Chain, Icub, IcubPosture, IcubTabletop, Side};
 use farsa_lab::Error;
 use farsa_nn::LeakyLayout;
 

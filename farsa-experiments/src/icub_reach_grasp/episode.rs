@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels as _, Contacts, Handles, JointId, Joints, Kinematics, Motor as _,
 };
 use farsa_lab::{Episode, EpisodeId, Error};

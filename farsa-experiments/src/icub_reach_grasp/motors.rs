@@ -1,8 +1,8 @@
 //! What the robot does: trunk, right arm and hand by the network, the head by its reflex.
 
-use farsa_body::{
-    Actuated, ActuatorId, BodyId, Channels, Handles, HeadTracking, Icub, Kinematics, Motor, ServoGroup, ServoRange,
-};
+use farsa_body::motors::{HeadTracking, ServoGroup, ServoRange};
+use farsa_body::ports::{Actuated, ActuatorId, BodyId, Channels, Handles, Kinematics, Motor};
+use farsa_body::robots::Icub;
 use farsa_lab::Error;
 
 use crate::icub_reach_grasp::config::MOTORS;

@@ -1,9 +1,9 @@
 //! The scene of `icub-reach-grasp`: how a trial starts in it, and what is seen of it.
 
-use farsa_body::{
-    ActuatorId, Arrange, BodyId, Contacts, Finger, Handles, Icub, IcubError, IcubTabletop, JointId, Kinematics, PairId,
-    Pose, Robot, Side, Twist,
-};
+use farsa_body::ports::{ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Kinematics, PairId};
+use farsa_body::robot::Robot;
+use farsa_body::robots::{Finger, Icub, IcubError, IcubTabletop, Side};
+use farsa_body::{Pose, Twist};
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::articulated::Options;

@@ -1,6 +1,9 @@
 //! What an episode of `icub-reach-grasp` records, by name.
 
-use farsa_body::{Camera, PairId, Recorder, Robot, Vision};
+use farsa_body::Recorder;
+use farsa_body::ports::{PairId, Vision};
+use farsa_body::robot::Robot;
+use farsa_body::sensors::Camera;
 use farsa_lab::seconds;
 use farsa_view::{Channel, Schema};
 

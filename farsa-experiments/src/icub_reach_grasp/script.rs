@@ -1,6 +1,10 @@
 //! A grasp by script, with the agent's own motors: the task is possible.
 
-use farsa_body::{Chain, Goal, Icub, InverseKinematics, KinematicTree, Law, Orientation, Pose, Robot, Side};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::kinematics::{Goal, InverseKinematics, KinematicTree, Orientation};
+use farsa_body::robot::Robot;
+use farsa_body::robots::{Chain, Icub, Side};
 use farsa_lab::Error;
 use farsa_num::sin_cos;
 

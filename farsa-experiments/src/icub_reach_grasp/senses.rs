@@ -1,9 +1,9 @@
 //! What the robot senses: where the ball is in its left eye, four of its joints, touch.
 
-use farsa_body::{
-    BodyId, Camera, Channels, Contacts, Finger, Handles, Icub, JointId, JointPosition, Joints, Kinematics, PairId,
-    Pose, Sensor, Side, Touch, VisualOffset,
-};
+use farsa_body::Pose;
+use farsa_body::ports::{BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, PairId, Sensor};
+use farsa_body::robots::{Finger, Icub, Side};
+use farsa_body::sensors::{Camera, JointPosition, Touch, VisualOffset};
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Stream};
 

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, Camera, Handles, Recorder, Robot, Vision};
+use farsa_body::Recorder;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Handles, Vision};
+use farsa_body::robot::Robot;
+use farsa_body::sensors::Camera;
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
     MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, SensorExport, Task,

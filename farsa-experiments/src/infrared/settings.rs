@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use farsa_body::{
-    Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredDrawing, InfraredRays, InfraredTable,
-    InfraredTables, Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
+use farsa_body::ports::{BodyId, Channels, Handles, Kinematics, Planar, Rays, Sensor};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::Beam;
+use farsa_body::sensors::infrared::{
+    InfraredDrawing, InfraredFormula, InfraredRays, InfraredTable, InfraredTables, SampledInfrared,
 };
+use farsa_body::{ChannelError, Pose, Recorder};
 use farsa_lab::{Error, Setting, Settings, read_text_file};
 
 const MODEL: &str = "robot.infrared";
@@ -26,7 +29,7 @@ const MOST_BYTES: u64 = 256_000_000;
 /// A model of infrared sensors.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub enum InfraredModel {
-    /// By a formula, [`InfraredAnalytic`].
+    /// By a formula, [`InfraredFormula`].
     #[default]
     Analytic,
     /// By rays, [`InfraredRays`].
@@ -120,7 +123,7 @@ pub struct Infrared {
 
 #[derive(Clone, Debug)]
 enum Ring {
-    Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
+    Analytic(InfraredFormula<Vec<[f32; 2]>>),
     Rays(InfraredRays<Vec<Beam>>),
     Sampled(SampledInfrared<Arc<InfraredTables>>),
 }
@@ -143,7 +146,7 @@ impl Infrared {
         let mut part = robot.clone();
         part.infrared.angles.truncate(sensors);
         let ring = match model {
-            InfraredModel::Analytic => Ring::Analytic(InfraredAnalytic::for_robot(&part, body)?),
+            InfraredModel::Analytic => Ring::Analytic(InfraredFormula::for_robot(&part, body)?),
             InfraredModel::Rays => Ring::Rays(InfraredRays::for_robot(&part, body)?),
             InfraredModel::Sampled(tables) => {
                 let all = SampledInfrared::new(body, robot.radius as f32, Arc::clone(tables))?;

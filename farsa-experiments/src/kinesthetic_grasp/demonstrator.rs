@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
+use farsa_body::actuators::MusclePair;
+use farsa_body::ports::{Channels as _, Kinematics as _, Motor as _, Sensor as _};
+use farsa_body::robots::Tabletop;
 use farsa_lab::{Episode, EpisodeId, Error, run_episode};
 use farsa_nn::Controller;
 use farsa_nn::learning::Demonstration;

@@ -2,7 +2,8 @@
 
 use core::f64::consts::FRAC_PI_4;
 
-use farsa_body::{BodyId, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_nn::block::Span;
 use farsa_nn::{CtrnnParameter, CtrnnParts};
 

@@ -2,7 +2,9 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{BodyId, ColorBand, PairId, Pose, Twist};
+use farsa_body::ports::{BodyId, PairId};
+use farsa_body::sensors::ColorBand;
+use farsa_body::{Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};

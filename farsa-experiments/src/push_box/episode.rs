@@ -2,10 +2,13 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
-    Motor as _, PairId, Planar, Pose, Rays, Recorder, Sensor as _, Twist, WheelVelocity,
+use farsa_body::motors::WheelVelocity;
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Motor as _, PairId, Planar,
+    Rays, Sensor as _,
 };
+use farsa_body::robots::MobileParts;
+use farsa_body::{ChannelError, Pose, Recorder, Twist};
 use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};

@@ -1,6 +1,7 @@
 //! What there is to know of `push-box`, and its episodes over parameters.
 
-use farsa_body::{Pose, Recorder, Robot};
+use farsa_body::robot::Robot;
+use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
 use crate::infrared::settings::InfraredModel;

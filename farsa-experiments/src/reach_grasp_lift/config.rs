@@ -1,6 +1,9 @@
 //! The values of `reach-grasp-lift` and what is built from them.
 
-use farsa_body::{ArmAndHand, Axes, MuscleVariant, Servo, Surface, Tabletop};
+use farsa_body::actuators::{MuscleVariant, Servo};
+use farsa_body::robot::Surface;
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::sensors::Axes;
 use farsa_nn::{Leak, LeakyLayout};
 use farsa_physics::articulated::Options;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
 };
 use farsa_lab::{Episode, EpisodeId, Error};

@@ -83,7 +83,8 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
 
 #[cfg(test)]
 mod tests {
-    use farsa_body::{ArmAndHand, Recorder, Tabletop};
+    use farsa_body::Recorder;
+    use farsa_body::robots::{ArmAndHand, Tabletop};
     use farsa_lab::{EpisodeId, Evaluation, Genotype, Outcome, Rollout as _, Task as _, run_episode};
     use farsa_view::Recording;
 

@@ -1,6 +1,8 @@
 //! The controller of `reach-grasp-lift` and its starts for other programs.
 
-use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, Pair, PairId, Tabletop};
+use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
+use farsa_body::robot::Pair;
+use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
 use farsa_lab::{
     ActuatorExport, ControllerExport, EpisodeId, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
     SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
@@ -136,7 +138,9 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{Axes, Channels, Contacts, Joints, Kinematics, Law, Motor, Sensor, World as _};
+    use farsa_body::actuators::Law;
+    use farsa_body::ports::{Channels, Contacts, Joints, Kinematics, Motor, Sensor, World as _};
+    use farsa_body::sensors::Axes;
     use farsa_nn::{Controller, Leak, LeakyNetwork};
     use farsa_num::{Domain, Stream};
     use farsa_physics::articulated::{Model, World};
@@ -205,13 +209,13 @@ mod tests {
     /// Remembers what it is commanded.
     struct Commanded(Vec<[f32; 2]>);
 
-    impl farsa_body::Handles for Commanded {
+    impl farsa_body::ports::Handles for Commanded {
         type Body = BodyId;
         type Joint = JointId;
         type Actuator = ActuatorId;
     }
 
-    impl farsa_body::Actuated for Commanded {
+    impl farsa_body::ports::Actuated for Commanded {
         fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
             self.0[actuator.index()] = value;
         }

@@ -1,10 +1,14 @@
 //! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
-    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
-    ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
+use farsa_body::motors::{Muscles, ServoGroup, ServoRange};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, PairId,
+    Sensor,
 };
+use farsa_body::robot::{Robot, RobotError};
+use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
+use farsa_body::sensors::{JointPosition, Point, Signal, TargetPosition, Touch};
+use farsa_body::{ChannelError, Pose, Twist};
 use farsa_lab::{EpisodeId, Error};
 use farsa_models::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};

@@ -1,9 +1,9 @@
 //! What an episode of `reach-grasp-lift` records, by name.
 
-use farsa_body::{
-    ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop,
-    Twist,
-};
+use farsa_body::actuators::{Law, MusclePair};
+use farsa_body::ports::{BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairId};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Recorder, Twist};
 use farsa_lab::{NormalisedController, OwnedNetwork};
 use farsa_view::{Channel, Schema};
 

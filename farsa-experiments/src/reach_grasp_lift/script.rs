@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics,
-    InverseKinematicsError, JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
-};
+use farsa_body::actuators::{Law, MusclePair};
+use farsa_body::kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Motor};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_lab::{Episode, EpisodeId, Error};
 
 use crate::reach_grasp_lift::episode::Judge;

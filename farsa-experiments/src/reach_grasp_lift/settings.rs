@@ -2,7 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use farsa_body::{Axes, MuscleVariant};
+use farsa_body::actuators::MuscleVariant;
+use farsa_body::sensors::Axes;
 use farsa_lab::{ENGINE, Error, Setting, Settings, Source};
 
 use crate::reach_grasp_lift::config::{Config, Displacement, SphereFrame};

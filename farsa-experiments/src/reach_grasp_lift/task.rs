@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Recorder};
+use farsa_body::Recorder;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics};
 use farsa_models::MjcfOptions;
 use farsa_nn::LeakyNetwork;
 

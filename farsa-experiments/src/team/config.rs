@@ -1,6 +1,6 @@
 //! What experiments with many wheeled robots have in common, as settings.
 
-use farsa_body::MobileRobot;
+use farsa_body::robots::MobileRobot;
 use farsa_lab::{Error, Setting, Settings};
 use farsa_nn::LeakyLayout;
 use farsa_physics::arena::Arena;

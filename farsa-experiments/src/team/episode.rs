@@ -1,6 +1,7 @@
 //! An episode of a team: robots with a controller each, and a scenario that says what they are to do.
 
-use farsa_body::{ColorBand, Recorder};
+use farsa_body::Recorder;
+use farsa_body::sensors::ColorBand;
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError};
 

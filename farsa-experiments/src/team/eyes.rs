@@ -1,9 +1,10 @@
 //! What a robot of a team senses of its surroundings.
 
-use farsa_body::{
-    Beam, BodyId, ChannelError, ColorBand, InfraredDrawing, InfraredGroups, LinearCamera, MobileParts, MobileRobot,
-    Recorder, Sensor as _,
-};
+use farsa_body::ports::{BodyId, Sensor as _};
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredDrawing, InfraredGroups};
+use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
+use farsa_body::{ChannelError, Recorder};
 
 use crate::team::config::{EYES, TeamConfig};
 use farsa_lab::PlanarWorld;
@@ -71,7 +72,9 @@ pub(crate) fn eye_angles(robot: &MobileRobot) -> [f64; EYES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{Arrange as _, InfraredRays, Pose, Twist};
+    use farsa_body::ports::Arrange as _;
+    use farsa_body::sensors::infrared::InfraredRays;
+    use farsa_body::{Pose, Twist};
     use farsa_physics::arena::World;
 
     #[test]

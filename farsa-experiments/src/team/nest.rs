@@ -1,6 +1,6 @@
 //! Nests as robots of a team sense them: the ground, and what shines.
 
-use farsa_body::ColorBand;
+use farsa_body::sensors::ColorBand;
 use farsa_lab::Error;
 use farsa_lab::PlanarWorld;
 

@@ -2,7 +2,11 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{BodyId, ChannelError, ColorBand, Leds, MobileParts, Motor as _, Pose, Recorder, SpeedAndTurn, Twist};
+use farsa_body::motors::{Leds, SpeedAndTurn};
+use farsa_body::ports::{BodyId, Motor as _};
+use farsa_body::robots::MobileParts;
+use farsa_body::sensors::ColorBand;
+use farsa_body::{ChannelError, Pose, Recorder, Twist};
 use farsa_lab::Error;
 use farsa_nn::Controller;
 use farsa_num::Stream;
@@ -35,7 +39,7 @@ struct Member {
     parts: MobileParts,
     eyes: RobotEyes,
     wheels: SpeedAndTurn,
-    leds: Option<Leds<farsa_body::ActuatorId, 2>>,
+    leds: Option<Leds<farsa_body::ports::ActuatorId, 2>>,
 }
 
 /// Outputs of a controller: speed, turn, red, blue.

@@ -4,7 +4,7 @@ use crate::team::config::EYES;
 use crate::team::eyes::eye_angles;
 
 /// Where infrared channels look: how far to the left, and whether within 60 degrees of ahead.
-pub(crate) fn eyes(robot: &farsa_body::MobileRobot) -> [(f32, bool); EYES] {
+pub(crate) fn eyes(robot: &farsa_body::robots::MobileRobot) -> [(f32, bool); EYES] {
     eye_angles(robot).map(|angle| {
         let (sine, cosine) = farsa_num::sin_cos(angle);
         (sine as f32, cosine > 0.49)

@@ -1,6 +1,8 @@
 //! The task of a team: what is known of a scenario, and its episodes over parameters.
 
-use farsa_body::{BodyId, Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::Robot;
 use farsa_evo::ObservationStatistics;
 use farsa_nn::{Leak, LeakyLayout};
 use farsa_physics::arena::{Arena, World};

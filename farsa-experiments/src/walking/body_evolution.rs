@@ -1,6 +1,7 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::{Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::robot::Robot;
 use farsa_models::MjcfOptions;
 use farsa_nn::{Leak, LeakyLayout};
 use farsa_num::Scalar;
@@ -434,7 +435,7 @@ fn walk_in<W>(
     mut recorder: Option<&mut dyn Recorder>,
 ) -> Outcome
 where
-    W: farsa_body::World,
+    W: farsa_body::ports::World,
     WalkerEpisode: Episode<W>,
 {
     let Some(mut world) = world else { return Outcome::failed() };

@@ -1,10 +1,14 @@
 //! An episode of a walker: a launch, then steps until it falls or its time is over; with or without a network at the
 //! hip.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
-    Kinematics, Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
+use farsa_body::motors::TorqueMotor;
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Motor as _, PairId,
+    Sensor as _,
 };
+use farsa_body::sensors::{JointPosition, JointSpeed, Touch};
+use farsa_body::wrappers::Scaled;
+use farsa_body::{ChannelError, Recorder};
 use farsa_evo::ObservationStatistics;
 use farsa_lab::{Episode, EpisodeId, Error, NormalisedController, OwnedNetwork, seconds};
 use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};

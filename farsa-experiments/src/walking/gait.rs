@@ -1,6 +1,6 @@
 //! What a walker's feet do: which of them stands, when they change places, and how the walk ends.
 
-use farsa_body::{Arrange, Contacts, Handles, JointId, Joints};
+use farsa_body::ports::{Arrange, Contacts, Handles, JointId, Joints};
 
 use crate::walking::walker::{ASIDE, Posture, Walker, WalkerParts};
 

@@ -7,7 +7,8 @@ pub use crate::walking::{gait::End, gait::Footfall, gait::Gait, gait::Rules};
 pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
-use farsa_body::{Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::robot::Robot;
 use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};

@@ -1,6 +1,8 @@
 //! What a recording of a walker holds, and its shapes.
 
-use farsa_body::{BodyId, Collider, Pose, Robot, Shape, Surface};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Collider, Robot, Shape, Surface};
 
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Schema};

@@ -1,9 +1,9 @@
 //! A biped of two stiff pairs of legs, as data: the rigid body that the simplest walking model is the limit of.
 
-use farsa_body::{
-    ActuatorId, BodyId, Collider, Joint, JointId, Law, MassProperties, PairId, Pose, Robot, Segment, Shape, Surface,
-    Torque,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
 use farsa_num::{Scalar, sin_cos};
 
 /// Half the thickness of legs and of the hip's axle, which nothing but their own small inertia depends on \[m\].
@@ -220,7 +220,7 @@ impl Posture {
     /// How a world's walker stands and moves.
     pub fn from_world<W>(world: &W, parts: &WalkerParts) -> Self
     where
-        W: farsa_body::Joints<Joint = JointId> + ?Sized,
+        W: farsa_body::ports::Joints<Joint = JointId> + ?Sized,
     {
         let at = |joint| f64::from(world.position(joint));
         let speed = |joint| f64::from(world.speed(joint));
@@ -233,10 +233,10 @@ impl Posture {
         }
     }
 
-    /// Puts a world's walker so; [`Arrange::finish_placement`](farsa_body::Arrange::finish_placement) must follow.
+    /// Puts a world's walker so; [`Arrange::finish_placement`](farsa_body::ports::Arrange::finish_placement) must follow.
     pub fn place<W>(&self, world: &mut W, parts: &WalkerParts)
     where
-        W: farsa_body::Arrange<Joint = JointId> + ?Sized,
+        W: farsa_body::ports::Arrange<Joint = JointId> + ?Sized,
     {
         for k in 0..2 {
             world.place_joint(parts.slides[k], self.hip[k] as f32, self.velocity[k] as f32);

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
+use farsa_body::ports::{Arrange as _, Kinematics as _};
+use farsa_body::{Pose, Twist};
 use farsa_experiments::discrimination::{Config, CylinderEpisode, InfraredModel};
 use farsa_experiments::{Discrimination, DiscriminationCylinders};
 use farsa_lab::{Episode as _, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Settings, Value, run_episode};
@@ -150,7 +151,7 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
         let mut distances = Vec::new();
         let fitness = loop {
             episode.act(&mut world);
-            farsa_body::World::step(&mut world);
+            farsa_body::ports::World::step(&mut world);
             let end = episode.judge(&mut world);
             distances.push(episode.trial().distance[0]);
             if let Some(fitness) = end {
@@ -228,7 +229,7 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     let near: Vec<u32> = (0..5)
         .map(|step| {
             episode.act(&mut world);
-            farsa_body::World::step(&mut world);
+            farsa_body::ports::World::step(&mut world);
             assert_eq!(episode.judge(&mut world), None, "{step}");
             let travelled = f64::from(world.pose(body).position[0] - at[0]) + 0.13;
             assert!((travelled - 0.0144 * f64::from(step + 1)).abs() < 1e-5, "{step}: {travelled}");

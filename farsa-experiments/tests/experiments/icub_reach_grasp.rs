@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Contacts as _, HeadTracking, Icub, JointId, Joints as _, PairId, Pose, ServoRange, World as _};
+use farsa_body::Pose;
+use farsa_body::motors::{HeadTracking, ServoRange};
+use farsa_body::ports::{Contacts as _, JointId, Joints as _, PairId, World as _};
+use farsa_body::robots::Icub;
 use farsa_experiments::icub_reach_grasp::{
     Area, CELLS, Config, GraspEpisode, Grasper, Lifting, MOTORS, SENSORS, Scene, Script, Senses, evaluator,
 };

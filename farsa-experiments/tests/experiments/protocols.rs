@@ -1,6 +1,7 @@
 //! Test protocols of the experiments: what a case changes, and that lanes change nothing.
 
-use farsa_body::{BodyId, Pose, Recorder};
+use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_experiments::{Foraging, MinimalCognition, ReachGraspLift};
 use farsa_lab::{
     CaseId, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Protocol, Settings, Value,

@@ -1,9 +1,11 @@
 //! The arm is able to do the task: starts clear of the table, postures with the palm down over every sphere, muscles that
 //! hold them and come to rest.
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Joints, KinematicTree, Pose, Shape, Tabletop, Twist, World as _,
-};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Joints, World as _};
+use farsa_body::robot::Shape;
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, Statics, TRIALS};
 use farsa_lab::EpisodeId;
 use farsa_physics::articulated::{Model, World};

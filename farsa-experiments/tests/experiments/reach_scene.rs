@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Finger, Handles, JointId, Joints,
-    Kinematics, Motor, Pose, Sensor, Shape, Tabletop, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
+    World as _,
 };
+use farsa_body::robot::Shape;
+use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachEpisode, Scene};
 use farsa_lab::{Episode, EpisodeId, run_episode};
 use farsa_nn::{Controller, LeakyNetwork};
@@ -73,7 +76,8 @@ fn the_sphere_is_sensed_in_the_palms_frame_in_centimetres() {
     world.finish_placement();
     let x = read(&scene, &world);
     assert!(near(x[23], 3.0) && near(x[24], 2.0) && near(x[25], 6.0), "{:?}", &x[23..26]);
-    let world_axes = Scene::new(Config { target_axes: farsa_body::Axes::World, ..Config::default() }).expect("a scene");
+    let world_axes =
+        Scene::new(Config { target_axes: farsa_body::sensors::Axes::World, ..Config::default() }).expect("a scene");
     let x = read(&world_axes, &world);
     assert!((0..3).all(|k| near(x[23 + k], 100.0 * way[k])), "{:?}", &x[23..26]);
 }

@@ -1,8 +1,8 @@
 //! Walkers: their energy, what counts as a step, the walking model's gait in a rigid body, and evolved bodies.
 
 #[cfg(feature = "rapier")]
-use farsa_body::Contacts as _;
-use farsa_body::{Arrange as _, Joints as _, World as _};
+use farsa_body::ports::Contacts as _;
+use farsa_body::ports::{Arrange as _, Joints as _, World as _};
 #[cfg(feature = "rapier")]
 use farsa_experiments::passive_walker::Pace;
 use farsa_experiments::passive_walker::{

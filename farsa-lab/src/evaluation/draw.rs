@@ -196,7 +196,8 @@ fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{ArmAndHand, Pose, Recorder};
+    use farsa_body::robots::ArmAndHand;
+    use farsa_body::{Pose, Recorder};
     use farsa_view::Schema;
 
     #[test]

@@ -1,9 +1,11 @@
 //! An episode of one robot that a network controls, with an objective of one's own.
 
-use farsa_body::{
+use farsa_body::Recorder;
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Planar,
-    Rays, Recorder, Robot, Sensor,
+    Rays, Sensor,
 };
+use farsa_body::robot::Robot;
 use farsa_nn::Leak;
 use farsa_physics::arena::{Arena, Batch, World};
 use farsa_view::Schema;
@@ -106,7 +108,7 @@ impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
 
     /// The same with the robot that `farsa export robot` writes, [`MobileRobot::description`] for one of ours.
     ///
-    /// [`MobileRobot::description`]: farsa_body::MobileRobot::description
+    /// [`MobileRobot::description`]: farsa_body::robots::MobileRobot::description
     #[must_use]
     pub fn with_robot(self, robot: Robot) -> Self {
         Self { robot: Some(robot), ..self }

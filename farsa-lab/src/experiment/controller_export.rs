@@ -1,6 +1,7 @@
 //! A controller, its body's channels and its starts as plain data, for `farsa export`.
 
-use farsa_body::{Axes, Law};
+use farsa_body::actuators::Law;
+use farsa_body::sensors::Axes;
 use farsa_nn::bytes::channel_hash;
 use serde::Serialize;
 

@@ -1,6 +1,7 @@
 //! Bodies that are put elsewhere or pushed in the course of an episode.
 
-use farsa_body::{Arrange, BodyId, ExternalForces, Handles, Kinematics, Pose, Recorder, Twist};
+use farsa_body::ports::{Arrange, BodyId, ExternalForces, Handles, Kinematics};
+use farsa_body::{Pose, Recorder, Twist};
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::episode::{Episode, EpisodeId};
@@ -127,7 +128,9 @@ impl<W, E: Episode<W>> Episode<W> for Disturbed<'_, W, E> {
 mod tests {
     use super::*;
     use crate::experiment::episode::run_episode;
-    use farsa_body::{Joint, MassProperties, MobileRobot, Robot, Segment, World as _};
+    use farsa_body::ports::World as _;
+    use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
+    use farsa_body::robots::MobileRobot;
     use farsa_physics::{arena, articulated};
 
     /// Ten steps in which nothing is done, and where the body is before each.

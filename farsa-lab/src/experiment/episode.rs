@@ -1,6 +1,7 @@
 //! An episode: what happens in a world from the first to the last step of a trial.
 
-use farsa_body::{ActuatorId, BodyId, Handles, JointId, Recorder, World};
+use farsa_body::Recorder;
+use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, World};
 use serde::{Deserialize, Serialize};
 
 /// Which episode of a run: every random number of an episode is drawn from a stream that these numbers name.

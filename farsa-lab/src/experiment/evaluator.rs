@@ -1,6 +1,7 @@
 //! What an experiment is evaluated by: parameters go in, outcomes come out.
 
-use farsa_body::{Recorder, Robot};
+use farsa_body::Recorder;
+use farsa_body::robot::Robot;
 use farsa_evo::ObservationStatistics;
 use farsa_models::MjcfOptions;
 use farsa_view::Schema;

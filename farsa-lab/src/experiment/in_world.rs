@@ -1,6 +1,7 @@
 //! An evaluator made of a world and an episode.
 
-use farsa_body::{Arrange, BodyId, ExternalForces, Handles, Kinematics, Recorder, World};
+use farsa_body::Recorder;
+use farsa_body::ports::{Arrange, BodyId, ExternalForces, Handles, Kinematics, World};
 use farsa_view::Schema;
 
 use crate::error::Error;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
+use farsa_body::ports::{BodyId, Channels, Contacts, Kinematics, Motor, Sensor};
+use farsa_body::{Recorder, record_world};
 use farsa_evo::ObservationStatistics;
 use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_view::Schema;
@@ -24,7 +25,9 @@ use crate::experiment::protocol::Protocol;
 ///
 /// ```
 /// use farsa_body::testing::PointWorld;
-/// use farsa_body::{ActuatorId, JointId, JointPosition, TorqueMotor, World as _};
+/// use farsa_body::motors::TorqueMotor;
+/// use farsa_body::ports::{ActuatorId, JointId, World as _};
+/// use farsa_body::sensors::JointPosition;
 /// use farsa_lab::Neurocontroller;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -248,8 +251,10 @@ fn interventions(schema: &Schema, hidden: usize) -> Interventions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_body::motors::{Muscles, TorqueMotor};
+    use farsa_body::ports::{ActuatorId, JointId, World as _};
+    use farsa_body::sensors::{JointPosition, JointSpeed};
     use farsa_body::testing::PointWorld;
-    use farsa_body::{ActuatorId, JointId, JointPosition, JointSpeed, Muscles, TorqueMotor, World as _};
     use farsa_evo::words::{GeneRange, decode};
     use farsa_nn::{Leak, LeakyNetwork, LeakyParameter};
     use farsa_view::Recording;

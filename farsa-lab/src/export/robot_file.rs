@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use farsa_body::{JointKind, Law, Servo};
+use farsa_body::actuators::{Law, Servo};
+use farsa_body::robot::JointKind;
 use farsa_models::{Imported, MjcfOptions, ReadError, ReadOptions, mjcf, urdf};
 use serde::Serialize;
 

@@ -1,6 +1,7 @@
 //! A number for what a trial was like up to each step, which is another where a bit is.
 
-use farsa_body::{BodyId, PairContact, PairId, Pose, Recorder};
+use farsa_body::ports::{BodyId, PairContact, PairId};
+use farsa_body::{Pose, Recorder};
 
 /// Folds all that is recorded into one number, and keeps what that is after each tick.
 ///

@@ -1,6 +1,6 @@
 //! What is asked to be done to the bodies of a trial, as its world has them.
 
-use farsa_body::BodyId;
+use farsa_body::ports::BodyId;
 use farsa_view::Schema;
 
 use crate::error::Error;

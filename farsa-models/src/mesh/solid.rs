@@ -1,6 +1,7 @@
 //! Shapes of model files as ours, with the masses of the true ones.
 
-use farsa_body::{MassProperties, Pose, Shape};
+use farsa_body::Pose;
+use farsa_body::robot::{MassProperties, Shape};
 
 use crate::bounds::{LARGEST, has_size};
 use crate::mesh::triangles::{Mesh, z_to_axis};

@@ -1,6 +1,7 @@
 //! Triangle meshes: their files, the shape that holds one, its mass.
 
-use farsa_body::{MassProperties, Pose, Shape};
+use farsa_body::Pose;
+use farsa_body::robot::{MassProperties, Shape};
 use farsa_num::Scalar;
 
 use crate::bounds::LARGEST;

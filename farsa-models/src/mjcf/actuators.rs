@@ -1,6 +1,7 @@
 //! The actuators of an MJCF file.
 
-use farsa_body::{Held, Law, Robot, Servo, Torque, Velocity};
+use farsa_body::actuators::{Held, Law, Servo, Torque, Velocity};
+use farsa_body::robot::Robot;
 
 use crate::context::Context;
 use crate::error::ReadError;

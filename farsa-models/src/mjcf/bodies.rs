@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment, Visual};
+use farsa_body::Pose;
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment, Visual};
 
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};

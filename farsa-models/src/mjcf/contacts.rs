@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::{Robot, Shape};
+use farsa_body::robot::{Robot, Shape};
 
 use crate::context::Context;
 use crate::error::ReadError;

@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use farsa_body::{Pose, Shape};
+use farsa_body::Pose;
+use farsa_body::robot::Shape;
 
 use crate::bounds::LARGEST;
 use crate::context::Context;

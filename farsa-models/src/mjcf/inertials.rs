@@ -1,6 +1,7 @@
 //! The masses of an MJCF file's bodies: given by an `inertial`, or those of the geoms.
 
-use farsa_body::{MassProperties, Pose, Shape};
+use farsa_body::Pose;
+use farsa_body::robot::{MassProperties, Shape};
 
 use crate::context::Context;
 use crate::error::ReadError;

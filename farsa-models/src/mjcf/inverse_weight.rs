@@ -1,6 +1,9 @@
 //! How easily a force moves each segment: what another simulator's contact parameters are relative to.
 
-use farsa_body::{BodyId, JointKind, KinematicTree, Pose, Robot, RobotError, Segment};
+use farsa_body::Pose;
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, Robot, RobotError, Segment};
 use farsa_num::Scalar;
 
 use crate::vector::{cross, dot, sub};
@@ -158,7 +161,7 @@ fn add_square(matrix: &mut Matrix, v: Spatial, by: f64) {
 mod tests {
     use super::*;
     use crate::vector::norm;
-    use farsa_body::{Joint, MassProperties};
+    use farsa_body::robot::{Joint, MassProperties};
     use proptest::prelude::*;
 
     #[test]

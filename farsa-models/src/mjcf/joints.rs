@@ -1,6 +1,7 @@
 //! The joints of an MJCF file.
 
-use farsa_body::{Joint, JointKind, Pose};
+use farsa_body::Pose;
+use farsa_body::robot::{Joint, JointKind};
 
 use crate::bounds::range_from_file;
 use crate::context::Context;

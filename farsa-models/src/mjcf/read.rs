@@ -1,6 +1,6 @@
 //! A robot from an MJCF file.
 
-use farsa_body::{MassProperties, Robot};
+use farsa_body::robot::{MassProperties, Robot};
 
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};

@@ -1,6 +1,6 @@
 //! How two surfaces act on each other: from MuJoCo's numbers of geoms and pairs to springs and dampers.
 
-use farsa_body::Surface;
+use farsa_body::robot::Surface;
 
 use crate::error::ReadError;
 use crate::mjcf::bodies::Geom;

@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape, Visual};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Actuator, Collider, JointKind, Pair, Robot, RobotError, Segment, Shape, Visual};
 use farsa_num::Scalar;
 
 use crate::bounds::{check_sizes, range_in_file};
@@ -349,7 +352,7 @@ fn geom(shape: &Visual, name: &str, group: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::ArmAndHand;
+    use farsa_body::robots::ArmAndHand;
 
     #[test]
     fn contacts_yield_as_ours_at_rest() {

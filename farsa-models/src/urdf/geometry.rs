@@ -1,6 +1,7 @@
 //! Places and shapes in elements of a URDF.
 
-use farsa_body::{Pose, Shape};
+use farsa_body::Pose;
+use farsa_body::robot::Shape;
 use farsa_num::sin_cos;
 
 use crate::bounds::{LARGEST, has_size};

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, Law, MassProperties, Pose, Robot, Segment, Torque};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment};
 
 use crate::bounds::{ENDLESS, range_from_file};
 use crate::context::Context;

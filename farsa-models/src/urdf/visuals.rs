@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use farsa_body::{BodyId, Robot, Visual};
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Robot, Visual};
 
 use crate::context::Context;
 use crate::error::ReadError;

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use farsa_body::{Collider, Joint, JointKind, Law, Pose, Robot, RobotError, Segment, Shape, Visual};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::robot::{Collider, Joint, JointKind, Robot, RobotError, Segment, Shape, Visual};
 use farsa_num::{atan2, sin_cos};
 
 use crate::bounds::{ENDLESS, check_sizes, range_in_file};
@@ -234,7 +236,7 @@ mod tests {
 
     #[test]
     fn names_are_unique() {
-        use farsa_body::{Joint, MassProperties};
+        use farsa_body::robot::{Joint, MassProperties};
         let mut robot = Robot::new("two");
         let ball = MassProperties::sphere(1.0, 0.1);
         let first =

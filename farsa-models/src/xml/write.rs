@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use farsa_body::{Collider, Robot, Segment, Visual};
+use farsa_body::robot::{Collider, Robot, Segment, Visual};
 
 /// Deeper lines stand no further in, or the text would grow with the square of a chain's length.
 const FURTHEST_IN: usize = 32;
@@ -127,7 +127,8 @@ pub(crate) fn visuals_by_body(robot: &Robot) -> Vec<Vec<&Visual>> {
 /// An orange ball that slides and turns on the ground, beside a grey one that stands in the world.
 #[cfg(test)]
 pub(crate) fn ball_on_the_ground() -> Robot {
-    use farsa_body::{Ground, MassProperties, Pose, Shape};
+    use farsa_body::Pose;
+    use farsa_body::robot::{Ground, MassProperties, Shape};
     let mut robot = Robot::new("ball");
     let body = robot.add_sliding_body("ball", Pose::identity(), MassProperties::sphere(0.3, 0.06), true);
     let ball = |name, body, x| Collider::new(name, body, Shape::Sphere { radius: 0.06 }, Pose::at([x, 0.0, 0.0]));

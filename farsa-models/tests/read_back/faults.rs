@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use farsa_body::{KinematicTree, Law, Torque};
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::kinematics::KinematicTree;
 use farsa_models::{Imported, ReadOptions, Repair};
 
 use crate::{message, read};
@@ -178,9 +179,9 @@ fn mujocos_rules_are_followed() {
     let volume = std::f64::consts::PI * 0.01 * (1.0 + 4.0 / 3.0 * 0.1);
     assert!((robot.segments[0].mass - 500.0 * volume).abs() < 1e-12);
     let laws: Vec<Law<f64>> = robot.actuators.iter().map(|actuator| actuator.law).collect();
-    assert_eq!(laws[0], Law::Servo(farsa_body::Servo { stiffness: 40.0, damping: 4.0, limit: 6.0 }));
+    assert_eq!(laws[0], Law::Servo(farsa_body::actuators::Servo { stiffness: 40.0, damping: 4.0, limit: 6.0 }));
     assert_eq!(laws[1], Law::Torque(Torque { limit: 4.0 }));
-    assert_eq!(laws[2], Law::Held(farsa_body::Held { stiffness: 0.0, damping: 5.0 }));
+    assert_eq!(laws[2], Law::Held(farsa_body::actuators::Held { stiffness: 0.0, damping: 5.0 }));
     assert_eq!(laws.len(), 3);
     assert!(
         warnings.iter().any(|note| note.what == "actuator muscle" && note.why.starts_with("left out")),

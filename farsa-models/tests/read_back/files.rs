@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use farsa_body::Shape;
+use farsa_body::robot::Shape;
 use farsa_models::{Imported, Limits, Meshes, ReadError, ReadOptions, SourceLocation};
 
 /// A folder of this test's own.

@@ -1,6 +1,8 @@
 //! The iCub, whole and with rigid chains, is the same robot after it was written and read.
 
-use farsa_body::{Chain, Icub, KinematicTree, Robot, Visual};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::robot::{Robot, Visual};
+use farsa_body::robots::{Chain, Icub};
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use farsa_num::{Domain, Stream};
 

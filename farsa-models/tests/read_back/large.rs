@@ -3,7 +3,7 @@
 //! What once went with the square is here at a size that would not end, or not fit: no test has a clock.
 use std::fmt::Write as _;
 
-use farsa_body::{Robot, Shape};
+use farsa_body::robot::{Robot, Shape};
 use farsa_models::{Imported, Limits, MjcfOptions, ReadOptions, mjcf, urdf};
 
 use crate::read;

@@ -1,6 +1,7 @@
 //! What is only drawn: visuals of URDF files, geoms of MJCF files that touch nothing.
 
-use farsa_body::{Pose, Shape, Visual};
+use farsa_body::Pose;
+use farsa_body::robot::{Shape, Visual};
 use farsa_models::{MjcfOptions, mjcf, urdf};
 
 use crate::read;

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use farsa_body::{Collider, Joint, Law, MassProperties, Pose, Robot, Segment, Shape, Torque};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use proptest::prelude::*;
 

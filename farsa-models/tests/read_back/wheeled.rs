@@ -1,6 +1,8 @@
 //! Wheeled robots that were written are read as they were.
 
-use farsa_body::{JointKind, Law, MobileRobot, Torque};
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::robot::JointKind;
+use farsa_body::robots::MobileRobot;
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use farsa_num::sin_cos;
 

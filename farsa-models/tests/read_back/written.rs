@@ -1,6 +1,10 @@
 //! Robots that were written are read as they were.
 
-use farsa_body::{ArmAndHand, JointKind, KinematicTree, Law, Pose, Robot, Shape, Tabletop, Torque};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::kinematics::KinematicTree;
+use farsa_body::robot::{JointKind, Robot, Shape};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_models::{MjcfOptions, mjcf, urdf};
 
 use crate::{fixture, read};

@@ -6,10 +6,12 @@ use alloc::vec::Vec;
 use core::fmt;
 use farsa_num::Instructions;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
+    PairContact, PairId, Planar, PlanarHit, Rays, Sight, Snapshot, World as _,
 };
+use farsa_body::robots::MobileParts;
+use farsa_body::{Pose, Twist};
 
 use crate::arena::description::Arena;
 use crate::arena::error::ArenaError;
@@ -28,7 +30,8 @@ use crate::articulated::lockstep::LANES;
 /// to in any lane, lanes are stepped one by one.
 ///
 /// ```
-/// use farsa_body::{Actuated, Kinematics, MobileRobot};
+/// use farsa_body::ports::{Actuated, Kinematics};
+/// use farsa_body::robots::MobileRobot;
 /// use farsa_num::Instructions;
 /// use farsa_physics::arena::{Arena, Batch};
 ///

@@ -31,12 +31,13 @@ pub enum ConvexForm {
 
 /// A convex obstacle that does not move, in the world's frame.
 ///
-/// In the plane it is its outline as seen from above: that is what robots collide with, what [`Sight`](farsa_body::Planar)
-/// tells and what infrared sensors feel. Rays in space ([`Rays`](farsa_body::Rays)) meet the solid itself, slopes included.
+/// In the plane it is its outline as seen from above: that is what robots collide with, what [`Sight`](farsa_body::ports::Planar)
+/// tells and what infrared sensors feel. Rays in space ([`Rays`](farsa_body::ports::Rays)) meet the solid itself, slopes included.
 /// Like a wall, it is no body.
 ///
 /// ```
-/// use farsa_body::{MobileRobot, Rays, Sight};
+/// use farsa_body::ports::{Rays, Sight};
+/// use farsa_body::robots::MobileRobot;
 /// use farsa_physics::arena::{Arena, Convex, World};
 ///
 /// let mut arena = Arena::walled(1.0, 1.0);

@@ -2,7 +2,8 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{ActuatorId, BodyId, JointId, MobileParts, MobileRobot};
+use farsa_body::ports::{ActuatorId, BodyId, JointId};
+use farsa_body::robots::{MobileParts, MobileRobot};
 
 use crate::arena::convex::{Convex, GREY};
 
@@ -168,7 +169,8 @@ pub struct RobotPlacement {
 /// `2 r + 1` (right). Actuators follow each other robot by robot, each robot's as in [`MobileRobot::parts`].
 ///
 /// ```
-/// use farsa_body::{Actuated, Kinematics, MobileRobot, World as _};
+/// use farsa_body::ports::{Actuated, Kinematics, World as _};
+/// use farsa_body::robots::MobileRobot;
 /// use farsa_physics::arena::{Arena, Cylinder, World};
 ///
 /// let mut arena = Arena::walled(0.4, 0.4);

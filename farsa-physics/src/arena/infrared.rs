@@ -1,6 +1,6 @@
 //! The ring of analytic infrared sensors, for one world or for lanes of them.
 
-use farsa_body::AnalyticInfrared;
+use farsa_body::sensors::infrared::InfraredModel;
 use farsa_num::{Mask, Scalar};
 
 use crate::arena::model::{Model, POSE_WORDS};
@@ -21,14 +21,14 @@ struct Pose<S> {
 fn add_surface<S: Scalar<Real = f32>>(
     simd: S::Simd,
     axes: &[[f32; 2]],
-    seen: &AnalyticInfrared,
+    seen: &InfraredModel,
     axis: [S; 2],
     way: [S; 2],
     radii: f32,
     out: &mut [f32],
 ) {
     // Each surface adds f(distance) g(cosine) by its nearest point alone, with the cosine of the angle between the sensor's
-    // axis and the way there; f and g are those of `AnalyticInfrared`.
+    // axis and the way there; f and g are those of `InfraredModel`.
     let zero = S::splat(simd, 0.0);
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let distance = length - S::splat(simd, radii);
@@ -106,7 +106,7 @@ fn clear_sums<S: Scalar<Real = f32>>(simd: S::Simd, sensors: usize, out: &mut [f
 #[inline(always)]
 fn sums_to_readings<S: Scalar<Real = f32>>(simd: S::Simd, sensors: usize, out: &mut [f32]) {
     for k in 0..sensors {
-        store(out, k, AnalyticInfrared::reading(load::<S>(simd, out, k)));
+        store(out, k, InfraredModel::reading(load::<S>(simd, out, k)));
     }
 }
 

@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{ActuatorId, AnalyticInfrared, BodyId, JointId, MobileParts, MobileRobot};
+use farsa_body::ports::{ActuatorId, BodyId, JointId};
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::InfraredModel;
 use farsa_num::{Scalar, atan2, sin_cos};
 
 use crate::arena::convex::{Convex, ConvexForm};
@@ -36,7 +38,7 @@ pub(crate) struct Kind {
     /// Where the infrared sensors look, in the robot's frame.
     pub(crate) infrared: Vec<[f32; 2]>,
     /// How infrared sensors see it.
-    pub(crate) seen: AnalyticInfrared,
+    pub(crate) seen: InfraredModel,
 }
 
 /// A cylinder.
@@ -46,7 +48,7 @@ pub(crate) struct Round {
     pub(crate) height: f32,
     pub(crate) color: [f32; 3],
     pub(crate) lamp: f32,
-    pub(crate) seen: AnalyticInfrared,
+    pub(crate) seen: InfraredModel,
 }
 
 /// An area.
@@ -75,7 +77,7 @@ pub(crate) struct Model {
     pub(crate) attachments: bool,
     pub(crate) grid: bool,
     /// How infrared sensors see a wall.
-    pub(crate) wall_seen: AnalyticInfrared,
+    pub(crate) wall_seen: InfraredModel,
     /// The largest radius of a robot or cylinder [m].
     pub(crate) largest: f32,
     /// The longest way of a robot in a step [m].
@@ -141,7 +143,7 @@ fn kind(robot: &MobileRobot, time_step: f64) -> Kind {
         advance: (0.5 * wheel * time_step) as f32,
         speeds: narrow([0.5 * wheel, wheel / robot.track]),
         infrared: robot.infrared.angles.iter().map(|angle| direction(*angle)).collect(),
-        seen: AnalyticInfrared::for_radius(robot.radius as f32),
+        seen: InfraredModel::for_radius(robot.radius as f32),
         robot: robot.clone(),
     }
 }
@@ -354,7 +356,7 @@ impl Model {
             height: cylinder.height as f32,
             color: narrow(cylinder.color),
             lamp: cylinder.lamp as f32,
-            seen: AnalyticInfrared::for_radius(cylinder.radius as f32),
+            seen: InfraredModel::for_radius(cylinder.radius as f32),
         });
         let patches = arena.areas.iter().map(|area| {
             let (half, disc) = match area.shape {
@@ -382,7 +384,7 @@ impl Model {
                 Search::All => false,
                 Search::Grid => true,
             },
-            wall_seen: AnalyticInfrared::for_radius(0.0),
+            wall_seen: InfraredModel::for_radius(0.0),
             actuators: 0,
             initial: Vec::new(),
             kinds,
@@ -458,7 +460,7 @@ impl Model {
 
     /// How infrared sensors see a robot or cylinder.
     #[inline(always)]
-    pub(crate) fn seen(&self, body: usize) -> &AnalyticInfrared {
+    pub(crate) fn seen(&self, body: usize) -> &InfraredModel {
         match body.checked_sub(self.robots.len()) {
             None => &self.kind(body).seen,
             Some(round) => &self.rounds[round].seen,

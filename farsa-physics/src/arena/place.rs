@@ -1,6 +1,6 @@
 //! Finding a free place in a planar world.
 
-use farsa_body::{BodyId, Planar};
+use farsa_body::ports::{BodyId, Planar};
 use farsa_num::Stream;
 
 use crate::arena::error::ArenaError;
@@ -10,7 +10,9 @@ use crate::arena::error::ArenaError;
 /// Places are drawn uniformly from the region until one is free: two draws of the stream for each try.
 ///
 /// ```
-/// use farsa_body::{Arrange, MobileRobot, Pose, Twist};
+/// use farsa_body::ports::Arrange;
+/// use farsa_body::robots::MobileRobot;
+/// use farsa_body::{Pose, Twist};
 /// use farsa_num::{Domain, Stream};
 /// use farsa_physics::arena::{Arena, ArenaError, FreePlace, World};
 ///

@@ -1,6 +1,7 @@
 //! What the ports of a planar world report, from its words: for a world alone and a lane.
 
-use farsa_body::{ActuatorId, BodyId, Hit, JointId, Lamp, NearbySurface, PairContact, PairId, PlanarHit, Pose, Twist};
+use farsa_body::ports::{ActuatorId, BodyId, Hit, JointId, Lamp, NearbySurface, PairContact, PairId, PlanarHit};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Scalar, sin_cos};
 
 use crate::arena::model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS, pose_words};
@@ -148,7 +149,7 @@ fn signal(world: &impl View, body: usize) -> Option<f32> {
     (body < model.robots.len() && model.kind(body).robot.signal).then(|| robot_word(world, body, SHOWN + 3))
 }
 
-/// See [`farsa_body::Sight::query_near`].
+/// See [`farsa_body::ports::Sight::query_near`].
 pub(crate) fn query_near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl FnMut(NearbySurface<BodyId>)) {
     let model = world.model();
     for slab in &model.slabs {
@@ -231,7 +232,7 @@ fn along(
     }
 }
 
-/// See [`farsa_body::Sight::cast_planar`].
+/// See [`farsa_body::ports::Sight::cast_planar`].
 pub(crate) fn cast_planar(
     world: &impl View,
     from: [f32; 2],
@@ -301,7 +302,7 @@ fn ray_to_cylinder(o: [f32; 3], d: [f32; 3], radius: f32, height: f32) -> Option
     (x * x + y * y <= radius * radius).then_some((distance, [0.0, 0.0, up]))
 }
 
-/// See [`farsa_body::Rays::cast`].
+/// See [`farsa_body::ports::Rays::cast`].
 pub(crate) fn cast(world: &impl View, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
     let model = world.model();
     let mut hit: Option<Hit<BodyId>> = None;

@@ -3,10 +3,12 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
+    PairContact, PairId, Planar, PlanarHit, Rays, Sight, Snapshot,
 };
+use farsa_body::robots::MobileParts;
+use farsa_body::{Pose, Twist};
 
 use crate::arena::crowd::Crowd;
 use crate::arena::description::Arena;
@@ -64,7 +66,7 @@ impl World {
         self.model.parts(robot)
     }
 
-    /// Readings of a robot's ring of infrared sensors by [`AnalyticInfrared`](farsa_body::AnalyticInfrared); `out` [sensors].
+    /// Readings of a robot's ring of infrared sensors by [`InfraredModel`](farsa_body::sensors::infrared::InfraredModel); `out` [sensors].
     ///
     /// The same as a sensor that asks [`Planar::near`], but faster, and in lanes, too: `Batch::infrared`.
     /// A shorter slice gets the first sensors.
@@ -108,7 +110,7 @@ impl View for World {
     }
 }
 
-impl farsa_body::World for World {
+impl farsa_body::ports::World for World {
     fn step(&mut self) {
         if self.crowd.grid.is_some() || view::holds(self) {
             self.crowd.step(&self.model, &mut self.words, &mut self.work);

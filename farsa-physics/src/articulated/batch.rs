@@ -14,7 +14,9 @@ use crate::articulated::model::{Model, ModelError};
 /// whatever its neighbours do.
 ///
 /// ```
-/// use farsa_body::{Arrange, Joint, JointId, Joints, MassProperties, Pose, Robot, Segment};
+/// use farsa_body::Pose;
+/// use farsa_body::ports::{Arrange, JointId, Joints};
+/// use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 /// use farsa_num::Instructions;
 /// use farsa_physics::articulated::{Batch, Model, Options};
 ///

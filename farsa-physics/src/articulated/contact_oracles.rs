@@ -5,7 +5,9 @@ extern crate std;
 
 use alloc::vec::Vec;
 
-use farsa_body::{BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape, Surface};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
 use proptest::prelude::*;
 
 use super::{find, place_colliders};

@@ -4,7 +4,7 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::Robot;
+use farsa_body::robot::Robot;
 use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::collision::PlacedShape;

@@ -2,10 +2,11 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
-    PairContact, PairId, PlanarHit, Pose, Rays, Seen, Sight, Snapshot, Twist, Vision,
+    PairContact, PairId, PlanarHit, Rays, Seen, Sight, Snapshot, Vision,
 };
+use farsa_body::{Pose, Twist};
 
 use crate::articulated::link::LinkData;
 use crate::articulated::model::Model;

@@ -3,7 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::{JointKind, Pose, Robot};
+use farsa_body::Pose;
+use farsa_body::robot::{JointKind, Robot};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::link::{Link, LinkData, Motion, Sliding, WORLD};

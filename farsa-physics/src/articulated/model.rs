@@ -5,7 +5,9 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::ops::Range;
 
-use farsa_body::{BodyId, JointKind, Law, RobotError};
+use farsa_body::actuators::Law;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, RobotError};
 use farsa_num::Real;
 
 use crate::articulated::link::{Link, WORLD};
@@ -230,7 +232,7 @@ pub struct Model<R> {
     pub(crate) clusters: Vec<Cluster<R>>,
     pub(crate) actuators: Vec<Actuator<R>>,
     pub(crate) grounds: Vec<Ground<R>>,
-    /// The state after [`farsa_body::Arrange::clear`].
+    /// The state after [`farsa_body::ports::Arrange::clear`].
     pub(crate) initial: Vec<R>,
     pub(crate) positions: usize,
     pub(crate) dofs: usize,
@@ -291,7 +293,7 @@ impl<R: Real> Model<R> {
         (mount.link != WORLD).then_some(usize::from(mount.link))
     }
     /// The index of a joint's position and velocity; `None` for fixed and floating joints.
-    pub fn joint_index(&self, joint: farsa_body::JointId) -> Option<(usize, usize)> {
+    pub fn joint_index(&self, joint: farsa_body::ports::JointId) -> Option<(usize, usize)> {
         match self.joints.get(joint.index())? {
             JointKind::Revolute | JointKind::Prismatic => {
                 let link = &self.links[usize::from(self.mounts[joint.index()].link)];

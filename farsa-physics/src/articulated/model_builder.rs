@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::{JointKind, Robot, RobotError, Shape};
+use farsa_body::robot::{JointKind, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::group::{groups_of, is_plane};
@@ -212,7 +212,7 @@ fn grounds_of<R: Real>(
     pairs: &mut [Pair<R>],
     h: f64,
 ) -> Vec<Ground<R>> {
-    let link = |joint: farsa_body::JointId| mounts[joint.index()].link;
+    let link = |joint: farsa_body::ports::JointId| mounts[joint.index()].link;
     let found = robot.grounds.iter().filter_map(|ground| {
         let (sliders, turn) = robot.sliders(ground.body)?;
         let limit = ground.friction * ground.load * h;
@@ -267,7 +267,7 @@ impl<R: Real> Model<R> {
         let stop_paths = stop_paths_of(&links);
         let actuators =
             robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
-        let bodies_of = |pair: &farsa_body::Pair| pair.colliders.map(|c| robot.colliders[c].body);
+        let bodies_of = |pair: &farsa_body::robot::Pair| pair.colliders.map(|c| robot.colliders[c].body);
         let colors = robot.colliders.iter().enumerate();
         let shown = colors.filter_map(|(i, c)| Some((i as u16, c.color?.map(|shade| shade as f32))));
         let mut model = Self {

@@ -1,6 +1,6 @@
 //! Ray casts against the colliders of an articulated world.
 
-use farsa_body::{BodyId, Hit};
+use farsa_body::ports::{BodyId, Hit};
 use farsa_num::Real;
 
 use crate::articulated::link::WORLD;

@@ -1,6 +1,6 @@
 //! What is seen in a horizontal plane of an articulated world: where it cuts the shapes that have a colour.
 
-use farsa_body::{BodyId, NearbySurface, PlanarHit};
+use farsa_body::ports::{BodyId, NearbySurface, PlanarHit};
 use farsa_num::Real;
 
 use crate::articulated::model::Geometry;

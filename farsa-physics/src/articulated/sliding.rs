@@ -99,10 +99,9 @@ pub(crate) fn outwards<S: Scalar>(simd: S::Simd, w: &mut LinkData<S>, parent: Ve
 mod tests {
     use alloc::vec::Vec;
 
-    use farsa_body::{
-        Arrange as _, Collider, Ground, Joint, JointId, MassProperties, Pose, Robot, Segment, Shape, Surface,
-        World as _,
-    };
+    use farsa_body::Pose;
+    use farsa_body::ports::{Arrange as _, JointId, World as _};
+    use farsa_body::robot::{Collider, Ground, Joint, MassProperties, Robot, Segment, Shape, Surface};
     use farsa_num::{Domain, Stream};
 
     use crate::articulated::{Model, Options, Precision, World};

@@ -246,7 +246,7 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
-    use farsa_body::ArmAndHand;
+    use farsa_body::robots::ArmAndHand;
     use farsa_num::{Domain, Stream, exp};
     use proptest::prelude::*;
 

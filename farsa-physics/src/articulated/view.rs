@@ -1,7 +1,9 @@
 //! What the ports of a world report, from the words of its state and the places of its links: for a world alone and a
 //! lane.
 
-use farsa_body::{BodyId, JointId, JointKind, PairContact, PairId, Pose, Twist};
+use farsa_body::ports::{BodyId, JointId, PairContact, PairId};
+use farsa_body::robot::JointKind;
+use farsa_body::{Pose, Twist};
 use farsa_num::Real;
 
 use crate::articulated::link::{Motion, WORLD};

@@ -1,6 +1,6 @@
 //! What the eyes of a camera see of an articulated world.
 
-use farsa_body::{BodyId, Seen};
+use farsa_body::ports::{BodyId, Seen};
 use farsa_num::Real;
 
 use crate::articulated::model::Geometry;

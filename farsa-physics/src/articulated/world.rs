@@ -2,10 +2,11 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
-    PairContact, PairId, PlanarHit, Pose, Rays, Seen, Sight, Snapshot, Twist, Vision,
+    PairContact, PairId, PlanarHit, Rays, Seen, Sight, Snapshot, Vision,
 };
+use farsa_body::{Pose, Twist};
 use farsa_num::Real;
 
 use crate::articulated::external::Wrenches;
@@ -159,7 +160,7 @@ impl<R: Precision> Handles for World<R> {
     type Actuator = ActuatorId;
 }
 
-impl<R: Precision> farsa_body::World for World<R> {
+impl<R: Precision> farsa_body::ports::World for World<R> {
     fn step(&mut self) {
         let Self { model, state, scratch, forces } = self;
         R::step(model, state, scratch, forces);
@@ -197,7 +198,7 @@ impl<R: Precision> Actuated for World<R> {
     }
 }
 
-impl<R: Precision> farsa_body::ExternalForces for World<R> {
+impl<R: Precision> farsa_body::ports::ExternalForces for World<R> {
     fn apply_force(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
         let Some(link) = self.model.link_of(body) else { return };
         let [point, force] = [point, force].map(|a| a.map(|x| R::from_f64(f64::from(x))));

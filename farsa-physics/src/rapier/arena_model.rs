@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{BodyId, MobileRobot, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robots::MobileRobot;
 use rapier3d::dynamics::{MultibodyIndex, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{Collider, ColliderBuilder, ColliderHandle, Group, InteractionGroups, SharedShape};
 use rapier3d::math::{Pose as Frame, Rotation, Vector};

@@ -1,9 +1,10 @@
 //! The ports of a world of wheeled robots in rapier.
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, Hit, JointId, Joints, Kinematics, Lamp,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Sight, Snapshot,
 };
+use farsa_body::{Pose, Twist};
 use farsa_num::Scalar;
 use rapier3d::geometry::Ray;
 
@@ -21,7 +22,7 @@ impl Handles for ArenaWorld {
     type Actuator = ActuatorId;
 }
 
-impl farsa_body::World for ArenaWorld {
+impl farsa_body::ports::World for ArenaWorld {
     fn step(&mut self) {
         self.advance();
     }

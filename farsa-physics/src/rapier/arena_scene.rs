@@ -2,7 +2,8 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{BodyId, MobileRobot, PairId};
+use farsa_body::ports::{BodyId, PairId};
+use farsa_body::robots::MobileRobot;
 
 use crate::arena::description::{Arena, Wall};
 use crate::rapier::error::RapierError;
@@ -111,7 +112,8 @@ impl Block {
 /// Bodies, joints and actuators have the numbers of the arena; blocks come after the areas.
 ///
 /// ```
-/// use farsa_body::{Actuated, Kinematics, MobileRobot, World as _};
+/// use farsa_body::ports::{Actuated, Kinematics, World as _};
+/// use farsa_body::robots::MobileRobot;
 /// use farsa_physics::arena::Arena;
 /// use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block, RapierError};
 ///

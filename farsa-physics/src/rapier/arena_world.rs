@@ -4,7 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use farsa_body::{BodyId, JointId, MobileParts, PairContact, Pose, Twist};
+use farsa_body::ports::{BodyId, JointId, PairContact};
+use farsa_body::robots::MobileParts;
+use farsa_body::{Pose, Twist};
 use farsa_num::Scalar;
 use rapier3d::dynamics::{Multibody, MultibodyJoint};
 use rapier3d::geometry::ColliderHandle;

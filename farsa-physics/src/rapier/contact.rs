@@ -1,6 +1,6 @@
 //! rapier's contacts as the port reports them.
 
-use farsa_body::PairContact;
+use farsa_body::ports::PairContact;
 use rapier3d::dynamics::{FrictionModel, RigidBodyHandle};
 use rapier3d::geometry::{ColliderHandle, Contact, ContactManifold};
 use rapier3d::math::Vector;

@@ -1,6 +1,6 @@
 //! Vectors, frames and shapes as rapier has them.
 
-use farsa_body::Shape;
+use farsa_body::robot::Shape;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::{Pose as Frame, Rotation, Vector};
 

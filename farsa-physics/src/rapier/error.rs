@@ -3,7 +3,7 @@
 use alloc::string::String;
 use core::fmt;
 
-use farsa_body::RobotError;
+use farsa_body::robot::RobotError;
 
 use crate::arena::error::ArenaError;
 use crate::articulated::model::ModelError;

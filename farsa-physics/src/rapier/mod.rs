@@ -3,9 +3,10 @@
 //! A block on a slide pushes a crate over the ground:
 //!
 //! ```
-//! use farsa_body::{
-//!     Actuated, Collider, Joint, JointId, Kinematics, Law, MassProperties, Pose, Robot, Segment, Servo, Shape, World as _,
-//! };
+//! use farsa_body::Pose;
+//! use farsa_body::actuators::{Law, Servo};
+//! use farsa_body::ports::{Actuated, JointId, Kinematics, World as _};
+//! use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
 //! use farsa_physics::rapier::{Geometry, Options, RapierError, Scene, SceneObject, World};
 //!
 //! fn main() -> Result<(), RapierError> {

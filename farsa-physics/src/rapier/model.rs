@@ -3,7 +3,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::{BodyId, JointKind, Law, Pose, Robot, Shape};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, Robot, Shape};
 use rapier3d::dynamics::{
     GenericJointBuilder, JointAxesMask, JointAxis, MultibodyIndex, RigidBodyBuilder, RigidBodyHandle,
 };

@@ -1,9 +1,10 @@
 //! The ports of a world of rapier.
 
-use farsa_body::{
+use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, Hit, JointId, Joints, Kinematics,
-    PairContact, PairId, Pose, Rays, Seen, Snapshot, Twist, Vision,
+    PairContact, PairId, Rays, Seen, Snapshot, Vision,
 };
+use farsa_body::{Pose, Twist};
 use rapier3d::geometry::Ray;
 
 use crate::rapier::contact::{pair_contact, touches};
@@ -17,7 +18,7 @@ impl Handles for World {
     type Actuator = ActuatorId;
 }
 
-impl farsa_body::World for World {
+impl farsa_body::ports::World for World {
     fn step(&mut self) {
         self.advance();
     }

@@ -4,7 +4,9 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use farsa_body::{BodyId, PairId, Pose, Robot, RobotError, Shape};
+use farsa_body::Pose;
+use farsa_body::ports::{BodyId, PairId};
+use farsa_body::robot::{Robot, RobotError, Shape};
 use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::math::{Pose as Frame, Rotation, Vector};
 use rapier3d::parry::utils::Array2;
@@ -160,7 +162,7 @@ impl Scene {
 /// Whether a body of the robot moves.
 fn robot_moves(robot: &Robot, mut body: Option<BodyId>) -> bool {
     while let Some(segment) = body.and_then(|body| robot.segments.get(body.index())) {
-        if segment.joint.kind != farsa_body::JointKind::Fixed {
+        if segment.joint.kind != farsa_body::robot::JointKind::Fixed {
             return true;
         }
         body = segment.parent;

@@ -4,7 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use farsa_body::{BodyId, JointId, JointKind, Pose, Robot, Twist};
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robot::{JointKind, Robot};
+use farsa_body::{Pose, Twist};
 use rapier3d::dynamics::{Multibody, MultibodyJoint, RigidBody, RigidBodyHandle};
 use rapier3d::geometry::ColliderHandle;
 use rapier3d::math::{Rotation, Vector};

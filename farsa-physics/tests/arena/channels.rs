@@ -1,10 +1,12 @@
 //! Every sensor and motor of `farsa_body` for mobile robots, for a world of the plane.
 
-use farsa_body::{
-    Actuated, ActuatorId, AttachmentMotor, AttachmentSensor, Beam, BodyId, ColorBand, GroundColor, InfraredAnalytic,
-    InfraredRays, InfraredTable, InfraredTables, JointId, Joints, Kinematics, LaserDistance, Leds, LightSensors,
-    LinearCamera, MobileParts, MobileRobot, Motor, Planar, Rays, SampledInfrared, Sensor, SignalMotor, SignalSensor,
-    SpeedAndTurn, Traction, WheelSpeed, WheelVelocity,
+use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
+use farsa_body::ports::{Actuated, ActuatorId, BodyId, JointId, Joints, Kinematics, Motor, Planar, Rays, Sensor};
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::infrared::{InfraredFormula, InfraredRays, InfraredTable, InfraredTables, SampledInfrared};
+use farsa_body::sensors::{
+    AttachmentSensor, Beam, ColorBand, GroundColor, LaserDistance, LightSensors, LinearCamera, SignalSensor, Traction,
+    WheelSpeed,
 };
 
 fn table() -> InfraredTables {
@@ -37,7 +39,7 @@ where
     let largest = robot.max_wheel_speed as f32;
     vec![
         ("rays", 1e-3, Box::new(InfraredRays::for_robot(robot, b).unwrap())),
-        ("analytic", 1e-3, Box::new(InfraredAnalytic::for_robot(robot, b).unwrap())),
+        ("analytic", 1e-3, Box::new(InfraredFormula::for_robot(robot, b).unwrap())),
         ("sampled", 1e-6, Box::new(SampledInfrared::new(b, radius as f32, table()).unwrap())),
         ("laser", 1e-3, Box::new(LaserDistance::new(b, fan, 0.01, 2.0).unwrap())),
         ("light", 1e-3, Box::new(LightSensors::for_robot(robot, b, 0.2).unwrap())),

@@ -1,8 +1,7 @@
 //! Robots that run into things and into each other, and hold each other.
 
-use farsa_body::{
-    Actuated, BodyId, Contacts, Kinematics, MobileRobot, PairId, Planar, Rays, Sight, Snapshot, World as _,
-};
+use farsa_body::ports::{Actuated, BodyId, Contacts, Kinematics, PairId, Planar, Rays, Sight, Snapshot, World as _};
+use farsa_body::robots::MobileRobot;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Cylinder, Search, Wall, World};
 

@@ -1,7 +1,8 @@
 //! The planar world keeps what `farsa_body::testing` says that every world promises.
 
+use farsa_body::ports::{BodyId, JointId};
+use farsa_body::robots::MobileRobot;
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{BodyId, JointId, MobileRobot};
 use farsa_physics::arena::{Area, Arena, CollisionRule, Cylinder, Search, Wall, World};
 
 /// Three robots of three kinds among obstacles, close enough to run into all of them.

@@ -1,10 +1,12 @@
 //! Convex obstacles of the planar world against oracles that look at every side in double precision.
 
-use farsa_body::testing::{Probe, check_arrange, check_planar, check_rays, check_world};
-use farsa_body::{
-    Actuated, Arrange, BodyId, Contacts, Hit, JointId, Kinematics, MobileRobot, NearbySurface, PairId, PlanarHit, Pose,
-    Rays, Sight, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, Arrange, BodyId, Contacts, Hit, JointId, Kinematics, NearbySurface, PairId, PlanarHit, Rays, Sight,
+    World as _,
 };
+use farsa_body::robots::MobileRobot;
+use farsa_body::testing::{Probe, check_arrange, check_planar, check_rays, check_world};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Convex, Cylinder, FreePlace, Search, Wall, World};
 use proptest::prelude::*;
@@ -230,7 +232,7 @@ proptest! {
             ring
         });
         prop_assert!(rings[0].iter().zip(rings[1]).all(|(a, b)| (a - b).abs() < 1e-3), "{rings:?}");
-        worlds.iter_mut().for_each(farsa_body::World::step);
+        worlds.iter_mut().for_each(farsa_body::ports::World::step);
         let contacts = [0, 1].map(|i| worlds[i].pair_contact(PairId(0)));
         prop_assert!((contacts[0].depth - contacts[1].depth).abs() < 2e-6, "{contacts:?}");
     }

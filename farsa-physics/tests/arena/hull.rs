@@ -1,7 +1,8 @@
 //! Convex hulls of points in the planar world against all planes through three of the points, and against parry's own rays.
 #![cfg(feature = "parry")]
 
-use farsa_body::{MobileRobot, Rays, Sight};
+use farsa_body::ports::{Rays, Sight};
+use farsa_body::robots::MobileRobot;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, Convex, World};
 use proptest::prelude::*;

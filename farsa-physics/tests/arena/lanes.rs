@@ -2,11 +2,13 @@
 #![cfg(feature = "lanes")]
 
 use crate::channels::{every_motor, every_sensor};
-use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileRobot,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
+    PairContact, PairId, Planar, PlanarHit, Rays, Sight, Snapshot, World as _,
 };
+use farsa_body::robots::MobileRobot;
+use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Digest, Domain, Instructions, Stream};
 use farsa_physics::arena::{
     Area, Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World,
@@ -195,7 +197,7 @@ fn robots_among_obstacles_in_a_lane_are_those_alone() {
 
 #[test]
 fn readings_of_the_ring_are_the_models() {
-    use farsa_body::AnalyticInfrared;
+    use farsa_body::sensors::infrared::InfraredModel;
     let arena = khepera();
     let mut world = World::new(&arena).unwrap();
     let mut stream = Stream::new(5, Domain::Start, 0, 0, 0);
@@ -217,7 +219,7 @@ fn readings_of_the_ring_are_the_models() {
                 if near.body != Some(BodyId(0)) {
                     let [x, y] = [near.point[0] - at[0], near.point[1] - at[1]];
                     let toward = (x * cosine + y * sine) / (x * x + y * y).sqrt();
-                    sum += AnalyticInfrared::for_radius(near.radius).response(near.distance - 0.035, toward);
+                    sum += InfraredModel::for_radius(near.radius).response(near.distance - 0.035, toward);
                 }
             });
             assert!((ring[k] - sum.clamp(0.0, 1.0)).abs() < 1e-3, "{k}: {} {sum}", ring[k]);
@@ -259,7 +261,7 @@ impl Handles for InLane {
     type Joint = JointId;
     type Actuator = ActuatorId;
 }
-impl farsa_body::World for InLane {
+impl farsa_body::ports::World for InLane {
     fn step(&mut self) {
         let batch = self.0.get_mut();
         batch.lane(2).command(ActuatorId(0), [3.0, 0.0]);

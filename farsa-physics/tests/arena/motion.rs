@@ -1,9 +1,10 @@
 //! How wheels move a robot of the planar world.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, MobileRobot, PairId, Pose, Sight,
-    Snapshot, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, PairId, Sight, Snapshot, World as _,
 };
+use farsa_body::robots::MobileRobot;
+use farsa_body::{Pose, Twist};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Cylinder, Wall, World};
 use proptest::prelude::*;

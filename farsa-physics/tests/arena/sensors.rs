@@ -1,8 +1,10 @@
 //! Sensors read the same in the arena as in the naive world of the plane, which is its second implementation.
 
 use crate::channels::{every_motor, every_sensor};
+use farsa_body::ports::{Actuated, BodyId, Sensor};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared::InfraredFormula;
 use farsa_body::testing::{PlaneWorld, check_motor, check_planar, check_sensor};
-use farsa_body::{Actuated, BodyId, InfraredAnalytic, MobileRobot, Sensor};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Area, Arena, Cylinder, Search, Wall, World};
 
@@ -70,7 +72,7 @@ fn scene(robot: &MobileRobot, search: Search, seed: u64) -> (World, PlaneWorld) 
         world.command(actuator, [[1.0, 0.0, 0.2, 0.75][i], 0.0]);
         plane.command(actuator, [[1.0, 0.0, 0.2, 0.75][i], 0.0]);
     }
-    farsa_body::World::step(&mut world);
+    farsa_body::ports::World::step(&mut world);
     (world, plane)
 }
 
@@ -99,7 +101,7 @@ fn sensors_read_the_same_in_both_worlds() {
                 }
                 let mut ring = vec![0.0; robot.infrared.angles.len()];
                 arena.infrared(0, &mut ring);
-                let mut sensor = InfraredAnalytic::for_robot(&robot, parts.body).unwrap();
+                let mut sensor = InfraredFormula::for_robot(&robot, parts.body).unwrap();
                 let mut read = ring.clone();
                 sensor.read(&arena, &mut read);
                 for (x, y) in ring.iter().zip(&read) {

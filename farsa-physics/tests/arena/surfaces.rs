@@ -1,9 +1,8 @@
 //! Surfaces, rays, ground and lamps of the planar world against oracles that look at everything in small steps.
 
-use farsa_body::{
-    Actuated, Arrange, BodyId, Kinematics, Lamp, MobileRobot, NearbySurface, Planar, Pose, Rays, Sight, Twist,
-    World as _,
-};
+use farsa_body::ports::{Actuated, Arrange, BodyId, Kinematics, Lamp, NearbySurface, Planar, Rays, Sight, World as _};
+use farsa_body::robots::MobileRobot;
+use farsa_body::{Pose, Twist};
 use farsa_physics::arena::{Area, Arena, Cylinder, Search, Wall, World};
 use proptest::prelude::*;
 

@@ -1,6 +1,8 @@
 //! Our recursive dynamics against Pinocchio's and MuJoCo's (fixtures/make.py), and against each other.
 
-use farsa_body::{BodyId, Joint, JointKind, Pose, Robot, Segment};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Joint, JointKind, Robot, Segment};
 use farsa_physics::articulated::{
     Model, Options, Scratch, accelerations, centre_of_mass, inverse_dynamics, jacobian, kinetic_energy, mass_matrix,
     potential_energy,

@@ -2,8 +2,10 @@
 
 use crate::channels::channels_conform;
 use crate::common::{CLOSED, POSES, Wrist, hand_and_sphere, model, pose_hand, put_in_the_palm, scene, start, stream};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Arrange, JointId, World as _};
+use farsa_body::robots::ArmAndHand;
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{ArmAndHand, Arrange, JointId, Law, World as _};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 
 #[test]

@@ -1,9 +1,8 @@
 //! Where and when contacts are: the point of a pair, pairs in groups that close fast, and stops that they drive joints into.
 
-use farsa_body::{
-    Arrange as _, BodyId, Collider, Contacts as _, Joint, JointId, Kinematics as _, MassProperties, Pose, Robot,
-    Segment, Shape, Surface, Twist, World as _,
-};
+use farsa_body::ports::{Arrange as _, BodyId, Contacts as _, JointId, Kinematics as _, World as _};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::{Model, Options, World};
 
 const SURFACE: Surface = Surface { friction: 0.5, rolling_friction: 0.0, stiffness: 2e4, damping: 60.0 };

@@ -1,7 +1,9 @@
 //! Energy and momentum of free motion: the errors of an integrator of first order, and no others.
 
 use crate::common::world;
-use farsa_body::{Arrange, BodyId, Joint, JointId, MassProperties, Pose, Robot, Segment, Twist, World as _};
+use farsa_body::ports::{Arrange, BodyId, JointId, World as _};
+use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::World;
 
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];

@@ -1,9 +1,9 @@
 //! Free bodies whose origin is away from their centre of mass, against closed forms, and their inertia with joints.
 
 use crate::common::world;
-use farsa_body::{
-    Arrange, BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape, Surface, Twist, World as _,
-};
+use farsa_body::ports::{Arrange, BodyId, World as _};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, kinetic_energy, mass_matrix};
 

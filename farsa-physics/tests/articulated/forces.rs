@@ -1,11 +1,11 @@
 //! Forces from outside, against closed forms and against gravity.
 
 use crate::common::{POSES, ghost, model, scene, stream, world};
+use farsa_body::ports::{Arrange, BodyId, ExternalForces as _, JointId, Kinematics as _, World as _};
+use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
+use farsa_body::robots::Tabletop;
 use farsa_body::testing::{Probe, check_external_forces};
-use farsa_body::{
-    Arrange, BodyId, ExternalForces as _, Joint, JointId, Kinematics as _, MassProperties, Pose, Robot, Segment,
-    Tabletop, Twist, World as _,
-};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::{Options, World};
 
 /// The dynamics step [s].

@@ -1,10 +1,12 @@
 //! Bodies that slide on the ground: closed forms, a naive integrator, and what must not happen.
 
 use crate::sliding::{FRICTION, GRAVITY, MASS, arm};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces as _, Ground, JointId, JointKind, Joints,
-    Kinematics as _, Law, MassProperties, Pose, Robot, Torque, World as _,
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Torque};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces as _, JointId, Joints, Kinematics as _, World as _,
 };
+use farsa_body::robot::{Ground, JointKind, MassProperties, Robot};
 use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 
@@ -244,7 +246,7 @@ fn balls_never_pass_through_the_arm_or_each_other() {
             }
             world.step();
             for pair in 0..world.pairs() {
-                let contact = world.pair_contact(farsa_body::PairId(pair as u16));
+                let contact = world.pair_contact(farsa_body::ports::PairId(pair as u16));
                 deepest = deepest.max(contact.depth);
                 touches += u32::from(contact.points > 0);
             }
@@ -294,7 +296,7 @@ fn collisions_keep_momentum_and_nothing_adds_energy() {
         for _ in 0..400 {
             world.step();
             let now = world.energy()[0];
-            let still = (0..world.pairs()).any(|p| world.pair_contact(farsa_body::PairId(p as u16)).points > 0);
+            let still = (0..world.pairs()).any(|p| world.pair_contact(farsa_body::ports::PairId(p as u16)).points > 0);
             // A contact stores some and gives it back; of nothing more comes than there was.
             let most = if touching || still { first } else { energy };
             assert!(now <= most * (1.0 + 1e-9), "trial {trial}: {now} J after {most} J");

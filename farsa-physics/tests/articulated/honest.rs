@@ -2,10 +2,11 @@
 
 use crate::common;
 use crate::common::{CLOSED, Wrist, close, ghost, hand_and_sphere, put_in_the_palm, touching, world};
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, Contacts, Held, JointId, Law, PairId, Pose, Robot, Servo, Surface,
-    Tabletop, Torque, Twist, World as _,
-};
+use farsa_body::actuators::{Held, Law, Servo, Torque};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, JointId, PairId, World as _};
+use farsa_body::robot::{Robot, Surface};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::World;
 

@@ -1,10 +1,12 @@
 //! The iCub in an articulated world: random targets under both controls, at rest, in parts.
 
 use crate::common::{model, stream};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, Camera, Chain, Contacts, Icub, JointControl, Joints, Law, PairId, Pose, Robot, Side,
-    World as _,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, Joints, PairId, World as _};
+use farsa_body::robot::Robot;
+use farsa_body::robots::{Chain, Icub, JointControl, Side};
+use farsa_body::sensors::Camera;
 use farsa_num::Stream;
 use farsa_physics::articulated::{Options, Precision, World};
 

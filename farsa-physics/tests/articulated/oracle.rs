@@ -5,7 +5,11 @@ use crate::common::{
     Babble, CLOSED, Wrist, close, commands, drive, first_point, ghost, hand_and_sphere, model, points_of, pose_hand,
     put_in_the_palm, scene, start, stream,
 };
-use farsa_body::{ArmAndHand, Arrange, BodyId, JointId, Law, Pose, Robot, Shape, Tabletop, Twist, World as _};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Arrange, BodyId, JointId, World as _};
+use farsa_body::robot::{Robot, Shape};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, jacobian, mass_matrix};
 use nalgebra::{DMatrix, DVector, Vector3};
 

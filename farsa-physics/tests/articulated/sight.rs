@@ -1,10 +1,11 @@
 //! What cameras see in an articulated world: a march along every ray, the arena, and the kit.
 
+use farsa_body::Pose;
+use farsa_body::ports::{BodyId, Sensor, Sight};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
 use farsa_body::testing::check_sight;
-use farsa_body::{
-    Beam, BodyId, Collider, ColorBand, Joint, LinearCamera, MassProperties, MobileRobot, Pose, Robot, Segment, Sensor,
-    Shape, Sight,
-};
 #[cfg(feature = "lanes")]
 use farsa_num::Instructions;
 use farsa_num::{Domain, Stream, sin_cos};
@@ -385,7 +386,7 @@ fn lanes_show_what_worlds_show() {
         for _ in 0..10 {
             // Everything falls and turns a little.
             batch.step();
-            farsa_body::World::step(&mut world);
+            farsa_body::ports::World::step(&mut world);
             let (mut x, mut y) = ([0.0_f32; 18], [0.0_f32; 18]);
             camera.read(&world, &mut x);
             for lane in 0..lanes {

@@ -4,7 +4,9 @@ use crate::common::{
     Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, model, put_in_the_palm, scene, start, stream,
     touching,
 };
-use farsa_body::{ArmAndHand, Arrange, Law, Snapshot, World as _};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Arrange, Snapshot, World as _};
+use farsa_body::robots::ArmAndHand;
 use farsa_physics::articulated::{Model, Options, World};
 
 fn bits(world: &World<f32>) -> Vec<u32> {

@@ -1,9 +1,9 @@
 //! A ball on a plane and on a table against closed forms.
 
-use farsa_body::{
-    Arrange, BodyId, Collider, Contacts, Joint, JointKind, Kinematics, Pair, PairId, Pose, Robot, Segment, Shape,
-    Surface, Tabletop, Twist, World as _,
-};
+use farsa_body::ports::{Arrange, BodyId, Contacts, Kinematics, PairId, World as _};
+use farsa_body::robot::{Collider, Joint, JointKind, Pair, Robot, Segment, Shape, Surface};
+use farsa_body::robots::Tabletop;
+use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use farsa_physics::articulated::{Model, Options, World};
 

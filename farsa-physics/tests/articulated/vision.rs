@@ -2,10 +2,15 @@
 
 use crate::common::{POSES, scene as tabletop};
 use crate::sight::{COLORS, Placed, scene, turned};
-use farsa_body::testing::check_vision;
-use farsa_body::{Arrange, BodyId, Camera, JointId, Pose, Rays, Robot, Seen, Vision};
+use farsa_body::Pose;
+use farsa_body::ports::{Arrange, BodyId, JointId, Rays, Seen, Vision};
 #[cfg(feature = "lanes")]
-use farsa_body::{CameraImage, Channels, ColorBand, ColorBlobs, Kinematics, Sensor};
+use farsa_body::ports::{Channels, Kinematics, Sensor};
+use farsa_body::robot::Robot;
+use farsa_body::sensors::Camera;
+#[cfg(feature = "lanes")]
+use farsa_body::sensors::{CameraImage, ColorBand, ColorBlobs};
+use farsa_body::testing::check_vision;
 #[cfg(feature = "lanes")]
 use farsa_num::Instructions;
 use farsa_num::{Domain, Stream, sin_cos};
@@ -176,7 +181,7 @@ fn lanes_see_what_worlds_see() {
         for _ in 0..10 {
             // Everything falls and turns a little.
             batch.step();
-            farsa_body::World::step(&mut world);
+            farsa_body::ports::World::step(&mut world);
             let mut x = vec![0.0_f32; image.channels() + blobs.channels()];
             let mut y = x.clone();
             let (pixels, rest) = x.split_at_mut(144);

@@ -1,12 +1,18 @@
 //! Every sensor and motor of `farsa_body` that asks for no plane, for a world of the main experiment's scene.
 
-use farsa_body::testing::{check_motor, check_sensor};
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Axes, Beam, BodyId, BodyPose, BodyVelocity, ContactForce, Contacts, Delayed,
-    Handles, Height, InfraredRays, JointId, JointPosition, JointSpeed, Joints, Kinematics, LaserDistance, Lesioned,
-    Motor, Muscles, Noise, Noisy, PairId, Point, Rays, Recorded, Robot, Saturated, Scaled, Sensor, ServoGroup, Signal,
-    Snapshot, Stuck, StuckAt, Tabletop, TargetPosition, TorqueMotor, Touch,
+use farsa_body::motors::{Muscles, ServoGroup, TorqueMotor};
+use farsa_body::ports::{
+    Actuated, ActuatorId, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Motor, PairId, Rays, Sensor, Snapshot,
 };
+use farsa_body::robot::Robot;
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::sensors::infrared::InfraredRays;
+use farsa_body::sensors::{
+    Axes, Beam, BodyPose, BodyVelocity, ContactForce, Height, JointPosition, JointSpeed, LaserDistance, Point, Signal,
+    TargetPosition, Touch,
+};
+use farsa_body::testing::{check_motor, check_sensor};
+use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt};
 use farsa_num::{Domain, Stream};
 
 fn every_sensor<W>(robot: &Robot) -> Vec<Box<dyn Sensor<W>>>

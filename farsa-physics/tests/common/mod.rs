@@ -1,10 +1,12 @@
 //! What several tests need: the scene of the main experiment, its starts, random commands, the words of a state.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, Contacts, Handles, Joint, JointId, Law, PairId, Pose, Robot, ServoRange,
-    Shape, Surface, Tabletop, Twist,
-};
+use farsa_body::actuators::Law;
+use farsa_body::motors::ServoRange;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, Handles, JointId, PairId};
+use farsa_body::robot::{Joint, Robot, Shape, Surface};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 

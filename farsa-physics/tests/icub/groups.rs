@@ -1,6 +1,8 @@
 //! Pairs in groups move the robot as the same pairs alone do.
 
-use farsa_body::{Contacts as _, Icub, Joints as _, PairId, Robot, World as _};
+use farsa_body::ports::{Contacts as _, Joints as _, PairId, World as _};
+use farsa_body::robot::Robot;
+use farsa_body::robots::Icub;
 use farsa_physics::articulated::{Options, World};
 
 use crate::common::model;

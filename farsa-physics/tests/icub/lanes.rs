@@ -1,6 +1,8 @@
 //! A lane of iCubs has the bits of the world alone, at every instruction set of this machine and every number of lanes.
 
-use farsa_body::{Chain, Contacts as _, Icub, JointControl, PairId, Robot, Snapshot as _, World as _};
+use farsa_body::ports::{Contacts as _, PairId, Snapshot as _, World as _};
+use farsa_body::robot::Robot;
+use farsa_body::robots::{Chain, Icub, JointControl};
 use farsa_num::{Digest, Instructions};
 use farsa_physics::articulated::{Batch, LANES, Model, Options, World};
 

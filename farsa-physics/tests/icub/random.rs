@@ -1,6 +1,9 @@
 //! Random starts and random commands of the iCub's actuators.
 
-use farsa_body::{Actuated, Actuator, ActuatorId, Arrange, Handles, Icub, JointId, Law, Robot};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, Handles, JointId};
+use farsa_body::robot::{Actuator, Robot};
+use farsa_body::robots::Icub;
 use farsa_num::{Domain, Stream};
 
 /// A largest commanded speed of velocity motors [rad/s], beyond what any experiment asks for.

@@ -1,6 +1,8 @@
 //! Random commands to all sixty joints: nothing explodes, nothing passes through anything that it may touch.
 
-use farsa_body::{Chain, Contacts as _, Icub, JointControl, Joints as _, PairId, Robot, World as _};
+use farsa_body::ports::{Contacts as _, Joints as _, PairId, World as _};
+use farsa_body::robot::Robot;
+use farsa_body::robots::{Chain, Icub, JointControl};
 use farsa_physics::articulated::{Options, World};
 
 use crate::common::{half_thickness, model};

@@ -1,11 +1,13 @@
 //! The world of wheeled robots in rapier keeps what `farsa_body::testing` says that every world promises, tells sensors what
 //! the kinematic world tells, and refuses what it has not.
 
+use farsa_body::motors::WheelVelocity;
+use farsa_body::ports::{Actuated, Arrange, BodyId, JointId, Joints, Kinematics, Sensor, Sight, Snapshot, World as _};
+use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::infrared::{InfraredFormula, InfraredRays};
+use farsa_body::sensors::{GroundColor, LightSensors, Traction, WheelSpeed};
 use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
-use farsa_body::{
-    Actuated, Arrange, BodyId, GroundColor, InfraredAnalytic, InfraredRays, JointId, Joints, Kinematics, LightSensors,
-    MobileRobot, Pose, Sensor, Sight, Snapshot, Traction, Twist, WheelSpeed, WheelVelocity, World as _,
-};
+use farsa_body::{Pose, Twist};
 use farsa_physics::arena::{self, Area, Arena, ArenaError, Convex, Cylinder, Part, Wall};
 use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block, RapierError};
 
@@ -102,7 +104,7 @@ fn sensors_and_motors_work_as_in_the_kinematic_world() {
         // Where it has come to after a second differs by what it takes to get under way.
         let off = if moved { 0.1 } else { 1e-4 };
         let rays = same(InfraredRays::for_robot(robot, parts.body).unwrap(), &ours, &theirs, off);
-        same(InfraredAnalytic::for_robot(robot, parts.body).unwrap(), &ours, &theirs, off);
+        same(InfraredFormula::for_robot(robot, parts.body).unwrap(), &ours, &theirs, off);
         same(GroundColor::new(parts.body, vec![[0.0, 0.0], [0.03, 0.0]]).unwrap(), &ours, &theirs, 0.0);
         same(LightSensors::for_robot(robot, parts.body, 1.0).unwrap(), &ours, &theirs, off);
         same(WheelSpeed::new(parts.wheels, most).unwrap(), &ours, &theirs, off);

@@ -2,10 +2,11 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Joints, Kinematics, MobileParts, MobileRobot,
-    PairId, Pose, Twist, World,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Joints, Kinematics, PairId, World,
 };
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use farsa_physics::arena::{self, Arena, Convex, Cylinder, Wall};
 use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block, Chassis};

@@ -2,8 +2,11 @@
 
 use crate::channels::channels_conform;
 use crate::common::{CLOSED, POSES, WRIST, Wrist, hand_and_sphere, scene};
+use farsa_body::actuators::Law;
+use farsa_body::ports::{Arrange, BodyId, JointId, World as _};
+use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::testing::{Probe, check_arrange, check_external_forces, check_rays, check_vision, check_world};
-use farsa_body::{ArmAndHand, Arrange, BodyId, JointId, Law, Pose, Tabletop, Twist, World as _};
+use farsa_body::{Pose, Twist};
 use farsa_physics::rapier::{Options, World};
 
 #[test]

@@ -2,10 +2,14 @@
 //! measured.
 
 use crate::common::{CLOSED, POSES, SPHERES, WRIST, Wrist, ghost, hand_and_sphere, scene};
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, ExternalForces, Handles, Joint, JointId,
-    Joints, Kinematics, Law, MassProperties, PairId, Pose, Robot, Segment, Shape, Surface, Tabletop, Twist, World as _,
+use farsa_body::actuators::Law;
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, JointId, Joints, Kinematics, PairId,
+    World as _,
 };
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use farsa_physics::articulated;
 use farsa_physics::rapier::{Options, World};
@@ -68,7 +72,12 @@ fn joints_move_as_ours_do() {
 /// The arm's angles after a tenth of a second from its first start, under these forces on bodies.
 fn pushed<W>(world: &mut W, pushes: &[(BodyId, [f32; 3])]) -> Vec<f32>
 where
-    W: farsa_body::World + Arrange + Handles<Body = BodyId, Joint = JointId> + Joints + Kinematics + ExternalForces,
+    W: farsa_body::ports::World
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId>
+        + Joints
+        + Kinematics
+        + ExternalForces,
 {
     start(world);
     for _ in 0..10 {
@@ -174,7 +183,7 @@ fn rapier_takes_coriolis_forces_implicitly() {
 
 fn after_a_second<W>(world: &mut W) -> [f64; 2]
 where
-    W: farsa_body::World + Joints + Arrange + Handles<Joint = JointId>,
+    W: farsa_body::ports::World + Joints + Arrange + Handles<Joint = JointId>,
 {
     world.place_joint(JointId(0), 1.2, 0.0);
     world.place_joint(JointId(1), 0.3, 0.0);

@@ -2,10 +2,12 @@
 
 use crate::common;
 use crate::common::{Babble, POSES, SPHERES, commands, drive, scene, stream};
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, JointId, Joints, Kinematics, MassProperties,
-    PairId, Pose, Robot, RobotError, Shape, Snapshot, Tabletop, Twist, World as _,
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, PairId, Snapshot, World as _,
 };
+use farsa_body::robot::{Collider, MassProperties, Robot, RobotError, Shape};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::ModelError;
 use farsa_physics::rapier::{Options, RapierError, World};
 
@@ -87,7 +89,7 @@ fn damaged_snapshots_break_the_world_and_nothing_else() {
 #[test]
 fn what_cannot_be_built_is_refused() {
     let robot = scene();
-    let refused = |robot: &farsa_body::Robot, options: Options| World::new(robot, &options).err().unwrap();
+    let refused = |robot: &farsa_body::robot::Robot, options: Options| World::new(robot, &options).err().unwrap();
     for (name, options) in [
         ("time_step", Options { time_step: 0.0, ..Options::default() }),
         ("time_step", Options { time_step: f64::NAN, ..Options::default() }),
@@ -109,7 +111,7 @@ fn what_cannot_be_built_is_refused() {
     assert_eq!(refused(&plane, Options::default()), RapierError::MovingPlane { collider: "flat".into() });
     let mut sliding = Robot::new("sliding");
     let body = sliding.add_sliding_body("puck", Pose::identity(), MassProperties::sphere(1.0, 0.1), false);
-    sliding.add_ground(farsa_body::Ground { body, friction: 0.5, load: 1.0, radius: 0.0 });
+    sliding.add_ground(farsa_body::robot::Ground { body, friction: 0.5, load: 1.0, radius: 0.0 });
     assert_eq!(refused(&sliding, Options::default()), RapierError::Ground { body: "puck".into() });
     let mut heavy = robot;
     heavy.segments[0].mass = -1.0;

@@ -1,10 +1,12 @@
 //! Objects that only the world of rapier has: boxes to push, cylinders, hulls, meshes, height fields.
 
-use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Collider, Contacts, Joint, JointId, Joints, Kinematics, Law, MassProperties,
-    Pose, Rays, Robot, RobotError, Segment, Servo, Shape, Twist, World as _,
+use farsa_body::actuators::{Law, Servo};
+use farsa_body::ports::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, Rays, World as _,
 };
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, RobotError, Segment, Shape};
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::ModelError;
 use farsa_physics::rapier::{Geometry, Options, RapierError, Scene, SceneObject, World};
 

@@ -1,10 +1,11 @@
 //! Scenes that every world can play: a robot, a start, commands that follow a timetable, and what is watched.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Handles, Joint, JointId, Joints, Kinematics, Law,
-    MassProperties, Pose, Robot, Segment, Servo, Shape, Surface, Tabletop, Twist, World,
-};
+use farsa_body::actuators::{Law, Servo};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Joints, Kinematics, World};
+use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
+use farsa_body::robots::{ArmAndHand, Tabletop};
+use farsa_body::{Pose, Twist};
 use farsa_models::{MjcfOptions, mjcf};
 use farsa_num::sin_cos;
 use serde_json::{Value, json};

@@ -1,9 +1,10 @@
 //! An arm in the plane and three balls that slide on the ground.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
-use farsa_body::{
-    Collider, Ground, Joint, JointId, Law, MassProperties, Pose, Robot, Segment, Shape, Surface, Velocity,
-};
+use farsa_body::Pose;
+use farsa_body::actuators::{Law, Velocity};
+use farsa_body::ports::JointId;
+use farsa_body::robot::{Collider, Ground, Joint, MassProperties, Robot, Segment, Shape, Surface};
 
 /// Mass of a ball [kg].
 pub(crate) const MASS: f64 = 0.3;

@@ -1,9 +1,9 @@
 //! The descriptions of wheeled robots as bodies: what any world with joints and contacts makes of them.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Kinematics, MassProperties, MobileRobot, Pose, Robot,
-    Twist, World,
-};
+use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Kinematics, World};
+use farsa_body::robot::{MassProperties, Robot};
+use farsa_body::robots::MobileRobot;
+use farsa_body::{Pose, Twist};
 
 /// The control step of the worlds that are tested [s].
 const STEP: f64 = 0.01;

@@ -2,7 +2,9 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use farsa_body::{BodyId, Pose, Robot, Visual};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{Robot, Visual};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 

@@ -181,7 +181,9 @@ mod tests {
     use crate::recording::schema::{ImageChannel, Schema};
     use base64::Engine as _;
     use base64::engine::general_purpose::STANDARD;
-    use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
+    use farsa_body::ports::{PairContact, PairId};
+    use farsa_body::robots::Tabletop;
+    use farsa_body::{Pose, Recorder};
     use farsa_num::crc32;
 
     /// The data of a page, as a browser reads it.
@@ -197,7 +199,7 @@ mod tests {
 
     #[test]
     fn what_is_read_back_is_what_was_told_within_the_stated_error() {
-        let robot = Tabletop::default().scene(&farsa_body::ArmAndHand::default()).unwrap();
+        let robot = Tabletop::default().scene(&farsa_body::robots::ArmAndHand::default()).unwrap();
         let mut schema = Schema::from_robot(&robot).with_sensors(["a </script> <b>"]).with_scalars(["x [m]", "n"]);
         schema.points = vec!["p".into()];
         let mut recording = Recording::new(schema);

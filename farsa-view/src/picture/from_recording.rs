@@ -1,6 +1,7 @@
 //! A tick of a recording as a picture.
 
-use farsa_body::{BodyId, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
 
 use crate::picture::moment::{Beam, Picture, Push};
 use crate::recording::memory::Recording;
@@ -141,7 +142,8 @@ mod tests {
     use crate::page::html::Page;
     use crate::picture::camera::Camera;
     use crate::recording::schema::{ImageChannel, Schema};
-    use farsa_body::{ArmAndHand, Recorder};
+    use farsa_body::Recorder;
+    use farsa_body::robots::ArmAndHand;
 
     fn recording(ticks: u32) -> Recording {
         let robot = ArmAndHand::default().robot().unwrap();
@@ -164,11 +166,11 @@ mod tests {
 
     #[test]
     fn things_keep_their_colours_and_leave_trails_seen_from_above_as_points_do() {
-        let mut robot = farsa_body::Robot::new("one ball");
-        let ball = farsa_body::MassProperties::sphere(0.3, 0.06);
+        let mut robot = farsa_body::robot::Robot::new("one ball");
+        let ball = farsa_body::robot::MassProperties::sphere(0.3, 0.06);
         let body = robot.add_sliding_body("ball", Pose::identity(), ball, false);
-        let shape = farsa_body::Shape::Sphere { radius: 0.06 };
-        let collider = farsa_body::Collider::new("ball", Some(body), shape, Pose::identity());
+        let shape = farsa_body::robot::Shape::Sphere { radius: 0.06 };
+        let collider = farsa_body::robot::Collider::new("ball", Some(body), shape, Pose::identity());
         robot.add_collider(collider.with_color([1.0, 0.0, 0.5]));
         let mut recording =
             Recording::new(Schema { view: View::Top, points: vec!["tip".into()], ..Schema::from_robot(&robot) });

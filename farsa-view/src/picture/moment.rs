@@ -1,6 +1,8 @@
 //! What a picture shows of a moment of a simulation.
 
-use farsa_body::{BodyId, JointKind, Pose, Robot, Visual};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, Robot, Visual};
 
 use crate::picture::camera::{Camera, Window};
 use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
@@ -29,7 +31,8 @@ pub struct Beam {
 /// A moment of a simulation, ready to be drawn without a browser.
 ///
 /// ```
-/// use farsa_body::{ArmAndHand, KinematicTree};
+/// use farsa_body::kinematics::KinematicTree;
+/// use farsa_body::robots::ArmAndHand;
 /// use farsa_view::{Camera, Picture};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -157,7 +160,8 @@ mod tests {
 
     #[test]
     fn visuals_are_drawn_in_place_of_colliders() {
-        use farsa_body::{Icub, KinematicTree};
+        use farsa_body::kinematics::KinematicTree;
+        use farsa_body::robots::Icub;
         let mut robot = Icub::default().robot().unwrap();
         let start = Icub::default().start();
         let poses = KinematicTree::new(&robot).unwrap().poses(&start);
@@ -182,7 +186,8 @@ mod tests {
         robot.visuals.clear();
         assert_eq!(drawn(&robot).shapes.len(), robot.colliders.len());
     }
-    use farsa_body::{ArmAndHand, KinematicTree, Tabletop};
+    use farsa_body::kinematics::KinematicTree;
+    use farsa_body::robots::{ArmAndHand, Tabletop};
 
     #[test]
     fn a_scene_is_told_apart() {
@@ -196,7 +201,7 @@ mod tests {
         // The palm, fifteen phalanges and the sphere.
         assert_eq!(picture.shapes.iter().filter(|placed| placed.focus).count(), 17);
         assert_eq!(picture.shapes[18].color(), OKABE_ITO[0]);
-        let index = ArmAndHand::phalange_colliders(farsa_body::Finger::Index)[0];
+        let index = ArmAndHand::phalange_colliders(farsa_body::robots::Finger::Index)[0];
         assert_ne!(picture.shapes[index].color(), picture.shapes[index + 3].color());
         assert!(picture.interest(true).len() < picture.interest(false).len());
     }

@@ -381,7 +381,9 @@ mod tests {
     use super::*;
     use crate::picture::moment::{Beam, Push};
     use crate::shape::appearance::Instance;
-    use farsa_body::{ArmAndHand, KinematicTree, Pose, Tabletop};
+    use farsa_body::Pose;
+    use farsa_body::kinematics::KinematicTree;
+    use farsa_body::robots::{ArmAndHand, Tabletop};
 
     /// The elements of a document by name with their attributes; panics if it is not well-formed.
     fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {

@@ -1,6 +1,7 @@
 //! A planar world as something to be seen.
 
-use farsa_body::{BodyId, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
 use farsa_num::{Scalar, atan2, sin_cos};
 use farsa_physics::arena::{Area, AreaShape, Arena, Convex, Cylinder, Wall};
 
@@ -116,9 +117,9 @@ impl Schema {
     /// `MarXbot` as they look, others as discs. Of more than 50 robots the hulls are drawn alone.
     ///
     /// ```
-    /// use farsa_body::MobileRobot;
-    /// use farsa_view::Schema;
+    /// use farsa_body::robots::MobileRobot;
     /// use farsa_physics::arena::{Arena, Cylinder};
+    /// use farsa_view::Schema;
     ///
     /// let mut arena = Arena::walled(0.4, 0.4);
     /// arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
@@ -164,7 +165,9 @@ impl Schema {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{Kinematics, MobileRobot, Recorder as _};
+    use farsa_body::Recorder as _;
+    use farsa_body::ports::Kinematics;
+    use farsa_body::robots::MobileRobot;
     use farsa_physics::arena::World;
 
     use crate::recording::memory::Recording;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
+use farsa_body::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
+use farsa_body::{Pose, Recorder, record_world};
 
 use crate::recording::ground_images::GroundImages;
 use crate::recording::images::Images;
@@ -40,9 +41,12 @@ pub struct CastRay {
 /// What belongs to no name of the schema is not kept, what was not recorded is NaN.
 ///
 /// ```
-/// use farsa_body::{ArmAndHand, JointPosition, JointId, Recorder, Sensor, Tabletop, World as _};
-/// use farsa_view::{Page, Recording, Schema};
+/// use farsa_body::Recorder;
+/// use farsa_body::ports::{JointId, Sensor, World as _};
+/// use farsa_body::robots::{ArmAndHand, Tabletop};
+/// use farsa_body::sensors::JointPosition;
 /// use farsa_physics::articulated::{Model, Options, World};
+/// use farsa_view::{Page, Recording, Schema};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let robot = Tabletop::default().scene(&ArmAndHand::default())?;
@@ -324,7 +328,7 @@ impl Recorder for Recording {
 mod tests {
     use super::*;
     use crate::recording::schema::Channel;
-    use farsa_body::ArmAndHand;
+    use farsa_body::robots::ArmAndHand;
 
     #[test]
     fn no_tick_is_kept_beyond_the_room() {

@@ -1,6 +1,7 @@
 //! What a recording shows: the bodies, and the names of everything that has a value.
 
-use farsa_body::{BodyId, JointKind, Robot};
+use farsa_body::ports::BodyId;
+use farsa_body::robot::{JointKind, Robot};
 use farsa_nn::{LeakyLayout, LeakyParameter};
 
 use crate::recording::view::View;
@@ -118,13 +119,13 @@ pub struct NodeParameters {
 /// What a recording holds: everything that a recorder is given in an episode, by name and in order.
 ///
 /// ```
-/// use farsa_body::ArmAndHand;
+/// use farsa_body::robots::ArmAndHand;
 /// use farsa_view::Schema;
 ///
 /// let robot = ArmAndHand::default().robot()?;
 /// let schema = Schema::from_robot(&robot).with_sensors(["J1", "J2"]).with_scalars(["time to go [s]"]);
 /// assert_eq!(schema.columns(), ["time to go [s]", "sensor.J1", "sensor.J2"]);
-/// # Ok::<(), farsa_body::RobotError>(())
+/// # Ok::<(), farsa_body::robot::RobotError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Schema {
@@ -279,7 +280,7 @@ impl Schema {
     /// Whether a body moves by itself: it floats, or slides in a plane, and nothing with a joint hangs on it.
     pub(crate) fn is_thing(&self, body: BodyId) -> bool {
         let Some(robot) = &self.robot else { return false };
-        let floats = |segment: &farsa_body::Segment| segment.joint.kind == JointKind::Floating;
+        let floats = |segment: &farsa_body::robot::Segment| segment.joint.kind == JointKind::Floating;
         (robot.segments.get(body.index()).is_some_and(floats) || robot.sliders(body).is_some())
             && robot.segments.iter().all(|segment| segment.parent != Some(body))
     }

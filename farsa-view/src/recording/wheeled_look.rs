@@ -2,7 +2,8 @@
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use farsa_body::{MobileRobot, Pose};
+use farsa_body::Pose;
+use farsa_body::robots::MobileRobot;
 use farsa_num::{Scalar, sin_cos};
 
 use crate::shape::appearance::Color;

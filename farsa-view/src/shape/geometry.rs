@@ -1,6 +1,6 @@
 //! The geometries a picture is made of: where rays meet them, and what outlines them.
 
-use farsa_body::Shape;
+use farsa_body::robot::Shape;
 use farsa_num::sin_cos;
 
 use crate::shape::vector::{Vector, across, add, along, dot, length, scale, sub, unit};

@@ -1,11 +1,12 @@
 //! What there is to see beside a robot's description.
 
-use farsa_body::{BodyId, Pose};
+use farsa_body::Pose;
+use farsa_body::ports::BodyId;
 
 use crate::shape::appearance::{Color, Instance, Role};
 use crate::shape::geometry::Geometry;
 
-/// A shape to be seen that no [`Robot`](farsa_body::Robot) holds: a wheeled robot's hull, a wall, an area on the ground.
+/// A shape to be seen that no [`Robot`](farsa_body::robot::Robot) holds: a wheeled robot's hull, a wall, an area on the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObject {
     /// What it is called.

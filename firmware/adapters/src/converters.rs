@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use farsa_body::{Channels, Sensor};
+use farsa_body::ports::{Channels, Sensor};
 
 use crate::Fault;
 

@@ -1,7 +1,7 @@
 //! Motors on pulses: servos of models, power stages.
 
 use embedded_hal::pwm::SetDutyCycle;
-use farsa_body::{Channels, Motor};
+use farsa_body::ports::{Channels, Motor};
 
 use crate::Fault;
 

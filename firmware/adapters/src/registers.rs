@@ -1,7 +1,7 @@
 //! Sensors on an I2C bus: converters, encoders, inertial units.
 
 use embedded_hal::i2c::I2c;
-use farsa_body::{Channels, Sensor};
+use farsa_body::ports::{Channels, Sensor};
 
 use crate::Fault;
 

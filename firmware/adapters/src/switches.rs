@@ -1,7 +1,7 @@
 //! Motors that are on or off: valves, magnets, lamps.
 
 use embedded_hal::digital::OutputPin;
-use farsa_body::{Channels, Motor};
+use farsa_body::ports::{Channels, Motor};
 
 use crate::Fault;
 

@@ -7,7 +7,7 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction as BusTransaction};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as PwmTransaction};
-use farsa_body::{Channels, Motor, Sensor};
+use farsa_body::ports::{Channels, Motor, Sensor};
 use firmware_adapters::{
     Converter, Converters, CurveError, Fault, Guard, GuardError, Period, Pulses, Registers, Switches,
 };

@@ -2,7 +2,7 @@
 
 use crate::{Chain, ChainLink};
 
-/// The arm of `farsa_body::ArmAndHand` without its fingers.
+/// The arm of `farsa_body::robots::ArmAndHand` without its fingers.
 // A test holds every number to the description.
 pub const ARM: Chain<7> = Chain {
     links: [

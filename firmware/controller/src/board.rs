@@ -1,6 +1,6 @@
 //! What a controller sees of a board: counts of converters and timers.
 
-use farsa_body::{Channels, Motor, Sensor};
+use farsa_body::ports::{Channels, Motor, Sensor};
 
 use crate::LAYOUT;
 

@@ -1,6 +1,6 @@
 //! The loop: read, think, drive.
 
-use farsa_body::{Motor, Sensor};
+use farsa_body::ports::{Motor, Sensor};
 use farsa_nn::bytes::BytesError;
 use farsa_nn::{Controller, LeakyNetwork};
 use farsa_num::{Digest, Stream};

@@ -1,6 +1,7 @@
 //! The arm without a heap beside the articulated bodies of farsa-physics.
 
-use farsa_body::{ArmAndHand, Robot};
+use farsa_body::robot::Robot;
+use farsa_body::robots::ArmAndHand;
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{LinkData, Model, Options, forward_kinematics, inverse_dynamics};
 use firmware_controller::ARM;

@@ -4,7 +4,7 @@ use core::fmt;
 
 use adapters::{Converter, Converters, CurveError, Fault, Guard, GuardError, Pulses};
 use embedded_hal::pwm::SetDutyCycle;
-use farsa_body::{Motor, Sensor};
+use farsa_body::ports::{Motor, Sensor};
 use farsa_nn::bytes::BytesError;
 use farsa_nn::{Controller, Perceptron};
 

@@ -22,7 +22,7 @@ pub enum Chain {
     LeftArm,
     /// The right arm's seven joints.
     RightArm,
-    /// The left hand's twenty joints, J8 to J27 of [`crate::Hand`].
+    /// The left hand's twenty joints, J8 to J27 of [`crate::robots::Hand`].
     LeftHand,
     /// The right hand's twenty joints.
     RightHand,

@@ -44,7 +44,7 @@ pub enum JointControl {
 ///
 /// The left side is the mirror image of the right one: at equal joint angles the robot is symmetric.
 ///
-/// Deviations from the file: it has no fingers, so the hands are those of [`crate::ArmAndHand`], made as light as the
+/// Deviations from the file: it has no fingers, so the hands are those of [`crate::robots::ArmAndHand`], made as light as the
 /// file's hand of 0.213 kg, whose centre of mass they miss by 7 mm; its left side is not quite the image of its right
 /// one, which stands for both (the first shoulder segment's inertia is half of the right one's, the second one's centre
 /// of mass 0.18 mm off); where it has no inertia (neck, head, wrist) there are balls of our choice; its damping of 1 N
@@ -188,7 +188,7 @@ impl Icub {
 
     /// The robot: segments `torso_1`, `torso_2`, `chest`, `neck_1`, `neck_2`, `head`; `l_shoulder_1`, `l_shoulder_2`,
     /// `l_upper_arm`, `l_elbow_1`, `l_forearm`, `l_wrist_1`, `l_palm` and the same with `r_`; then the fingers as those
-    /// of [`crate::ArmAndHand`] with `l_`, with `r_`.
+    /// of [`crate::robots::ArmAndHand`] with `l_`, with `r_`.
     ///
     /// Colliders, sized after the file's collision meshes: capsules `waist` (of `torso_1`, the hip belt), `chest`,
     /// `head`, upper arms and forearms; boxes, the palms; capsules, the phalanges. The meshes of forearms and hands lie
@@ -199,7 +199,7 @@ impl Icub {
     ///
     /// Pairs that may touch: forearms and palms with waist, chest and head; upper arms with the head; every part of one
     /// arm with every one of the other but their upper arms, which cannot reach each other; within each hand, as in
-    /// [`crate::ArmAndHand`]; fingers with the trunk and the other arm, its hand included. Upper arms have no pair with
+    /// [`crate::robots::ArmAndHand`]; fingers with the trunk and the other arm, its hand included. Upper arms have no pair with
     /// the chest, into which the shoulders are built, nor neighbours along an arm with each other; no hand comes near its
     /// own forearm or upper arm. Pairs whose colliders cannot move relative to each other, because the joints between are
     /// rigid, are left out.

@@ -1,6 +1,6 @@
 //! The upper body of the iCub [Metta2010] as data: 60 joints in six chains.
 //!
-//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::ArmAndHand`]. A table of masses and
+//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::robots::ArmAndHand`]. A table of masses and
 //! limits beside those of the file and the Denavit-Hartenberg table is in docs/icub-tables.md.
 
 /// The six chains, the two sides, and which joints and bodies are theirs.

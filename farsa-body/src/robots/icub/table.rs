@@ -128,7 +128,7 @@ pub(super) const NECK: [Part; 3] = [
     },
 ];
 
-/// The right arm; its first joint is on the chest. The last segment is the palm of [`crate::Hand`], so its mass here,
+/// The right arm; its first joint is on the chest. The last segment is the palm of [`crate::robots::Hand`], so its mass here,
 /// that of the file's whole hand, is not used.
 pub(super) const ARM: [Part; 7] = [
     Part {

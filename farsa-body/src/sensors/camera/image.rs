@@ -9,8 +9,10 @@ use crate::sensors::camera::Camera;
 /// The cost is that of one ray a pixel.
 ///
 /// ```
+/// use farsa_body::Pose;
+/// use farsa_body::ports::{BodyId, Channels, Sensor};
+/// use farsa_body::sensors::{Camera, CameraImage};
 /// use farsa_body::testing::PointWorld;
-/// use farsa_body::{BodyId, Camera, CameraImage, Channels, Pose, Sensor};
 ///
 /// // Two green balls side by side; the camera is on the first and sees the second.
 /// let world = PointWorld::new(2);

@@ -10,7 +10,9 @@ use crate::sensors::beam::Beam;
 /// Infrared channels of a robot as one ray each, for recordings.
 ///
 /// ```
-/// use farsa_body::{InfraredDrawing, MobileRobot, Pose, Recorder};
+/// use farsa_body::robots::MobileRobot;
+/// use farsa_body::sensors::infrared::InfraredDrawing;
+/// use farsa_body::{Pose, Recorder};
 ///
 /// #[derive(Default)]
 /// struct Rays(Vec<([f32; 3], [f32; 3], bool)>);
@@ -58,7 +60,7 @@ impl InfraredDrawing {
     }
 
     /// Records a ray for each channel: it ends where a thing would be that gives the same reading by
-    /// [`InfraredRays`](crate::InfraredRays).
+    /// [`InfraredRays`](crate::sensors::infrared::InfraredRays).
     ///
     /// `x` is what each channel read when the robot was at `pose`; `met`: only those that read something, where a crowd has too
     /// many others.

@@ -86,7 +86,7 @@ impl<B: Copy> InfraredGroups<B> {
 }
 
 impl<B> InfraredGroups<B> {
-    /// What all sensors of the ring read last, in the order of [`crate::InfraredRing::angles`].
+    /// What all sensors of the ring read last, in the order of [`crate::robots::InfraredRing::angles`].
     pub fn ring(&self) -> &[f32] {
         &self.ring
     }

@@ -4,17 +4,17 @@
 //! |---|---|---|---|
 //! | [`InfraredRays`] | how near the nearest hit of a few rays is | are not seen | `Rays`: any world |
 //! | [`InfraredGroups`] | the largest of such readings in a group of neighbours | are not seen | `Rays`, `Sight` |
-//! | [`InfraredAnalytic`] | a formula of distance, bearing and radius, [`AnalyticInfrared`] | are felt, too | `Sight` |
+//! | [`InfraredFormula`] | a formula of distance, bearing and radius, [`InfraredModel`] | are felt, too | `Sight` |
 //! | [`SampledInfrared`] | what a real robot's sensors read, from [`InfraredTables`] | are felt, too | `Sight`, measured tables |
 //!
 //! Take rays for a world of your own or walls that hide each other, the formula for speed, tables to come nearest to a
 //! robot that was measured.
 
-/// The ring that answers by the formula.
-pub(crate) mod analytic;
 /// Channels as rays to be drawn.
 #[cfg(feature = "alloc")]
 pub(crate) mod drawn;
+/// The ring that answers by the formula.
+pub(crate) mod formula;
 /// The ring that casts rays, in groups.
 #[cfg(feature = "alloc")]
 pub(crate) mod groups;
@@ -29,12 +29,12 @@ pub(crate) mod sampled;
 #[cfg(feature = "alloc")]
 pub(crate) mod table;
 
-pub use analytic::InfraredAnalytic;
 #[cfg(feature = "alloc")]
 pub use drawn::InfraredDrawing;
+pub use formula::InfraredFormula;
 #[cfg(feature = "alloc")]
 pub use groups::InfraredGroups;
-pub use model::AnalyticInfrared;
+pub use model::InfraredModel;
 pub use rays::InfraredRays;
 #[cfg(feature = "alloc")]
 pub use sampled::{InfraredTables, SampledInfrared};

@@ -23,16 +23,16 @@ use farsa_num::Scalar;
 /// cylinder). Deviations from those measurements: all sensors are alike, and all look where they sit.
 ///
 /// ```
-/// use farsa_body::AnalyticInfrared;
+/// use farsa_body::sensors::infrared::InfraredModel;
 ///
-/// let wall = AnalyticInfrared::for_radius(0.0);
+/// let wall = InfraredModel::for_radius(0.0);
 /// assert!((wall.response(0.010_f32, 1.0) - 1.0).abs() < 1e-6);
 /// assert!((wall.response(0.023_f32, 1.0) - 0.5).abs() < 1e-6);
 /// assert_eq!(wall.response(0.010_f32, 0.0), 0.0);
-/// assert!(AnalyticInfrared::for_radius(0.0125).response(0.023_f32, 1.0) < 0.2);
+/// assert!(InfraredModel::for_radius(0.0125).response(0.023_f32, 1.0) < 0.2);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnalyticInfrared {
+pub struct InfraredModel {
     /// Where the response ends [m].
     far: f32,
     /// Its slope with the distance [1/m].
@@ -58,7 +58,7 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
     a + (b - a) * part
 }
 
-impl AnalyticInfrared {
+impl InfraredModel {
     /// Where a wall straight before a sensor reads 0 and where it reads 1, by its distance from the hull [m].
     ///
     /// Both ends of a table of channels: between them a reading falls in proportion to the distance, and with the angle.
@@ -124,7 +124,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Near and far [m], cosine of the width, as the model uses them.
-    fn constants(model: &AnalyticInfrared) -> [f64; 3] {
+    fn constants(model: &InfraredModel) -> [f64; 3] {
         let far = model.far.to_f64();
         [far - 1.0 / model.per_metre.to_f64(), far, model.edge.to_f64()]
     }
@@ -133,20 +133,20 @@ mod tests {
     fn the_documented_table_is_true() {
         let rows = [(0.0, [0.013, 0.033, 50.0]), (0.027, [0.01115, 0.0293, 32.0]), (0.0125, [0.009, 0.025, 32.0])];
         for (radius, [near, far, width]) in rows {
-            let [n, f, edge] = constants(&AnalyticInfrared::for_radius(radius));
+            let [n, f, edge] = constants(&InfraredModel::for_radius(radius));
             let cosine = farsa_num::sin_cos::<f64>(width * core::f64::consts::PI / 180.0).1;
             assert!((n - near).abs() < 1e-5 && (f - far).abs() < 1e-5 && (edge - cosine).abs() < 1e-6, "{radius}");
         }
-        assert_eq!(AnalyticInfrared::for_radius(0.001), AnalyticInfrared::for_radius(0.0125));
-        assert_eq!(AnalyticInfrared::for_radius(f32::NAN), AnalyticInfrared::for_radius(0.0));
+        assert_eq!(InfraredModel::for_radius(0.001), InfraredModel::for_radius(0.0125));
+        assert_eq!(InfraredModel::for_radius(f32::NAN), InfraredModel::for_radius(0.0));
     }
 
     #[test]
     fn a_wall_reads_0_and_1_at_its_ends() {
-        let wall = AnalyticInfrared::for_radius(0.0);
-        let [zero, one] = AnalyticInfrared::WALL_ENDS.map(|distance| wall.response(distance as f32, 1.0));
+        let wall = InfraredModel::for_radius(0.0);
+        let [zero, one] = InfraredModel::WALL_ENDS.map(|distance| wall.response(distance as f32, 1.0));
         assert!(zero.abs() < 1e-6 && (one - 1.0).abs() < 1e-6, "{zero} {one}");
-        let between = AnalyticInfrared::WALL_ENDS.map(|end| 0.999 * end + 0.001 * 0.023);
+        let between = InfraredModel::WALL_ENDS.map(|end| 0.999 * end + 0.001 * 0.023);
         let within = between.map(|distance| wall.response(distance as f32, 1.0));
         assert!(within[0] > 0.0 && within[1] < 1.0, "{within:?}");
     }
@@ -155,7 +155,7 @@ mod tests {
     fn half_the_response_is_at_half_the_width() {
         for (radius, degrees) in [(0.0, 26.0_f64), (0.0125, 17.0)] {
             let cosine = farsa_num::sin_cos(degrees * core::f64::consts::PI / 180.0).1 as f32;
-            let half = AnalyticInfrared::for_radius(radius).angle_term(cosine);
+            let half = InfraredModel::for_radius(radius).angle_term(cosine);
             assert!((half - 0.5).abs() < 0.03, "{radius}: {half}");
         }
     }
@@ -165,20 +165,20 @@ mod tests {
         fn falls_with_distance_and_angle(
             radius in 0.0_f32..0.1, d in -0.05_f32..0.05, further in 0.0_f32..0.05, c in -1.0_f32..1.0, off in 0.0_f32..1.0,
         ) {
-            let model = AnalyticInfrared::for_radius(radius);
+            let model = InfraredModel::for_radius(radius);
             let here = model.response(d, c);
             prop_assert!((0.0..=1.0).contains(&here));
             prop_assert!(model.response(d + further, c) <= here);
             prop_assert!(model.response(d, c - off) <= here);
             prop_assert_eq!(model.response(model.range(), c), 0.0);
             // A rounder thing is seen less.
-            prop_assert!(model.response(d, c) <= AnalyticInfrared::for_radius(0.0).response(d, c) + 1e-6);
+            prop_assert!(model.response(d, c) <= InfraredModel::for_radius(0.0).response(d, c) + 1e-6);
         }
     }
 
     #[test]
     fn what_is_no_number_is_not_seen() {
-        let wall = AnalyticInfrared::for_radius(0.0);
+        let wall = InfraredModel::for_radius(0.0);
         assert_eq!([wall.response(f32::NAN, 1.0), wall.response(0.0, f32::NAN)], [0.0; 2]);
     }
 }

@@ -16,13 +16,16 @@ use crate::sensors::beam::{Beam, BeamFrame};
 ///
 /// The distance is that of the nearest hit of all rays of a cone, from the hull along the ray: so that the number of rays
 /// changes how finely a cone is searched but not what a wall across it reads. A real sensor sums up the light that comes
-/// back from the whole cone; [`SampledInfrared`](crate::SampledInfrared) is nearer to that. Nothing sees the own body.
+/// back from the whole cone; [`SampledInfrared`](crate::sensors::infrared::SampledInfrared) is nearer to that. Nothing sees the own body.
 ///
 /// The beams are any list, in groups of one sensor each. Noise comes from the wrapper:
 ///
 /// ```
 /// # #[cfg(feature = "alloc")] {
-/// use farsa_body::{BodyId, InfraredRays, MobileRobot, Noise, Noisy, Saturated};
+/// use farsa_body::ports::BodyId;
+/// use farsa_body::robots::MobileRobot;
+/// use farsa_body::sensors::infrared::InfraredRays;
+/// use farsa_body::wrappers::{Noise, Noisy, Saturated};
 /// use farsa_num::{Domain, Stream};
 ///
 /// let ring = InfraredRays::for_robot(&MobileRobot::khepera(), BodyId(0))?;
@@ -81,7 +84,7 @@ impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
 
 #[cfg(feature = "alloc")]
 impl<B> InfraredRays<Vec<Beam>, B> {
-    /// The ring of a robot whose body this is, at half its height, in the order of [`crate::InfraredRing::angles`].
+    /// The ring of a robot whose body this is, at half its height, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
     /// Those of [`InfraredRays::new`].

@@ -69,12 +69,14 @@ impl InfraredTables {
 /// round body lies towards its centre. That of a wall is the foot of the perpendicular, or the wall's end where that is
 /// nearer: two walls of a corner answer both, each for its own nearest point.
 ///
-/// The tables are owned, borrowed, or shared by an `Rc` or `Arc`. Wrap it in [`crate::Noisy`] for noise, as
-/// [`crate::InfraredRays`] shows.
+/// The tables are owned, borrowed, or shared by an `Rc` or `Arc`. Wrap it in [`crate::wrappers::Noisy`] for noise, as
+/// [`crate::sensors::infrared::InfraredRays`] shows.
 ///
 /// ```
+/// use farsa_body::ports::Sensor;
+/// use farsa_body::robots::MobileRobot;
+/// use farsa_body::sensors::infrared::{InfraredTable, InfraredTables, SampledInfrared};
 /// use farsa_body::testing::PlaneWorld;
-/// use farsa_body::{InfraredTable, InfraredTables, MobileRobot, SampledInfrared, Sensor};
 ///
 /// // Two sensors, four angles, one distance; measured at a wall only.
 /// let walls = InfraredTable::parse("2 4 1 0 50\nTURN 0\n512 512\n0 256\n0 0\n256 0\nEND\n").unwrap();

@@ -34,7 +34,7 @@ impl InfraredTable {
     /// do not count.
     ///
     /// ```
-    /// use farsa_body::InfraredTable;
+    /// use farsa_body::sensors::infrared::InfraredTable;
     ///
     /// let table = InfraredTable::parse("2 3 1 5 2\nTURN 0\n0 512\n256 0\n0 0\nEND\n").unwrap();
     /// assert_eq!(table.response(0.006, 0.0), Some(&[0.0, 0.5][..])); // 6 mm from the hull, ahead

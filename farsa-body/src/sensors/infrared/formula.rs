@@ -9,27 +9,27 @@ use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::robots::mobile::MobileRobot;
 #[cfg(feature = "alloc")]
 use crate::sensors::beam::Beam;
-use crate::sensors::infrared::model::AnalyticInfrared;
+use crate::sensors::infrared::model::InfraredModel;
 use crate::sensors::stance::Stance;
 
-/// Reads a ring of infrared sensors by the model [`AnalyticInfrared`], one channel each in [0, 1].
+/// Reads a ring of infrared sensors by the model [`InfraredModel`], one channel each in [0, 1].
 ///
 /// Every wall and every other body adds its response, from the distance of its nearest point to the hull, its radius and
 /// the angle between the sensor's axis and that point's bearing from the robot's centre; nothing hides anything. How far
 /// the sensors see is the model's: 33 mm for a wall, less for a cylinder.
 ///
-/// The axes are any list of unit vectors in the robot's frame. Wrap it in [`crate::Noisy`] for noise, as
-/// [`crate::InfraredRays`] shows.
+/// The axes are any list of unit vectors in the robot's frame. Wrap it in [`crate::wrappers::Noisy`] for noise, as
+/// [`crate::sensors::infrared::InfraredRays`] shows.
 #[doc(alias = "proximity")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InfraredAnalytic<L, B = BodyId> {
+pub struct InfraredFormula<L, B = BodyId> {
     body: B,
     axes: L,
     radius: f32,
-    wall: AnalyticInfrared,
+    wall: InfraredModel,
 }
 
-impl<L: AsRef<[[f32; 2]]>, B> InfraredAnalytic<L, B> {
+impl<L: AsRef<[[f32; 2]]>, B> InfraredFormula<L, B> {
     /// A ring of sensors around the round hull of `radius` [m] of `body`, which look along these `axes`.
     ///
     /// # Errors
@@ -38,29 +38,29 @@ impl<L: AsRef<[[f32; 2]]>, B> InfraredAnalytic<L, B> {
     pub fn new(body: B, axes: L, radius: f32) -> Result<Self, ChannelError> {
         groups("axes", axes.as_ref().len(), 1)?;
         axes.as_ref().iter().try_for_each(|&axis| direction("length of an axis", axis))?;
-        Ok(Self { body, axes, radius: positive("radius", radius)?, wall: AnalyticInfrared::for_radius(0.0) })
+        Ok(Self { body, axes, radius: positive("radius", radius)?, wall: InfraredModel::for_radius(0.0) })
     }
 }
 
 #[cfg(feature = "alloc")]
-impl<B> InfraredAnalytic<Vec<[f32; 2]>, B> {
-    /// The ring of a robot whose body this is, in the order of [`crate::InfraredRing::angles`].
+impl<B> InfraredFormula<Vec<[f32; 2]>, B> {
+    /// The ring of a robot whose body this is, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
-    /// Those of [`InfraredAnalytic::new`].
+    /// Those of [`InfraredFormula::new`].
     pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let axis = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1).direction;
         Self::new(body, robot.infrared.angles.iter().map(axis).collect(), robot.radius as f32)
     }
 }
 
-impl<L: AsRef<[[f32; 2]]>, B> Channels for InfraredAnalytic<L, B> {
+impl<L: AsRef<[[f32; 2]]>, B> Channels for InfraredFormula<L, B> {
     fn channels(&self) -> usize {
         self.axes.as_ref().len()
     }
 }
 
-impl<L, B, W> Sensor<W> for InfraredAnalytic<L, B>
+impl<L, B, W> Sensor<W> for InfraredFormula<L, B>
 where
     L: AsRef<[[f32; 2]]>,
     B: Copy + PartialEq,
@@ -76,7 +76,7 @@ where
             if near.body == Some(self.body) {
                 return;
             }
-            let model = if near.radius > 0.0 { AnalyticInfrared::for_radius(near.radius) } else { self.wall };
+            let model = if near.radius > 0.0 { InfraredModel::for_radius(near.radius) } else { self.wall };
             let strength = model.distance_term(near.distance - self.radius);
             if strength > 0.0 {
                 let bearing = stance.bearing(&near);
@@ -86,7 +86,7 @@ where
             }
         });
         for o in out {
-            *o = AnalyticInfrared::reading(*o);
+            *o = InfraredModel::reading(*o);
         }
     }
 }
