@@ -1,33 +1,34 @@
-//! An experiment that a file describes.
+//! An experiment from a file.
 
 use std::path::Path;
 
 use farsa_body::robot::Robot;
 use farsa_lab::{
     EpisodeId, Error, Evaluator, Experiment, InWorld, Lanes, PlanarWorld, Setting, Settings, StrategyDefinition,
-    Truncation, Value as Given, read_text_file,
+    Truncation, Value as SettingValue, read_text_file,
 };
 use farsa_physics::articulated::{self, Batch, Model, ModelError};
 use serde_json::Value;
 
-use crate::arena::composition::Composition;
 use crate::arena::episode::ArenaEpisode;
+use crate::arena::setup::Setup;
 use crate::check::embed::embedded;
-use crate::check::places::Places;
 use crate::check::schema::{SCENE_SCHEMA, SCHEMA};
 use crate::check::settings::{Entry, apply, entries};
+use crate::check::source::{Names, Source};
 use crate::check::walk;
-use crate::composed::Composed;
+use crate::composed_task::ComposedTask;
 use crate::document::{Document, Engine, Object};
 use crate::jointed;
 use crate::jointed::episode::JointedEpisode;
+use crate::limits::Limits;
 use crate::name::is_name;
 use crate::parts::agents::Agents;
 
-/// The most bytes of a file.
-const MOST_BYTES: u64 = 1_000_000;
+/// Most bytes of a file.
+const MAX_BYTES: u64 = 1_000_000;
 
-/// An experiment that a file describes: what the command runs by `farsa run NAME.toml`.
+/// An experiment from a file, as `farsa run NAME.toml` runs it.
 ///
 /// ```
 /// use farsa_compose::ComposedExperiment;
@@ -55,128 +56,129 @@ pub struct ComposedExperiment {
     name: &'static str,
     summary: &'static str,
     conditions: &'static [&'static str],
-    /// For each condition the settings that differ.
-    changes: Vec<Vec<(String, Given)>>,
+    /// Settings that differ in each condition.
+    changes: Vec<Vec<(String, SettingValue)>>,
     strategy: &'static dyn StrategyDefinition,
-    /// Settings of the strategy with other defaults.
-    searched: Vec<Setting>,
+    /// Settings of the strategy, with the defaults of the file.
+    strategy_settings: Vec<Setting>,
     gene_bits: u32,
     text: String,
+    /// The document with all its defaults. An evaluator replaces the values of settings and reads it once.
     document: Value,
     entries: Vec<Entry>,
-    places: Places,
+    source: Source,
 }
 
 impl ComposedExperiment {
-    /// Reads a file, whose name without its end is the experiment's, and the files that it names in its folder.
+    /// Reads a file, and the files that it names in its folder. The name of the file without `.toml` is the experiment's.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Damaged`] for what cannot be read, and those of [`from_text`](Self::from_text).
+    /// [`Error::Io`] and [`Error::Damaged`] for unreadable files, and the errors of [`from_text`](Self::from_text).
     pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
-        let text = read_text_file(path, MOST_BYTES)?;
+        let text = read_text_file(path, MAX_BYTES)?;
         Self::read(&path.display().to_string(), &text, path.parent(), strategies)
     }
 
-    /// Reads a text as the content of a file of this name; `strategies` are those that it may name.
+    /// Reads a text as the content of a file of this name, which may name these strategies.
     ///
-    /// No file is read: those that the text names are in its table `files`, as in the [`definition`](Experiment::definition) that
-    /// a run keeps.
+    /// The text contains the files that it names in its table `files`, as the [`definition`](Experiment::definition) of a
+    /// run does. No other file is read.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] for a word that there is not, with the nearest one,
-    /// and [`Error::Setting`] for a value that cannot be; with file, line and key. [`Error::Several`] where more than one key, word or
-    /// number is wrong.
+    /// [`Error::Usage`] for invalid TOML, [`Error::Unknown`] with the nearest word for an unknown one, and [`Error::Setting`]
+    /// for an invalid value, each with file, line and key. [`Error::Several`] for more than one of them.
     pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
-        Self::read(file, text, None, strategies)
+        Self::from_text_within(Limits::default(), file, text, strategies)
     }
 
-    /// Reads a text that names files in a folder, or none but its own.
+    /// Reads a text with other [`Limits`] than the default ones.
+    ///
+    /// # Errors
+    /// As [`from_text`](Self::from_text).
+    pub fn from_text_within(
+        limits: Limits,
+        file: &str,
+        text: &str,
+        strategies: &[&'static dyn StrategyDefinition],
+    ) -> Result<Self, Error> {
+        Self::read_within(limits, file, text, None, strategies)
+    }
+
+    /// Reads a text. With a folder it may name files there.
     pub(crate) fn read(
         file: &str,
         text: &str,
         folder: Option<&Path>,
         strategies: &[&'static dyn StrategyDefinition],
     ) -> Result<Self, Error> {
-        let schema = &*SCHEMA;
-        let (value, mut places) = walk::read(file, text, schema)?;
+        Self::read_within(Limits::default(), file, text, folder, strategies)
+    }
+
+    fn read_within(
+        limits: Limits,
+        file: &str,
+        text: &str,
+        folder: Option<&Path>,
+        strategies: &[&'static dyn StrategyDefinition],
+    ) -> Result<Self, Error> {
+        let (value, mut source) = walk::read(file, text, &SCHEMA)?;
+        source.limits = limits;
         let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
-        if let Some(text) = embedded(file, text, folder, &document, &places)? {
-            return Self::read(file, &text, None, strategies);
+        if let Some(text) = embedded(file, text, folder, &document, &source)? {
+            return Self::read_within(limits, file, &text, None, strategies);
         }
-        add_scene(&mut document, &mut places)?;
+        add_scene(&mut document, &mut source)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if !is_name(stem) {
             let why = "is the name of the experiment: 1 to 40 lower-case letters, digits, - and _, the first no sign";
             return Err(Error::Usage(format!("{file}: `{stem}` {why}")));
         }
-        let own = match document.strategy.get("name") {
-            None => &Truncation as &'static dyn StrategyDefinition,
-            Some(name) => {
-                let name = name.as_str().ok_or_else(|| places.wrong("/strategy/name", "is not a text in quotes"))?;
-                let found = strategies.iter().copied().find(|known| known.name() == name);
-                let names = strategies.iter().map(|known| known.name());
-                found.ok_or_else(|| Error::unknown(&places.of("/strategy/name"), "strategy", name, names))?
-            }
-        };
-        let gene_bits = document.genome.bits;
+        let strategy = strategy(&document, strategies, &source)?;
+        // With the defaults of all keys, which are settings, too.
         let value = serde_json::to_value(&document).map_err(|error| Error::Other(error.to_string()))?;
-        let entries = entries(&value, schema);
-        let searched = searched(&document, own, &places)?;
-        let names: Vec<&'static str> = document.conditions.iter().map(|condition| leaked(&condition.name)).collect();
-        if let Some(index) = (1..names.len()).find(|index| names[..*index].contains(&names[*index])) {
-            return Err(places.wrong(&format!("/conditions/{index}/name"), "stands twice"));
-        }
-        let table: Vec<Setting> = entries.iter().map(|entry| entry.setting.clone()).chain(searched.clone()).collect();
-        let changes = document.conditions.iter().enumerate().map(|(index, condition)| {
-            let mut settings = Settings::new(table.clone())?;
-            let path = format!("/conditions/{index}/settings");
-            let one = |(key, value): (&String, &Value)| {
-                let path = format!("{path}/{key}");
-                let value =
-                    given(value).ok_or_else(|| places.wrong(&path, "is no flag, number, word or list of numbers"))?;
-                settings.set(&places.of(&path), key, value.clone())?;
-                Ok((key.clone(), settings.get(key)?.clone()))
-            };
-            condition.settings.iter().map(one).collect::<Result<Vec<_>, Error>>()
-        });
-        let changes = changes.collect::<Result<Vec<_>, _>>()?;
+        source.names = Names::new(&value);
+        let entries = entries(&value, &SCHEMA);
+        let strategy_settings = strategy_settings(&document, strategy, &source)?;
+        let table: Vec<_> =
+            entries.iter().map(|entry| entry.setting.clone()).chain(strategy_settings.clone()).collect();
+        let (conditions, changes) = conditions(&document, &table, &source)?;
         let made = Self {
             name: leaked(stem),
             summary: leaked(&document.summary),
-            conditions: Box::leak(names.into_boxed_slice()),
+            conditions: Box::leak(conditions.into_boxed_slice()),
             changes,
-            strategy: own,
-            searched,
-            gene_bits,
+            strategy,
+            strategy_settings,
+            gene_bits: document.genome.bits,
             text: text.into(),
             document: value,
             entries,
-            places,
+            source,
         };
-        // What does not go together is said before anything runs.
+        // Reports parts that do not fit together before a run begins.
         for condition in if made.conditions.is_empty() { &[""][..] } else { made.conditions } {
             made.check(&Settings::new(made.settings(condition))?)?;
         }
         Ok(made)
     }
 
-    /// An episode, for whose starts the world has room.
+    /// Builds an episode. The first starts must find places in the world.
     fn episode<W: PlanarWorld>(
         &self,
-        (composition, agents): (Composition, Agents),
+        (setup, agents): (Setup, Agents),
         world: &mut W,
-    ) -> Result<Composed<ArenaEpisode>, Error> {
-        let mut episode = ArenaEpisode::new(composition, agents);
+    ) -> Result<ComposedTask<ArenaEpisode>, Error> {
+        let mut episode = ArenaEpisode::new(setup, agents);
         for trial in STARTS {
-            episode.arrange(world, start_of(trial)).map_err(|error| self.places.wrong("/start", error))?;
+            episode.arrange(world, start_of(trial)).map_err(|error| self.source.wrong("/start", error))?;
         }
-        Ok(Composed(episode))
+        Ok(ComposedTask(episode))
     }
 
-    /// Evaluates in rapier.
+    /// Builds the evaluator for rapier.
     #[cfg(feature = "rapier")]
-    fn in_rapier(&self, composed: (Composition, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+    fn in_rapier(&self, composed: (Setup, Agents)) -> Result<Box<dyn Evaluator>, Error> {
         use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block};
         let mut scene = ArenaScene::new(composed.0.scene.arena.clone());
         for block in &composed.0.scene.blocks {
@@ -184,13 +186,13 @@ impl ComposedExperiment {
             scene.add_block(Block { centre, heading, size, mass, friction, color });
         }
         let world = ArenaWorld::new(&scene, &ArenaOptions::default());
-        let mut world = world.map_err(|error| self.places.wrong("/world", error))?;
+        let mut world = world.map_err(|error| self.source.wrong("/world", error))?;
         let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
     }
 
     #[cfg(not(feature = "rapier"))]
-    fn in_rapier(&self, _: (Composition, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+    fn in_rapier(&self, _: (Setup, Agents)) -> Result<Box<dyn Evaluator>, Error> {
         Err(self.without_rapier())
     }
 
@@ -199,27 +201,27 @@ impl ComposedExperiment {
         serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))
     }
 
-    /// Refuses what does not go together.
+    /// Rejects parts that do not fit together.
     fn check(&self, settings: &Settings) -> Result<(), Error> {
         let document = self.document(settings)?;
         if document.has_joints() {
-            return jointed::composition::Composition::new(document, &self.places).map(|_| ());
+            return jointed::setup::Setup::new(document, &self.source).map(|_| ());
         }
-        Composition::new(document, &self.places).map(|_| ())
+        Setup::new(document, &self.source).map(|_| ())
     }
 
-    /// Evaluates a robot with joints.
+    /// Builds the evaluator of a robot with joints.
     fn with_joints(&self, document: Document) -> Result<Box<dyn Evaluator>, Error> {
-        let wrong = |error: ModelError| self.places.wrong("/robot", error);
-        let (engine, options) = (document.world.engine, jointed::composition::options(&document));
-        let (composition, agents) = jointed::composition::Composition::new(document, &self.places)?;
-        let model = Model::<f32>::new(&composition.scene.robot, &options).map_err(wrong)?;
-        let robot = composition.scene.robot.clone();
-        let mut episode = JointedEpisode::new(composition, agents);
+        let wrong = |error: ModelError| self.source.wrong("/robot", error);
+        let (engine, options) = (document.world.engine, jointed::setup::options(&document));
+        let (setup, agents) = jointed::setup::Setup::new(document, &self.source)?;
+        let model = Model::<f32>::new(&setup.scene.robot, &options).map_err(wrong)?;
+        let robot = setup.scene.robot.clone();
+        let mut episode = JointedEpisode::new(setup, agents);
         let mut world = articulated::World::new(model.clone());
         let arranged = STARTS.into_iter().all(|trial| episode.arrange(&mut world, start_of(trial)));
         if !arranged {
-            return Err(self.places.wrong("/start", "finds no free place after a thousand tries"));
+            return Err(self.source.wrong("/start", "finds no free place after a thousand tries"));
         }
         if engine == Engine::Rapier {
             return self.with_joints_in_rapier(&robot, &options, episode);
@@ -228,7 +230,7 @@ impl ComposedExperiment {
             let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
             batch.map_err(|error| Error::Other(error.to_string()))
         };
-        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch).with_displacements().with_pushes()))
+        Ok(Box::new(InWorld::new(world, ComposedTask(episode)).with_lanes(batch).with_displacements().with_pushes()))
     }
 
     #[cfg(feature = "rapier")]
@@ -241,8 +243,8 @@ impl ComposedExperiment {
         use farsa_physics::rapier::{Options, World};
         let articulated::Options { time_step, substeps, gravity, .. } = *options;
         let world = World::new(robot, &Options { time_step, substeps, gravity, ..Options::default() });
-        let world = world.map_err(|error| self.places.wrong("/world", error))?;
-        Ok(Box::new(InWorld::new(world, Composed(episode)).with_displacements().with_pushes()))
+        let world = world.map_err(|error| self.source.wrong("/world", error))?;
+        Ok(Box::new(InWorld::new(world, ComposedTask(episode)).with_displacements().with_pushes()))
     }
 
     #[cfg(not(feature = "rapier"))]
@@ -257,20 +259,20 @@ impl ComposedExperiment {
 
     #[cfg(not(feature = "rapier"))]
     fn without_rapier(&self) -> Error {
-        self.places.wrong("/world/engine", "`rapier`: this program was built without the feature `rapier`")
+        self.source.wrong("/world/engine", "`rapier`: this program was built without the feature `rapier`")
     }
 }
 
-/// The starts that are tried before anything runs.
+/// Trials whose starts are tried before a run.
 const STARTS: std::ops::Range<u32> = 0..8;
 
-/// Seeds of this kind are neither a run's nor a test's.
+/// Returns an episode with a seed that no run or test uses.
 fn start_of(trial: u32) -> EpisodeId {
     EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() }
 }
 
-/// Adds the objects of the scene's file, if there is one, to those of a document.
-fn add_scene(document: &mut Document, places: &mut Places) -> Result<(), Error> {
+/// Adds the objects of the scene's file to a document.
+fn add_scene(document: &mut Document, source: &mut Source) -> Result<(), Error> {
     let Some(name) = &document.world.scene else { return Ok(()) };
     let Some(text) = document.files.get(name) else { return Ok(()) };
     let (mut value, lines) = walk::read(name, text, &SCENE_SCHEMA)?;
@@ -278,43 +280,87 @@ fn add_scene(document: &mut Document, places: &mut Places) -> Result<(), Error> 
     let objects: Vec<Object> =
         serde_json::from_value(objects).map_err(|error| Error::Usage(format!("{name}: {error}")))?;
     for (number, object) in objects.into_iter().enumerate() {
-        places.put_elsewhere(&format!("/objects/{}", document.objects.len()), &format!("/objects/{number}"), &lines);
+        source.include(&format!("/objects/{}", document.objects.len()), &format!("/objects/{number}"), &lines);
         document.objects.push(object);
     }
     Ok(())
 }
 
-/// A text that lasts as long as the process, as the names of experiments do.
+/// Leaks a text, because names of experiments are static.
 fn leaked(text: &str) -> &'static str {
     String::leak(text.to_owned())
 }
 
-/// A value of the document as that of a setting.
-fn given(value: &Value) -> Option<Given> {
-    match value {
-        Value::Bool(flag) => Some(Given::Flag(*flag)),
-        Value::Number(number) => number.as_i64().map(Given::Whole).or_else(|| number.as_f64().map(Given::Number)),
-        Value::String(word) => Some(Given::Word(word.clone())),
-        Value::Array(items) => items.iter().map(Value::as_f64).collect::<Option<Vec<_>>>().map(Given::Numbers),
+/// Converts a value of the document into that of a setting.
+///
+/// # Errors
+/// [`Error::Setting`] for tables and mixed lists.
+fn setting_value(value: &Value, path: &str, source: &Source) -> Result<SettingValue, Error> {
+    let converted = match value {
+        Value::Bool(flag) => Some(SettingValue::Flag(*flag)),
+        Value::Number(number) => {
+            number.as_i64().map(SettingValue::Whole).or_else(|| number.as_f64().map(SettingValue::Number))
+        }
+        Value::String(word) => Some(SettingValue::Word(word.clone())),
+        Value::Array(items) => items.iter().map(Value::as_f64).collect::<Option<Vec<_>>>().map(SettingValue::Numbers),
         _ => None,
-    }
+    };
+    converted.ok_or_else(|| source.wrong(path, "is no flag, number, word or list of numbers"))
 }
 
-/// The strategy's settings that the document gives other defaults.
-fn searched(document: &Document, strategy: &dyn StrategyDefinition, places: &Places) -> Result<Vec<Setting>, Error> {
-    let known = Settings::new(strategy.settings())?;
-    let mut found = Vec::new();
+/// Returns the strategy that a document names, or the default one.
+fn strategy(
+    document: &Document,
+    strategies: &[&'static dyn StrategyDefinition],
+    source: &Source,
+) -> Result<&'static dyn StrategyDefinition, Error> {
+    let Some(name) = document.strategy.get("name") else { return Ok(&Truncation) };
+    let path = "/strategy/name";
+    let name = name.as_str().ok_or_else(|| source.wrong(path, "is not a text in quotes"))?;
+    let named = strategies.iter().copied().find(|strategy| strategy.name() == name);
+    let names = strategies.iter().map(|strategy| strategy.name());
+    named.ok_or_else(|| Error::unknown(&source.of(path), "strategy", name, names))
+}
+
+/// Returns the settings of a strategy that a document changes, with its values as defaults.
+fn strategy_settings(
+    document: &Document,
+    strategy: &dyn StrategyDefinition,
+    source: &Source,
+) -> Result<Vec<Setting>, Error> {
+    let settings = Settings::new(strategy.settings())?;
+    let mut changed = Vec::new();
     for (section, values) in [("evolution", &document.evolution), ("strategy", &document.strategy)] {
         for (name, value) in values.iter().filter(|(name, _)| section != "strategy" || *name != "name") {
-            let (path, key) = (format!("/{section}/{name}"), format!("{section}.{name}"));
-            let setting = known.find(&places.of(&path), &key)?;
-            let value =
-                given(value).ok_or_else(|| places.wrong(&path, "is no flag, number, word or list of numbers"))?;
-            let default = setting.with_default(value).map_err(|why| places.wrong(&path, why))?;
-            found.push(default);
+            let path = format!("/{section}/{name}");
+            let setting = settings.find(&source.of(&path), &format!("{section}.{name}"))?;
+            let default = setting.with_default(setting_value(value, &path, source)?);
+            changed.push(default.map_err(|why| source.wrong(&path, why))?);
         }
     }
-    Ok(found)
+    Ok(changed)
+}
+
+/// Names of conditions, with the settings that each changes.
+type Conditions = (Vec<&'static str>, Vec<Vec<(String, SettingValue)>>);
+
+/// Reads the conditions of a document, which change settings of a table.
+fn conditions(document: &Document, table: &[Setting], source: &Source) -> Result<Conditions, Error> {
+    let names: Vec<&'static str> = document.conditions.iter().map(|condition| leaked(&condition.name)).collect();
+    if let Some(index) = (1..names.len()).find(|index| names[..*index].contains(&names[*index])) {
+        return Err(source.wrong(&format!("/conditions/{index}/name"), "stands twice"));
+    }
+    let changes = document.conditions.iter().enumerate().map(|(index, condition)| {
+        let mut settings = Settings::new(table.to_vec())?;
+        let change = |(key, value): (&String, &Value)| {
+            let path = format!("/conditions/{index}/settings/{key}");
+            settings.set(&source.of(&path), key, setting_value(value, &path, source)?)?;
+            Ok((key.clone(), settings.get(key)?.clone()))
+        };
+        condition.settings.iter().map(change).collect::<Result<Vec<_>, Error>>()
+    });
+    let changes = changes.collect::<Result<_, _>>()?;
+    Ok((names, changes))
 }
 
 impl Experiment for ComposedExperiment {
@@ -342,7 +388,7 @@ impl Experiment for ComposedExperiment {
             let change = changes.iter().find(|(key, _)| key == setting.key());
             change.and_then(|(_, value)| setting.with_default(value.clone()).ok()).unwrap_or_else(|| setting.clone())
         };
-        own.chain(&self.searched).map(changed).collect()
+        own.chain(&self.strategy_settings).map(changed).collect()
     }
 
     fn definition(&self) -> Option<&str> {
@@ -358,7 +404,7 @@ impl Experiment for ComposedExperiment {
         if document.has_joints() {
             return self.with_joints(document);
         }
-        let mut composed = Composition::new(document, &self.places)?;
+        let mut composed = Setup::new(document, &self.source)?;
         if composed.1.document.team.coevolution {
             composed.1.size = settings.count("evolution.population")?;
         }
@@ -366,7 +412,7 @@ impl Experiment for ComposedExperiment {
             return self.in_rapier(composed);
         }
         let arena = composed.0.scene.arena.clone();
-        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.places.wrong("/world", error))?;
+        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.source.wrong("/world", error))?;
         let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::in_arena(&arena, episode)?))
     }

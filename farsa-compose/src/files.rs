@@ -1,4 +1,4 @@
-//! Files of this format for the command.
+//! Experiment files for the command.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template
 use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;
 
-/// What the command needs to take files of this format for experiments.
+/// Support of experiment files for [`Laboratory`](farsa_lab::Laboratory).
 ///
 /// ```no_run
 /// use farsa_lab::Laboratory;

@@ -1,13 +1,15 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod arena;
 mod check;
-mod composed;
+mod composed_task;
 pub mod document;
 mod experiment;
 mod files;
 mod jointed;
+mod limits;
 mod name;
 mod parts;
 
@@ -15,3 +17,4 @@ pub use arena::field::{Field, Forager};
 pub use check::schema::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
+pub use limits::Limits;

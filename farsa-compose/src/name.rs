@@ -1,9 +1,9 @@
-//! What names in a file look like.
+//! Names in a file.
 
-/// As a pattern of the schema; the only one that it has.
+/// Pattern of names, the only one of the schema.
 pub(crate) const NAME: &str = "^[a-z0-9][a-z0-9_-]{0,39}$";
 
-/// Whether a text is such a name.
+/// Returns true for a valid name.
 pub(crate) fn is_name(text: &str) -> bool {
     let inner = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     (1..=40).contains(&text.len()) && text.chars().all(inner) && !text.starts_with(['-', '_'])

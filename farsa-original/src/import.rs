@@ -15,7 +15,7 @@ use crate::remarks::Remarks;
 use crate::robot::RobotKind;
 use crate::sensor::sensor;
 use crate::written::Written;
-use farsa_compose::ComposedExperiment;
+use farsa_compose::{ComposedExperiment, Limits};
 
 /// The most remarks of each sort that the file itself repeats.
 const MOST_REPEATED: usize = 200;
@@ -56,6 +56,14 @@ const MOST_REPEATED: usize = 200;
 /// [`Error::Unknown`] for a robot that is none of the original's wheeled ones; and what is wrong with parts that do not go
 /// together.
 pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
+    from_original_within(Limits::default(), file, name, text)
+}
+
+/// Converts a configuration with other [`Limits`] of the experiment than the default ones.
+///
+/// # Errors
+/// As [`from_original`].
+pub fn from_original_within(limits: Limits, file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
     let ini = Ini::from_text(file, text)?;
     let mut remarks = Remarks::default();
     let general = ini.group("TOTAL99");
@@ -107,13 +115,14 @@ pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile,
     experiment.write_task(&mut out);
     search.write(&mut out);
     let text = out.into_text();
-    check(name, &text).map_err(|error| Error::Usage(format!("{file}: what comes out of it cannot be: {error}")))?;
+    check(limits, name, &text)
+        .map_err(|error| Error::Usage(format!("{file}: what comes out of it cannot be: {error}")))?;
     Ok(ImportedFile { text, left, idle, more_left: more[0], more_idle: more[1] })
 }
 
 /// Whether an experiment can be made of a text.
-fn check(name: &str, text: &str) -> Result<(), Error> {
-    let made = ComposedExperiment::from_text(name, text, farsa_lab::strategies())?;
+fn check(limits: Limits, name: &str, text: &str) -> Result<(), Error> {
+    let made = ComposedExperiment::from_text_within(limits, name, text, farsa_lab::strategies())?;
     made.prepare("", &Settings::new(made.settings(""))?).map(drop)
 }
 

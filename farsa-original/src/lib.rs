@@ -27,4 +27,4 @@ mod sensor;
 /// The text of the experiment file.
 mod written;
 
-pub use import::from_original;
+pub use import::{from_original, from_original_within};

@@ -2,12 +2,12 @@
 #![no_main]
 
 use farsa_compose::ComposedExperiment;
-use farsa_fuzz::bounded_toml;
+use farsa_fuzz::{bounded_toml, limits};
 use farsa_lab::Experiment as _;
 use libfuzzer_sys::fuzz_target;
 
 fn read(text: &str) -> Option<ComposedExperiment> {
-    ComposedExperiment::from_text("experiment.toml", text, farsa_lab::strategies()).ok()
+    ComposedExperiment::from_text_within(limits(), "experiment.toml", text, farsa_lab::strategies()).ok()
 }
 
 farsa_fuzz::text!();

@@ -1,9 +1,10 @@
 //! The experiment whose runs the targets read: three genes are to match numbers.
 
 use farsa_body::Recorder;
+use farsa_compose::{ComposedExperiment, Limits};
 use farsa_lab::{
-    Behaviour, Description, Error, Evaluation, Evaluator, Experiment, Iteration, Laboratory, Learner, NotedBehaviour,
-    Outcome, Parameter, Schema, Setting, Settings, StrategyDefinition, Task, Truncation,
+    Behaviour, Description, Error, Evaluation, Evaluator, Experiment, ExperimentFiles, Iteration, Laboratory, Learner,
+    NotedBehaviour, Outcome, Parameter, ReadExperiment, Schema, Setting, Settings, StrategyDefinition, Task, Truncation,
 };
 use farsa_num::{Domain, Stream};
 
@@ -18,7 +19,17 @@ pub static TUNE: Tune = Tune;
 
 /// The command's, over this experiment and those of files.
 pub fn laboratory() -> Laboratory<'static> {
-    Laboratory::new(&[&TUNE]).with_files(farsa_compose::FILES)
+    let read: ReadExperiment = |file, text, _, strategies| {
+        Ok(Box::new(ComposedExperiment::from_text_within(limits(), file, text, strategies)?))
+    };
+    Laboratory::new(&[&TUNE]).with_files(ExperimentFiles { read, ..farsa_compose::FILES })
+}
+
+/// Limits of experiments that bound the memory of a target by the length of its input.
+pub fn limits() -> Limits {
+    let mut limits = Limits::default();
+    (limits.network_values, limits.robots, limits.parts, limits.rays) = (2000, 100, 500, 4000);
+    limits
 }
 
 impl Experiment for Tune {

@@ -16,7 +16,7 @@ mod scratch;
 mod seal;
 
 pub use allocation::{bounded, bounded_toml};
-pub use experiment::{TUNE, laboratory};
+pub use experiment::{TUNE, laboratory, limits};
 pub use models::same_model;
 pub use mutation::mutated;
 pub use runs::{configurations, selected, with_run};

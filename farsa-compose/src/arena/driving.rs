@@ -1,4 +1,4 @@
-//! Any motor, with what is wrapped around it.
+//! Motors of robots in an arena, with their wrappers.
 
 use farsa_body::ChannelError;
 use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
@@ -7,16 +7,16 @@ use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::{Error, PlanarWorld};
 
 use crate::arena::scene::Scene;
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{self, Led, MotorKind};
-use crate::parts::bounded::Room;
+use crate::parts::sizes::MemoryBudget;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot in a plane.
 #[derive(Clone, Debug)]
 pub(crate) enum Driving {
     Wheels(WheelVelocity),
-    /// And whether it never drives backwards.
+    /// The flag forbids driving backwards.
     SpeedAndTurn(SpeedAndTurn, bool),
     Led(Leds<ActuatorId, 1>),
     TwoLeds(Leds<ActuatorId, 2>),
@@ -27,7 +27,7 @@ pub(crate) enum Driving {
     Wrapped(Wrapped<Self>),
 }
 
-/// Calls a method of whatever motor it is.
+/// Calls a method of the motor of any kind.
 macro_rules! motor {
     ($driving:expr, $motor:ident => $call:expr) => {
         match $driving {
@@ -55,7 +55,7 @@ impl Channels for Driving {
 }
 
 impl<W: PlanarWorld> Motor<W> for Driving {
-    /// The commonest motor is driven here, without a call.
+    /// Drives wheels inline, because most experiments have no other motor.
     #[inline(always)]
     fn drive(&mut self, y: &[f32], world: &mut W) {
         if let Self::Wheels(wheels) = self {
@@ -80,7 +80,7 @@ impl Driving {
         motor!(self, motor => motor.drive(y, world));
     }
 
-    /// Puts it to rest, past its wrappers, and says by which values [its channels].
+    /// Stops the motor, without its wrappers, and writes the corresponding values [its channels].
     pub(crate) fn rest<W: PlanarWorld>(&mut self, y: &mut [f32], world: &mut W) {
         match self {
             Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().rest(y, world)),
@@ -99,7 +99,7 @@ impl Driving {
     }
 }
 
-/// Outputs that drive nothing.
+/// Outputs without effect.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nothing(usize);
 
@@ -113,30 +113,30 @@ impl<W: ?Sized> Motor<W> for Nothing {
     fn drive(&mut self, _: &[f32], _: &mut W) {}
 }
 
-/// A motor of robot number `robot`, which stands at a path of the document, with its wrappers.
+/// Builds the motor at a path of the document for robot number `robot`, with its wrappers.
 ///
 /// # Errors
-/// [`Error::Setting`] for what the robot does not have or cannot be wrapped so.
+/// [`Error::Setting`] for a missing part of the robot and for invalid wrappers.
 pub(crate) fn motor(
     motor: &document::Motor,
     scene: &Scene,
     robot: usize,
     path: &str,
-    room: &mut Room,
-    places: &Places,
+    budget: &mut MemoryBudget,
+    source: &Source,
 ) -> Result<Driving, Error> {
-    let wrong = |why: String| places.wrong(path, why);
+    let wrong = |why: String| source.wrong(path, why);
     let made =
         bare(&motor.kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
     let mut made = made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))?;
     for (index, wrapper) in motor.wrappers.iter().enumerate() {
         let path = format!("{path}/wrappers/{index}");
-        made = Driving::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
+        made = Driving::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
     }
     Ok(made)
 }
 
-/// A motor without wrappers, or what the robot lacks for it.
+/// Builds a motor without wrappers, or returns the part that the robot lacks.
 fn bare(
     kind: &MotorKind,
     robot: &MobileRobot,

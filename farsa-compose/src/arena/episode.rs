@@ -8,52 +8,51 @@ use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};
 
-use crate::arena::composition::Composition;
-use crate::arena::meaning::{driven, sensed};
+use crate::arena::channel_quantity::{driven, sensed};
+use crate::arena::setup::Setup;
 use crate::arena::term::{Numbers, Rows, Term};
-use crate::composed::Embodied;
+use crate::composed_task::Body;
 use crate::document::{Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
-use crate::parts::meaning::Meaning;
+use crate::parts::channel_quantity::ChannelQuantity;
+use crate::parts::network_spec::NetworkSpec;
 use crate::parts::tally::Tally;
-use crate::parts::wiring::Wiring;
 use crate::parts::wrapping::NOISE;
 
-/// Robots, each with a copy of one network, in a trial.
+/// Robots in a trial, each with a copy of one network.
 #[derive(Clone, Debug)]
 pub(crate) struct ArenaEpisode {
-    composition: Composition,
+    setup: Setup,
     agents: Agents,
-    /// Where each robot started, and where it was a step before [m].
+    /// Pose of each robot at the start, and position in the previous step [m].
     started: Vec<Pose>,
     before: Vec<[f64; 2]>,
-    /// Where each is.
+    /// Current poses.
     poses: Vec<Pose>,
-    /// Whether a term asks where robots were a step before.
+    /// True if a term depends on the previous step.
     looks_back: bool,
     numbers: Vec<Numbers>,
 }
 
 impl ArenaEpisode {
-    /// A trial of a composition.
-    pub(crate) fn new(composition: Composition, agents: Agents) -> Self {
-        let robots = composition.members.len();
+    pub(crate) fn new(setup: Setup, agents: Agents) -> Self {
+        let robots = setup.members.len();
         let time_step = agents.document.world.time_step;
-        let numbers = composition.scene.robots.iter();
+        let numbers = setup.scene.robots.iter();
         let numbers =
             numbers.map(|robot| Numbers { wheel_speed: robot.max_wheel_speed, radius: robot.radius, time_step });
         Self {
             started: vec![Pose::planar([0.0; 2], 0.0); robots],
             before: vec![[0.0; 2]; robots],
             poses: vec![Pose::planar([0.0; 2], 0.0); robots],
-            looks_back: composition.terms.iter().any(Term::looks_back),
+            looks_back: setup.terms.iter().any(Term::looks_back),
             numbers: numbers.collect(),
-            composition,
+            setup,
             agents,
         }
     }
 
-    /// Puts everything in its place.
+    /// Places everything at its start.
     ///
     /// # Errors
     /// [`farsa_physics::arena::ArenaError::NoFreePlace`] after a thousand tries.
@@ -63,22 +62,22 @@ impl ArenaEpisode {
         id: EpisodeId,
     ) -> Result<(), farsa_physics::arena::ArenaError> {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
-        self.composition.starting.arrange(world, &mut stream)
+        self.setup.starting.arrange(world, &mut stream)
     }
 
-    /// Measures the terms that are asked for after each step, or the late ones.
+    /// Measures the terms of each step, or the late ones.
     #[inline(always)]
     fn measure<W: PlanarWorld>(&mut self, world: &W, late: bool) {
-        if self.composition.moving {
-            self.composition.terms.iter_mut().for_each(|term| term.locate(world));
+        if self.setup.moving {
+            self.setup.terms.iter_mut().for_each(|term| term.locate(world));
         }
-        for number in 0..self.composition.terms.len() {
-            let Composition { members, terms, .. } = &self.composition;
+        for number in 0..self.setup.terms.len() {
+            let Setup { members, terms, .. } = &self.setup;
             let (term, tally) = (&terms[number], &self.agents.ledger.tallies[number]);
             if tally.late != late {
                 continue;
             }
-            // Of one robot it is the mean itself.
+            // The mean of one robot is its value.
             let value = if let ([member], [pose], [numbers]) = (&members[..], &self.poses[..], &self.numbers[..]) {
                 term.quick(world, &member.parts, pose, numbers).unwrap_or_else(|| self.value(world, term, 0))
             } else {
@@ -93,10 +92,10 @@ impl ArenaEpisode {
         }
     }
 
-    /// What a term measures of the robots that it is about, in the mean.
+    /// Returns the mean of a term over its robots.
     fn mean<W: PlanarWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
         let mut value = 0.0;
-        let robots = self.composition.members.iter().zip(&self.poses).zip(&self.numbers);
+        let robots = self.setup.members.iter().zip(&self.poses).zip(&self.numbers);
         for (robot, ((member, pose), numbers)) in robots.enumerate() {
             let quick = term.quick(world, &member.parts, pose, numbers);
             let own = quick.unwrap_or_else(|| self.value(world, term, robot));
@@ -106,34 +105,35 @@ impl ArenaEpisode {
         value / tally.robots()
     }
 
-    /// The end of a trial, and what it earned.
+    /// Ends the trial and returns its reward.
     #[cold]
     fn conclude<W: PlanarWorld>(&mut self, world: &W) -> f64 {
         self.measure(world, true);
         self.agents.ledger.conclude()
     }
 
-    /// What a term measures of a robot.
+    /// Returns a term of one robot.
     #[inline(never)]
     fn value<W: PlanarWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
-        let Self { composition, agents, started, before, poses, numbers, .. } = self;
-        let (inputs, outputs) = (agents.wiring.inputs.len(), agents.wiring.outputs.len());
-        let field = composition.foraging.as_ref().map(|(_, field)| field);
+        let Self { setup, agents, started, before, poses, numbers, .. } = self;
+        let (inputs, outputs) = (agents.spec.inputs.len(), agents.spec.outputs.len());
+        let field = setup.foraging.as_ref().map(|(_, field)| field);
         let rows = Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field };
-        term.value(world, &composition.members[robot].parts, (&rows, robot), &numbers[robot])
+        term.value(world, &setup.members[robot].parts, (&rows, robot), &numbers[robot])
     }
 
-    /// What a late term is at now.
+    /// Returns the current value of a late term.
     fn late_value<W: PlanarWorld>(&self, world: &W, number: usize) -> f64 {
-        let (term, tally) = (&self.composition.terms[number], &self.agents.ledger.tallies[number]);
-        let robots = self.composition.members.len();
+        let (term, tally) = (&self.setup.terms[number], &self.agents.ledger.tallies[number]);
+        let robots = self.setup.members.len();
         (0..robots).map(|robot| tally.share(robot, self.value(world, term, robot))).sum::<f64>() / tally.robots()
     }
 
-    /// All sense before any acts; the dead do neither.
+    /// Reads all sensors before any motor acts. Dead robots do neither.
     fn act_as_team<W: PlanarWorld>(&mut self, world: &mut W) {
-        let Composition { members, foraging, .. } = &mut self.composition;
-        let Agents { wiring: Wiring { sensors, motors, inputs, outputs, .. }, networks, x, y, .. } = &mut self.agents;
+        let Setup { members, foraging, .. } = &mut self.setup;
+        let Agents { spec: NetworkSpec { sensors, motors, inputs, outputs, .. }, networks, x, y, .. } =
+            &mut self.agents;
         let (inputs, outputs) = (inputs.len(), outputs.len());
         let foragers = foraging.as_ref().map(|(_, field)| field.robots());
         let alive = |robot: usize| foragers.is_none_or(|foragers| foragers[robot].alive);
@@ -159,7 +159,7 @@ impl ArenaEpisode {
     }
 }
 
-impl Embodied for ArenaEpisode {
+impl Body for ArenaEpisode {
     fn agents(&self) -> &Agents {
         &self.agents
     }
@@ -169,7 +169,7 @@ impl Embodied for ArenaEpisode {
     }
 
     fn bodies(&self) -> Schema {
-        let Composition { scene, foraging, .. } = &self.composition;
+        let Setup { scene, foraging, .. } = &self.setup;
         let schema = Schema::from_arena(&farsa_physics::arena::Arena { size: Some(scene.size), ..scene.arena.clone() });
         match foraging {
             Some((_, field)) => field.shown_in(schema, &scene.robots.iter().collect::<Vec<_>>()),
@@ -177,23 +177,23 @@ impl Embodied for ArenaEpisode {
         }
     }
 
-    /// The pose of the robot that is recorded and, where there is food, the energy and the load of each.
-    fn places(&self) -> Vec<Channel> {
-        let foragers = self.composition.foraging.iter().flat_map(|(_, field)| field.channels());
+    /// Returns the pose channels of the recorded robot, and with food the energy and load of each robot.
+    fn scalars(&self) -> Vec<Channel> {
+        let foragers = self.setup.foraging.iter().flat_map(|(_, field)| field.channels());
         let pose = ["x [m]", "y [m]", "heading [rad]"].map(|name| Channel::new(name).group("place"));
         pose.into_iter().chain(foragers).collect()
     }
 
     fn robot(&self) -> Robot {
-        self.composition.scene.robots[0].description()
+        self.setup.scene.robots[0].description()
     }
 
-    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> Meaning {
-        sensed(kind, channel, &self.composition.scene.robots[robot])
+    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity {
+        sensed(kind, channel, &self.setup.scene.robots[robot])
     }
 
-    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> Meaning {
-        driven(kind, channel, &self.composition.scene.robots[robot])
+    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity {
+        driven(kind, channel, &self.setup.scene.robots[robot])
     }
 }
 
@@ -201,9 +201,9 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let arranged = self.arrange(world, id).is_ok();
         self.agents.begin(arranged);
-        let Composition { members, terms, foraging, .. } = &mut self.composition;
+        let Setup { members, terms, foraging, .. } = &mut self.setup;
         let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
-        Composition::reseed(members, streams, self.agents.document.episode.steps);
+        Setup::reseed(members, streams, self.agents.document.episode.steps);
         for (robot, member) in members.iter_mut().enumerate() {
             member.sensors.iter_mut().for_each(farsa_body::ports::Channels::reset);
             member.motors.iter_mut().for_each(farsa_body::ports::Channels::reset);
@@ -225,12 +225,12 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
 
     #[inline]
     fn act(&mut self, world: &mut W) {
-        let Composition { members, foraging, .. } = &mut self.composition;
-        let Agents { wiring, networks, x, y, .. } = &mut self.agents;
+        let Setup { members, foraging, .. } = &mut self.setup;
+        let Agents { spec, networks, x, y, .. } = &mut self.agents;
         if let ([member], [network], None) = (&mut members[..], &mut networks[..], foraging) {
-            member.sense(&wiring.sensors, world, x);
+            member.sense(&spec.sensors, world, x);
             network.step(x, y);
-            member.drive(&wiring.motors, y, world);
+            member.drive(&spec.motors, y, world);
         } else {
             self.act_as_team(world);
         }
@@ -238,15 +238,15 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.agents.ledger.steps += 1;
-        let Self { composition, poses, .. } = self;
-        for (robot, (pose, member)) in poses.iter_mut().zip(&composition.members).enumerate() {
+        let Self { setup, poses, .. } = self;
+        for (robot, (pose, member)) in poses.iter_mut().zip(&setup.members).enumerate() {
             *pose = world.pose(member.parts.body);
-            if let Some((_, field)) = &mut composition.foraging {
+            if let Some((_, field)) = &mut setup.foraging {
                 field.step(robot, [0, 1].map(|k| f64::from(pose.position[k])));
             }
         }
         self.measure(world, false);
-        let Composition { members, foraging, .. } = &self.composition;
+        let Setup { members, foraging, .. } = &self.setup;
         let Agents { document, ledger, .. } = &self.agents;
         let ends = |ending: &Ending| match ending {
             Ending::Collision => members.iter().any(|member| world.touches(PairId(member.parts.body.0))),
@@ -259,11 +259,10 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         Some(self.conclude(world))
     }
 
-    /// Records the infrared rays: all of the first robot that evolves, of the others those that met something.
+    /// Records the infrared rays: all of the first evolving robot, of the others those with a hit.
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        let inputs = self.agents.wiring.inputs.len();
-        for (robot, (member, x)) in self.composition.members.iter().zip(self.agents.x.chunks_exact(inputs)).enumerate()
-        {
+        let inputs = self.agents.spec.inputs.len();
+        for (robot, (member, x)) in self.setup.members.iter().zip(self.agents.x.chunks_exact(inputs)).enumerate() {
             for (first, drawing) in &member.drawn {
                 let x = &x[*first..*first + drawing.count()];
                 drawing.record(world.pose(member.parts.body), x, robot != self.agents.evolving[0], recorder);
@@ -272,16 +271,16 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
     }
 
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        let Agents { document, wiring, ledger, networks, x, y, evolving: [shown, _], .. } = &self.agents;
+        let Agents { document, spec, ledger, networks, x, y, evolving: [shown, _], .. } = &self.agents;
         let row = |count: usize| shown * count..(shown + 1) * count;
-        recorder.sensors(&x[row(wiring.inputs.len())]);
+        recorder.sensors(&x[row(spec.inputs.len())]);
         recorder.neurons(networks[*shown].controller().activations());
-        recorder.outputs(&y[row(wiring.outputs.len())]);
-        (0..self.composition.scene.bodies()).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
-        let pose = world.pose(self.composition.members[*shown].parts.body);
+        recorder.outputs(&y[row(spec.outputs.len())]);
+        (0..self.setup.scene.bodies()).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
+        let pose = world.pose(self.setup.members[*shown].parts.body);
         let [x, y, _] = pose.position.map(f64::from);
         let mut scalars = vec![x, y, f64::from(pose.heading())];
-        if let Some((_, field)) = &self.composition.foraging {
+        if let Some((_, field)) = &self.setup.foraging {
             scalars.extend(field.scalars());
             field.record(0, recorder);
         }

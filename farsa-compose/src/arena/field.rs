@@ -1,33 +1,33 @@
-//! Food on a field, and the robots that feed on it.
+//! Food on a field, and robots that forage on it.
 
-/// What a robot has.
+/// The state of a forager.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forager {
-    /// Energy \[0..1\], 0 when it is dead.
+    /// Energy \[0..1\], 0 for a dead robot.
     pub energy: f64,
-    /// Whether it is alive.
+    /// False after death.
     pub alive: bool,
-    /// Food that it carries.
+    /// Pieces of food that it carries.
     pub carried: u32,
-    /// Steps since it was in the nest last.
+    /// Steps since its last visit to the nest.
     away: u32,
 }
 
-/// Cells with one piece of food each, a round nest, and the records of robots that carry food there.
+/// A field of cells with one piece of food each, and a round nest to which robots carry food.
 ///
-/// A robot that enters a cell takes its food; one in the nest delivers what it carries and gets full energy; one that
-/// runs out of energy is dead, and what it carries is lost.
+/// A robot that enters a cell takes its food. In the nest it delivers its load and its energy returns to 1. Without
+/// energy it dies and its load is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Width and depth [m].
     size: [f64; 2],
     /// Cells along each side.
     cells: usize,
-    /// Energy that a step costs.
+    /// Energy cost of a step.
     cost: f64,
     nest: [f64; 2],
     radius: f64,
-    /// Whether a cell has its food, row by row.
+    /// Food of each cell, row by row.
     food: Vec<bool>,
     robots: Vec<Forager>,
     collected: u32,
@@ -35,15 +35,15 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field of `cells` times `cells` cells from the origin on without a nest yet, so wide and deep \[m\]; `cost` is the
-    /// energy of a step, `radius` that of the nest \[m\].
+    /// Creates a field of this size \[m\] with `cells` times `cells` cells from the origin. `cost` is the energy cost
+    /// of a step and `radius` the radius of the nest \[m\].
     pub fn new(size: [f64; 2], cells: usize, cost: f64, radius: f64, robots: usize) -> Self {
         let robot = Forager { energy: 1.0, alive: true, carried: 0, away: 0 };
         let (food, robots) = (vec![true; cells * cells], vec![robot; robots]);
         Self { size, cells, cost, nest: [0.0; 2], radius, food, robots, collected: 0, lost: 0 }
     }
 
-    /// Begins anew with all the food, all robots full of energy, and the nest there \[m\].
+    /// Restores all food and the energy of all robots, with the nest at this place \[m\].
     pub fn begin(&mut self, nest: [f64; 2]) {
         self.nest = nest;
         self.food.fill(true);
@@ -51,20 +51,20 @@ impl Field {
         (self.collected, self.lost) = (0, 0);
     }
 
-    /// Whether a place lies in the nest.
+    /// Returns true for a place in the nest.
     pub fn in_nest(&self, [x, y]: [f64; 2]) -> bool {
         let [x, y] = [x - self.nest[0], y - self.nest[1]];
         x * x + y * y <= self.radius * self.radius
     }
 
-    /// One step of a robot that ended there \[m\]: it pays for the step, takes food, and is paid or dies.
+    /// Steps a robot that has moved to this place \[m\]. It pays for the step, takes food, and delivers it or dies.
     ///
-    /// A robot that arrives in the nest with its last energy survives. What is not on the field has no food.
+    /// A robot that reaches the nest with its last energy survives. Places outside the field have no food.
     pub fn step(&mut self, robot: usize, at: [f64; 2]) {
         let nest = self.in_nest(at);
         let Some(forager) = self.robots.get_mut(robot).filter(|forager| forager.alive) else { return };
         forager.away += 1;
-        // From the number of steps, so that a hundred times 0.01 is 1.
+        // Computed from the number of steps, so that a hundred times 0.01 is exactly 1.
         forager.energy = (1.0 - self.cost * f64::from(forager.away)).max(0.0);
         let [column, row] = [0, 1].map(|k| at[k] / self.size[k] * self.cells as f64);
         let on_field = |x: f64| x >= 0.0 && x < self.cells as f64;
@@ -81,47 +81,47 @@ impl Field {
         }
     }
 
-    /// The robots' records.
+    /// Returns the states of all robots.
     pub fn robots(&self) -> &[Forager] {
         &self.robots
     }
 
-    /// Whether each cell still has its food, row by row from the origin, along x.
+    /// Returns the food of each cell, row by row from the origin along x.
     pub fn food(&self) -> &[bool] {
         &self.food
     }
 
-    /// Width and depth [m].
+    /// Returns width and depth [m].
     pub(crate) fn size(&self) -> [f64; 2] {
         self.size
     }
 
-    /// Cells along each side.
+    /// Returns the number of cells along each side.
     pub(crate) fn cells(&self) -> usize {
         self.cells
     }
 
-    /// Food that was carried to the nest.
+    /// Returns the number of delivered pieces of food.
     pub fn collected(&self) -> u32 {
         self.collected
     }
 
-    /// Food that was lost with the robots that carried it.
+    /// Returns the number of pieces lost with dead robots.
     pub fn lost(&self) -> u32 {
         self.lost
     }
 
-    /// Food that is being carried.
+    /// Returns the number of pieces that robots carry.
     pub fn carried(&self) -> u32 {
         self.robots.iter().map(|forager| forager.carried).sum()
     }
 
-    /// Food that still lies on the field.
+    /// Returns the number of pieces on the field.
     pub fn left(&self) -> usize {
         self.food.iter().filter(|food| **food).count()
     }
 
-    /// Robots that have died.
+    /// Returns the number of dead robots.
     pub fn deaths(&self) -> usize {
         self.robots.iter().filter(|forager| !forager.alive).count()
     }
@@ -142,18 +142,18 @@ mod tests {
             field.step(1, [0.1, 0.1]);
             assert!(field.robots()[0].alive, "{step}");
         }
-        // One comes home with its last step, the other does not.
+        // The first reaches the nest with its last step, the second does not.
         field.step(0, [2.5, 2.8]);
         field.step(1, [0.1, 0.1]);
         assert_eq!((field.robots()[0].alive, field.robots()[0].energy, field.deaths()), (true, 1.0, 1));
-        // The first took the cell's food and that of the cell in the nest; the second found none.
+        // The first took the food of its cell and of the nest's cell. The second found none.
         assert_eq!((field.collected(), field.lost(), field.left()), (2, 0, 398));
         field.step(1, [2.5, 2.5]);
         assert_eq!((field.deaths(), field.collected(), field.left()), (1, 2, 398));
     }
 
     proptest! {
-        /// Against lists that are searched through, with nothing counted on the way.
+        /// Compares with lists that are searched from the beginning in every step.
         #[test]
         fn the_book_agrees_with_the_story_told_from_its_beginning(
             places in prop::collection::vec((0_usize..3, 0_u8..40, 0_u8..40), 1..600),
@@ -169,7 +169,7 @@ mod tests {
                 let [a, b] = at(x, y);
                 farsa_num::Scalar::sqrt((a - 1.0) * (a - 1.0) + (b - 2.0) * (b - 2.0)) <= 0.9
             };
-            // Steps that energy lasts for: the last one only if it ends at home.
+            // Steps that the energy is enough for. The last one only counts if it ends in the nest.
             let lasts = (1.0 / cost - 1e-9).ceil() as usize;
             let mut taken: BTreeSet<(u8, u8)> = BTreeSet::new();
             let (mut bags, mut away, mut dead) = (vec![Vec::new(); 3], [0; 3], [false; 3]);

@@ -1,4 +1,4 @@
-//! How food and foragers are recorded and seen.
+//! Food and foragers in recordings and animations.
 
 use farsa_body::ports::BodyId;
 use farsa_body::robots::MobileRobot;
@@ -7,16 +7,16 @@ use farsa_view::{Channel, Color, Geometry, ImageChannel, OKABE_ITO, Role, SceneO
 
 use crate::arena::field::Field;
 
-/// Fields of more cells along a side are not shown: nobody can tell their food apart.
+/// Most cells along a side of a field that is drawn. Smaller food would be invisible.
 const MOST_CELLS: usize = 64;
-/// Of more robots it is not shown which are dead or carry food.
+/// Most robots with drawn marks of death and load.
 const MOST_ROBOTS: usize = 50;
-/// Food, on the ground and on robots.
+/// Color of food, on the ground and on robots.
 const FOOD: Color = OKABE_ITO[2];
-/// What covers a dead robot, and the bar across it.
+/// Colors of the cover of a dead robot and of the bar across it.
 const COVER: Color = [22, 22, 25];
 const BAR: Color = [235, 235, 230];
-/// How much wider and higher than the robot the cover is.
+/// Size of the cover relative to the robot.
 const AROUND: f64 = 1.02;
 
 fn energy(robot: usize) -> String {
@@ -28,7 +28,8 @@ fn carried(robot: usize) -> String {
 }
 
 impl Field {
-    /// The channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food, `carried 1`...
+    /// Returns the channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food,
+    /// `carried 1`...
     pub fn channels(&self) -> Vec<Channel> {
         let of_robot = |robot| {
             [Channel::new(&energy(robot)).group("energy").range(0.0, 1.0), Channel::new(&carried(robot)).group("food")]
@@ -36,16 +37,16 @@ impl Field {
         (0..self.robots().len()).flat_map(of_robot).collect()
     }
 
-    /// The energy of each robot and the food that it carries.
+    /// Returns the energy and the food load of each robot.
     pub fn scalars(&self) -> impl Iterator<Item = f64> + '_ {
         self.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)])
     }
 
-    /// A schema that has [`channels`](Self::channels), or is to have them, with the food as an image on the ground, its last image,
-    /// and with what shows that a robot carries food or is dead: a ball on it, or a dark cover with a bar across.
+    /// Adds the food to a schema as its last image, on the ground. The schema has or will have these
+    /// [`channels`](Self::channels).
     ///
-    /// `robots` are the first bodies. Fields of more than 64 cells along a side are not shown, nor are these marks of more than 50
-    /// robots.
+    /// A ball marks a robot with food, and a dark cover with a bar a dead one. `robots` are the first bodies. Fields
+    /// with more than 64 cells along a side are not drawn, nor are marks of more than 50 robots.
     #[must_use]
     pub fn shown_in(&self, mut schema: Schema, robots: &[&MobileRobot]) -> Schema {
         if let Some(cells) = self.shown_cells() {
@@ -71,13 +72,13 @@ impl Field {
         }
     }
 
-    /// Cells along a side, where they are shown.
+    /// Returns the cells along a side of a drawn field.
     fn shown_cells(&self) -> Option<usize> {
         Some(self.cells()).filter(|cells| (1..=MOST_CELLS).contains(cells))
     }
 }
 
-/// What is seen of a robot's load and death.
+/// Returns the marks of a robot's load and death.
 fn marks(number: usize, robot: &MobileRobot, name: &str) -> Vec<SceneObject> {
     let (body, above) = (BodyId(number as u16), AROUND * robot.height);
     let on = |what: &str, geometry, placement, color| {
@@ -110,13 +111,13 @@ mod tests {
         let bodies = vec!["e-puck 1".into(), "e-puck 2".into()];
         let schema = Schema { bodies, scalars: field.channels(), ..Schema::default() };
         let mut recording = Recording::new(field.shown_in(schema, &[&robot, &robot]));
-        // The first robot takes food, and more, and dies with it; the second brings it home.
-        for (number, places) in [[[0.6, 0.4], [1.9, 0.9]], [[0.7, 0.4], [1.9, 0.9]], [[1.2, 0.4], [0.1, 0.1]]]
+        // The first robot takes food and dies with it. The second delivers it.
+        for (number, source) in [[[0.6, 0.4], [1.9, 0.9]], [[0.7, 0.4], [1.9, 0.9]], [[1.2, 0.4], [0.1, 0.1]]]
             .into_iter()
             .chain([[[1.2, 0.4], [0.1, 0.1]]])
             .enumerate()
         {
-            for (robot, at) in places.into_iter().enumerate() {
+            for (robot, at) in source.into_iter().enumerate() {
                 field.step(robot, at);
                 recording.pose(BodyId(robot as u16), Pose::planar(at.map(|x| x as f32), 0.3));
             }
@@ -128,7 +129,7 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(lit), [14, 14, 12, 12]);
         let cell = recording.image_at(0, 0).unwrap().position(|color| color == [0.0; 3]);
         assert_eq!(cell, Some(1 + 4));
-        // Balls and bars on the robots at each tick.
+        // Balls and bars on the robots in each step.
         let seen = |tick: usize, robot: usize, what: fn(&Geometry) -> bool| {
             let at = recording.pose_at(tick, BodyId(robot as u16)).unwrap().position;
             let picture = recording.picture(tick).unwrap();

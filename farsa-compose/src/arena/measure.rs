@@ -1,14 +1,14 @@
-//! What terms measure of robots.
+//! Measures of robots for terms.
 
 use farsa_body::ports::BodyId;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 
 use crate::arena::scene::{Scene, Thing};
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::RewardKind;
 
-/// What a term measures of one robot.
+/// The measure of a term for one robot.
 #[derive(Clone, Debug)]
 pub(crate) enum Measure {
     Near {
@@ -23,7 +23,7 @@ pub(crate) enum Measure {
     Moved,
     Speed,
     Forward,
-    /// These two along a unit vector of the plane.
+    /// Components of a unit vector of the plane.
     Progress([f64; 2]),
     Position([f64; 2]),
     WheelSpeed,
@@ -31,7 +31,7 @@ pub(crate) enum Measure {
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
     InArea {
-        /// Its body with half its sides [m], or the radius of a disc.
+        /// Body with half its sides [m], or the radius of a disc.
         areas: Vec<(BodyId, [f64; 2], bool)>,
     },
     /// In units of the arena's diagonal [m].
@@ -48,26 +48,26 @@ pub(crate) enum Measure {
 }
 
 impl Measure {
-    /// What a kind of term that stands at a path of the document measures, and the thing that it is about, if any; `sensors` are
-    /// those of a robot with their channels.
+    /// Reads the measure of a term at a path of the document, and its thing, if any. `sensors` are the channels of a
+    /// robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a thing or sensor that there is not, [`Error::Setting`] for one that cannot be measured.
+    /// [`Error::Unknown`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
     pub(crate) fn new(
         kind: &RewardKind,
         path: &str,
         sensors: &[(String, [usize; 2])],
         scene: &Scene,
-        places: &Places,
+        source: &Source,
     ) -> Result<(Self, Option<BodyId>), Error> {
-        check(kind, path, places)?;
-        let body = |name: &str| scene.body(name, &format!("{path}/object"), places);
+        check(kind, path, source)?;
+        let body = |name: &str| scene.body(name, &format!("{path}/object"), source);
         let mut about = None;
         let measure = match kind {
             RewardKind::Near { object, within, .. } => {
                 let path = format!("{path}/object");
-                let Some((thing, radius)) = scene.thing(object, &path, places)?.solid() else {
-                    return Err(places.wrong(&path, format!("`{object}` is no cylinder")));
+                let Some((thing, radius)) = scene.thing(object, &path, source)?.solid() else {
+                    return Err(source.wrong(&path, format!("`{object}` is no cylinder")));
                 };
                 about = Some(thing);
                 Measure::Near { radius, within: *within }
@@ -92,26 +92,26 @@ impl Measure {
             }
             RewardKind::Speed { .. } => Measure::Speed,
             RewardKind::Forward { .. } => Measure::Forward,
-            RewardKind::Progress { along, .. } => Measure::Progress(direction(along, path, places)?),
-            RewardKind::Position { along, .. } => Measure::Position(direction(along, path, places)?),
+            RewardKind::Progress { along, .. } => Measure::Progress(direction(along, path, source)?),
+            RewardKind::Position { along, .. } => Measure::Position(direction(along, path, source)?),
             RewardKind::Height { .. } | RewardKind::Upright { .. } | RewardKind::JointSpeed { .. } => {
-                return Err(places.wrong(path, "is for robots with joints; this one is on wheels"));
+                return Err(source.wrong(path, "is for robots with joints; this one is on wheels"));
             }
             RewardKind::WheelSpeed {} => Measure::WheelSpeed,
             RewardKind::StraightOn {} => Measure::StraightOn,
             RewardKind::Sensor { sensor } => {
                 let found = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
                 let names = sensors.iter().map(|(name, _)| name.as_str());
-                let place = places.of(&format!("{path}/sensor"));
+                let place = source.of(&format!("{path}/sensor"));
                 Measure::Sensor(found.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
             }
             RewardKind::InArea { area, or } => {
                 let others = or.iter().enumerate().map(|(index, area)| (format!("{path}/or/{index}"), area));
                 let areas =
                     std::iter::once((format!("{path}/area"), area)).chain(others).map(|(path, area)| {
-                        match scene.thing(area, &path, places)? {
+                        match scene.thing(area, &path, source)? {
                             Thing::Area { body, half, disc } => Ok((body, half, disc)),
-                            _ => Err(places.wrong(&path, format!("`{area}` is no disc or rectangle"))),
+                            _ => Err(source.wrong(&path, format!("`{area}` is no disc or rectangle"))),
                         }
                     });
                 Measure::InArea { areas: areas.collect::<Result<_, Error>>()? }
@@ -132,17 +132,17 @@ impl Measure {
     }
 }
 
-/// A direction of the world as a unit vector of the plane.
-fn direction([x, y, _]: &[f64; 3], path: &str, places: &Places) -> Result<[f64; 2], Error> {
+/// Returns a direction of the world as a unit vector of the plane.
+fn direction([x, y, _]: &[f64; 3], path: &str, source: &Source) -> Result<[f64; 2], Error> {
     let length = Scalar::sqrt(x * x + y * y);
     if length == 0.0 {
-        return Err(places.wrong(&format!("{path}/along"), "points nowhere in the plane"));
+        return Err(source.wrong(&format!("{path}/along"), "points nowhere in the plane"));
     }
     Ok([x / length, y / length])
 }
 
-/// Refuses what only a robot with joints has.
-fn check(kind: &RewardKind, path: &str, places: &Places) -> Result<(), Error> {
+/// Rejects measures of robots with joints.
+fn check(kind: &RewardKind, path: &str, source: &Source) -> Result<(), Error> {
     let (body, bodies, point) = match kind {
         RewardKind::Near { body, point, .. }
         | RewardKind::Distance { body, point, .. }
@@ -158,6 +158,6 @@ fn check(kind: &RewardKind, path: &str, places: &Places) -> Result<(), Error> {
     if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
         return Ok(());
     }
-    Err(places
+    Err(source
         .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
 }

@@ -1,27 +1,26 @@
 //! Robots on wheels in an arena.
-//!
-//! - `composition`: the scene, its robots, and what is measured of them
-//! - `scene`: the arena, and which of its bodies a name means
-//! - `sensing`: any sensor, with what is wrapped around it
-//! - `driving`: any motor, with what is wrapped around it
-//! - `felt`: what a robot feels of itself
-//! - `field`: food on a field, and the robots that feed on it
-//! - `field_view`: how food and foragers are recorded and seen
-//! - `starting`: where a trial puts things
-//! - `measure`: what terms measure of robots
-//! - `term`: a term with the thing that it is about
-//! - `episode`: a trial
-//! - `meaning`: what channels stand for
 
-pub(crate) mod composition;
+/// Sensors of a robot's own state.
+pub(crate) mod body_state;
+/// The quantities of channels.
+mod channel_quantity;
+/// Motors, with their wrappers.
 pub(crate) mod driving;
+/// The episode.
 pub(crate) mod episode;
-pub(crate) mod felt;
+/// The field that foragers share.
 pub(crate) mod field;
+/// The field in recordings and animations.
 mod field_view;
-mod meaning;
+/// The measures of terms.
 pub(crate) mod measure;
+/// The arena, and the bodies that names refer to.
 pub(crate) mod scene;
+/// Sensors, with their wrappers.
 pub(crate) mod sensing;
+/// The scene with the sensors, motors and terms of its robots.
+pub(crate) mod setup;
+/// Initial placements.
 pub(crate) mod starting;
+/// Terms of the fitness.
 pub(crate) mod term;

@@ -1,31 +1,31 @@
-//! The arena, and which of its bodies a name means.
+//! The arena, and the bodies that names refer to.
 
 use farsa_body::ports::BodyId;
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::Error;
 use farsa_physics::arena::{Area, Arena, Cylinder, Wall};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Engine, Object, ObjectKind, Robot, RobotKind};
 use crate::parts::groups::Groups;
 
-/// A thing that a name means.
+/// A named thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Thing {
     /// A cylinder with its radius [m].
     Cylinder { body: BodyId, radius: f64 },
     /// A robot with its radius [m].
     Robot { body: BodyId, radius: f64 },
-    /// An area with half its sides [m]; of a disc the radius, twice.
+    /// An area with half its sides [m], or twice the radius of a disc.
     Area { body: BodyId, half: [f64; 2], disc: bool },
-    /// A block with half the diagonal of its ground [m].
+    /// A block with half the diagonal of its base [m].
     Block { body: BodyId, reach: f64 },
-    /// A wall, which is no body.
+    /// A wall, which has no body.
     Wall,
 }
 
 impl Thing {
-    /// Its body and the radius of its hull [m], if it has one that is in the way.
+    /// Returns the body and the hull's radius [m] of a round obstacle.
     pub(crate) fn solid(self) -> Option<(BodyId, f64)> {
         if let Self::Cylinder { body, radius } | Self::Robot { body, radius } = self {
             Some((body, radius))
@@ -34,12 +34,12 @@ impl Thing {
         }
     }
 
-    /// Whether it is a body that is in the way.
+    /// Returns true for obstacles.
     pub(crate) fn is_solid(self) -> bool {
         matches!(self, Self::Cylinder { .. } | Self::Robot { .. } | Self::Block { .. })
     }
 
-    /// Its body.
+    /// Returns the body.
     pub(crate) fn body(self) -> Option<BodyId> {
         match self {
             Self::Cylinder { body, .. }
@@ -50,7 +50,7 @@ impl Thing {
         }
     }
 
-    /// How far its middle keeps from walls if it is to touch none [m].
+    /// Returns the least distance of the center from a wall without contact [m].
     pub(crate) fn reach(self) -> f64 {
         match self {
             Self::Cylinder { radius, .. } | Self::Robot { radius, .. } => radius,
@@ -61,7 +61,7 @@ impl Thing {
     }
 }
 
-/// An arena made of a document.
+/// The arena of a document.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
     pub(crate) arena: Arena,
@@ -71,15 +71,15 @@ pub(crate) struct Scene {
     pub(crate) size: [f64; 2],
     pub(crate) blocks: Vec<Block>,
     things: Vec<(String, Thing)>,
-    /// How many of them are no robots.
+    /// Number of things that are not robots.
     standing: usize,
 }
 
-/// A box that can be pushed.
+/// A movable box.
 #[cfg_attr(not(feature = "rapier"), allow(dead_code))]
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Its middle at first [m], and where its length points to [rad].
+    /// Initial center [m] and direction of the length [rad].
     pub(crate) centre: [f64; 2],
     pub(crate) heading: f64,
     /// Length, breadth and height [m].
@@ -90,26 +90,24 @@ pub(crate) struct Block {
     pub(crate) color: [f64; 3],
 }
 
-/// The most robots; fewer where readers are fuzzed ([`crate::parts::bounded`]).
-const MOST_ROBOTS: usize = if cfg!(fuzzing) { 100 } else { 1000 };
-/// What is placed by every trial waits so far beyond the arena and from each other [m].
+/// Distance from the arena, and between things, before a trial places them [m].
 const BESIDE: f64 = 1.0;
 
 impl Scene {
-    /// The arena with its robots and things.
+    /// Builds the arena with its robots and things.
     ///
     /// # Errors
-    /// [`Error::Setting`] for names that stand twice.
-    pub(crate) fn new(document: &Document, places: &Places) -> Result<Self, Error> {
+    /// [`Error::Setting`] for duplicate names.
+    pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
         let world = &document.world;
         if world.engine == Engine::Articulated {
             let why = "`articulated` is for robots with joints; this one is on wheels, for `arena` and `rapier`";
-            return Err(places.wrong("/world/engine", why));
+            return Err(source.wrong("/world/engine", why));
         }
-        let (robots, groups) = robots(document, places)?;
+        let (robots, groups) = robots(document, source)?;
         let [width, depth] = world.size;
         let arena = if world.walls { Arena::walled(width, depth) } else { Arena::new() };
-        // Without bounds for what waits outside.
+        // Without bounds, because things wait outside before they are placed.
         let mut arena = Arena { time_step: world.time_step, ground: world.ground, size: None, ..arena };
         let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
         let apart = BESIDE + 3.0 * widest;
@@ -122,7 +120,7 @@ impl Scene {
             let path = format!("/objects/{index}/name");
             let of_robots = object.name.starts_with(ROBOT) || groups.named(&object.name).is_some();
             if of_robots || built.iter().any(|(name, _)| *name == object.name) {
-                return Err(places.wrong(&path, format!("`{}` names something else already", object.name)));
+                return Err(source.wrong(&path, format!("`{}` names something else already", object.name)));
             }
             let reach = match &object.kind {
                 ObjectKind::Cylinder { radius, .. } | ObjectKind::Disc { radius, .. } => *radius,
@@ -130,27 +128,27 @@ impl Scene {
                 ObjectKind::Block { size, .. } => size[0].max(size[1]),
                 ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => {
                     let why = "is for robots with joints; beside one on wheels are cylinders, discs and rectangles";
-                    return Err(places.wrong(&format!("/objects/{index}"), why));
+                    return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
             };
             x += BESIDE + reach;
-            let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), places));
+            let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), source));
             let at = at.transpose()?;
             if let Some(at) = at.filter(|_| !object.shines()) {
-                within_walls(document, at, &format!("/objects/{index}/at"), places)?;
+                within_walls(document, at, &format!("/objects/{index}/at"), source)?;
             }
             let at = at.unwrap_or([x, 0.0]);
             x += reach;
             if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
-                return Err(places.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
+                return Err(source.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
             }
             if matches!(object.kind, ObjectKind::Block { .. }) && world.engine == Engine::Arena {
                 let why = "is a block, which nothing pushes in the engine `arena`; `rapier` is the one for it";
-                return Err(places.wrong(&format!("/objects/{index}"), why));
+                return Err(source.wrong(&format!("/objects/{index}"), why));
             }
             built.push((object.name.clone(), add(&mut arena, &mut blocks, object, at)));
         }
-        // Bodies are numbered when all are there.
+        // Bodies are numbered after the last one is added.
         let [mut cylinders, mut areas, mut pushed] = [0; 3];
         let things = built.into_iter().map(|(name, thing)| {
             let thing = match thing {
@@ -167,7 +165,7 @@ impl Scene {
                     let bodies = arena.robots.len() + arena.cylinders.len() + arena.areas.len();
                     Thing::Block { body: BodyId((bodies + pushed - 1) as u16), reach }
                 }
-                // Robots come below.
+                // Robots are added below.
                 Thing::Wall | Thing::Robot { .. } => Thing::Wall,
             };
             (name, thing)
@@ -185,32 +183,32 @@ impl Scene {
         Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks })
     }
 
-    /// The thing of a name, which stands at a path of the document.
+    /// Returns the thing of a name at a path of the document.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest name.
-    pub(crate) fn thing(&self, name: &str, path: &str, places: &Places) -> Result<Thing, Error> {
+    pub(crate) fn thing(&self, name: &str, path: &str, source: &Source) -> Result<Thing, Error> {
         let found = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
         let names = self.things[..named].iter().map(|(name, _)| name.as_str());
-        found.ok_or_else(|| Error::unknown(&places.of(path), "object", name, names))
+        found.ok_or_else(|| Error::unknown(&source.of(path), "object", name, names))
     }
 
-    /// The thing of a name that is a body, and its number.
+    /// Returns the body of a named thing.
     ///
     /// # Errors
     /// As [`thing`](Self::thing), and [`Error::Setting`] for a wall.
-    pub(crate) fn body(&self, name: &str, path: &str, places: &Places) -> Result<BodyId, Error> {
-        let body = self.thing(name, path, places)?.body();
-        body.ok_or_else(|| places.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
+    pub(crate) fn body(&self, name: &str, path: &str, source: &Source) -> Result<BodyId, Error> {
+        let body = self.thing(name, path, source)?.body();
+        body.ok_or_else(|| source.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
     }
 
-    /// By which numbers the parts of a robot are known.
+    /// Returns the handles of a robot's parts.
     pub(crate) fn parts(&self, robot: usize) -> MobileParts {
         self.arena.parts(robot)
     }
 
-    /// The cylinders and blocks that stand somewhere from the beginning.
+    /// Returns the cylinders and blocks with a fixed initial place.
     pub(crate) fn standing<'s>(&'s self, document: &'s Document) -> impl Iterator<Item = (BodyId, f64)> + 's {
         let placed =
             document.objects.iter().zip(&self.things[..self.standing]).filter(|(object, _)| object.at.is_some());
@@ -225,7 +223,7 @@ impl Scene {
     }
 }
 
-/// What the robots are called where things are named.
+/// Name of all robots.
 pub(crate) const ROBOT: &str = "robot";
 
 fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]) -> Thing {
@@ -243,7 +241,7 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
             blocks.push(Block { centre: at, heading, size, mass, friction, color });
             Thing::Block { body, reach: 0.5 * farsa_num::Scalar::sqrt(size[0] * size[0] + size[1] * size[1]) }
         }
-        // They were refused before.
+        // Rejected by `Scene::new`.
         ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => Thing::Wall,
         ObjectKind::Disc { radius, color } => {
             arena.add_area(Area { heading, ..Area::circle(at, radius, color) });
@@ -256,44 +254,44 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
     }
 }
 
-/// A place in the plane.
+/// Reads a point of the plane.
 ///
 /// # Errors
 /// [`Error::Setting`] for three numbers.
-pub(crate) fn flat(at: &[f64], path: &str, places: &Places) -> Result<[f64; 2], Error> {
+pub(crate) fn flat(at: &[f64], path: &str, source: &Source) -> Result<[f64; 2], Error> {
     let why = || format!("has {} values where 2 are wanted: robots on wheels have a plane", at.len());
-    at.try_into().map_err(|_| places.wrong(path, why()))
+    at.try_into().map_err(|_| source.wrong(path, why()))
 }
 
-/// Refuses a place beyond the walls, if there are any.
+/// Rejects a place beyond the walls, if there are any.
 ///
 /// # Errors
 /// [`Error::Setting`] with the place and the walls.
-pub(crate) fn within_walls(document: &Document, at: [f64; 2], path: &str, places: &Places) -> Result<(), Error> {
+pub(crate) fn within_walls(document: &Document, at: [f64; 2], path: &str, source: &Source) -> Result<(), Error> {
     let (world, [x, y]) = (&document.world, at);
     let [width, depth] = world.size;
     if !world.walls || (0.0..=width).contains(&x) && (0.0..=depth).contains(&y) {
         return Ok(());
     }
     let why = format!("[{x}, {y}] is outside the walls, which enclose 0 to {width} m and 0 to {depth} m");
-    Err(places.wrong(path, why))
+    Err(source.wrong(path, why))
 }
 
-/// The robots of a document, and which of them are alike.
+/// Builds the robots of a document, and their groups.
 ///
 /// # Errors
-/// [`Error::Setting`] for none or both of `robot` and `robots`, and for what robots on wheels do not have.
-fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Groups), Error> {
+/// [`Error::Setting`] without or with both of `robot` and `robots`, and for keys of robots with joints.
+fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Groups), Error> {
     let alone = document.robot.iter().map(|robot| (ROBOT.to_owned(), None, robot, "/robot".to_owned()));
     let grouped = document.robots.iter().enumerate();
     let grouped =
         grouped.map(|(index, group)| (group.name.clone(), group.color, &group.robot, format!("/robots/{index}")));
     let all: Vec<_> = alone.chain(grouped).collect();
     match (&document.robot, document.robots.is_empty()) {
-        (None, true) => return Err(places.wrong("", "lacks the key `robot`, or `robots` for groups of them")),
-        (Some(_), false) => return Err(places.wrong("/robots", "go not with `robot`: one of them")),
+        (None, true) => return Err(source.wrong("", "lacks the key `robot`, or `robots` for groups of them")),
+        (Some(_), false) => return Err(source.wrong("/robots", "go not with `robot`: one of them")),
         (Some(_), true) if document.team.coevolution => {
-            return Err(places.wrong("/team/coevolution", "is for groups of `robots`; `robot` is one group"));
+            return Err(source.wrong("/team/coevolution", "is for groups of `robots`; `robot` is one group"));
         }
         _ => {}
     }
@@ -303,11 +301,11 @@ fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Gro
         let joints = kind.has_joints();
         let given = [("kind", joints), ("file", file.is_some()), ("floating", *floating), ("base", *base != [0.0; 3])];
         if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-            return Err(places.wrong(&format!("{path}/{key}"), "is for robots with joints; this one is on wheels"));
+            return Err(source.wrong(&format!("{path}/{key}"), "is for robots with joints; this one is on wheels"));
         }
         let taken = all[..number].iter().any(|(other, ..)| other == name);
         if taken || !document.robots.is_empty() && name.starts_with(ROBOT) {
-            return Err(places.wrong(&format!("{path}/name"), format!("`{name}` names something else already")));
+            return Err(source.wrong(&format!("{path}/name"), format!("`{name}` names something else already")));
         }
         let mut made = mobile_robot(robot);
         made.color = color.unwrap_or(made.color);
@@ -315,9 +313,10 @@ fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Gro
             made.name.clone_from(name);
         }
         let count = found.len().saturating_add(robot.count as usize);
-        if count > MOST_ROBOTS {
-            let why = format!("and those before it are {count} robots; at most {MOST_ROBOTS} in all");
-            return Err(places.wrong(path, why));
+        let most = source.limits.robots;
+        if count > most {
+            let why = format!("and those before it are {count} robots; at most {most} in all");
+            return Err(source.wrong(path, why));
         }
         found.resize(count, made);
     }
@@ -326,10 +325,10 @@ fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Gro
     Ok((found, groups))
 }
 
-/// The named robot with what the document changes.
+/// Builds a named robot with the changes of the document.
 fn mobile_robot(robot: &Robot) -> MobileRobot {
     let mut own = match robot.kind {
-        // Those with joints are elsewhere.
+        // `check` has rejected robots with joints.
         RobotKind::Khepera | RobotKind::ArmAndHand | RobotKind::Model => MobileRobot::khepera(),
         RobotKind::EPuck => MobileRobot::e_puck(),
         RobotKind::Marxbot => MobileRobot::marxbot(),

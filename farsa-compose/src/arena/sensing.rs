@@ -1,4 +1,4 @@
-//! Any sensor, with what is wrapped around it.
+//! Sensors of robots in an arena, with their wrappers.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use farsa_body::sensors::{
 };
 use farsa_lab::{Error, PlanarWorld};
 
-use crate::arena::felt::{Feeling, Felt};
+use crate::arena::body_state::{BodyState, BodyStateSensor};
 use crate::arena::field::Forager;
 use crate::arena::scene::Scene;
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{self, AxesName, InfraredModel, SensorKind};
-use crate::parts::bounded::Room;
 use crate::parts::eye::{Eye, eye};
 use crate::parts::files::{Files, measured};
+use crate::parts::sizes::MemoryBudget;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot in a plane.
@@ -48,11 +48,11 @@ pub(crate) enum Sensing {
     JointPosition(Vec<JointPosition>),
     JointSpeed(Vec<JointSpeed>),
     Constant(Signal<1>),
-    Felt(Felt),
+    BodyState(BodyStateSensor),
     Wrapped(Wrapped<Self>),
 }
 
-/// Calls a method of whatever sensor it is.
+/// Calls a method of the sensor of any kind.
 macro_rules! sensor {
     ($sensing:expr, $sensor:ident => $call:expr) => {
         match $sensing {
@@ -79,7 +79,7 @@ macro_rules! sensor {
             Sensing::JointPosition($sensor) => $call,
             Sensing::JointSpeed($sensor) => $call,
             Sensing::Constant($sensor) => $call,
-            Sensing::Felt($sensor) => $call,
+            Sensing::BodyState($sensor) => $call,
             Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
     };
@@ -96,7 +96,7 @@ impl Channels for Sensing {
 }
 
 impl<W: PlanarWorld> Sensor<W> for Sensing {
-    /// The commonest sensor is read here, without a call.
+    /// Reads infrared rays inline, because most experiments have them.
     #[inline(always)]
     fn read(&mut self, world: &W, out: &mut [f32]) {
         if let Self::Analytic(infrared) = self {
@@ -121,73 +121,73 @@ impl Sensing {
         sensor!(self, sensor => sensor.read(world, out));
     }
 
-    /// Tells it how the robot feels, if it is to sense that.
+    /// Updates a sensor of the robot's own state.
     pub(crate) fn feel(&mut self, forager: &Forager) {
         match self {
-            Self::Felt(felt) => felt.feel(forager),
+            Self::BodyState(sensor) => sensor.update(forager),
             Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().feel(forager)),
             _ => {}
         }
     }
 }
 
-/// A sensor of robot number `robot`, which stands at a path of the document, with its wrappers.
+/// Builds the sensor at a path of the document for robot number `robot`, with its wrappers.
 ///
 /// # Errors
-/// [`Error::Setting`] for what cannot be sensed or wrapped so, [`Error::Unknown`] for a thing that there is not.
+/// [`Error::Setting`] for invalid sensors and wrappers, [`Error::Unknown`] for an unknown thing.
 pub(crate) fn sensor(
     sensor: &document::Sensor,
     scene: &Scene,
     robot: usize,
     path: &str,
     files: &mut Files<'_>,
-    room: &mut Room,
-    places: &Places,
+    budget: &mut MemoryBudget,
+    source: &Source,
 ) -> Result<Sensing, Error> {
     let target = match &sensor.kind {
-        SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), places)?),
+        SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), source)?),
         _ => None,
     };
     let tables = match &sensor.kind {
         SensorKind::Infrared { model: InfraredModel::Tables, tables: None, .. } => {
-            return Err(places.wrong(path, "lacks the key `tables`, which the model `tables` needs"));
+            return Err(source.wrong(path, "lacks the key `tables`, which the model `tables` needs"));
         }
         SensorKind::Infrared { model: InfraredModel::Tables, tables: Some(tables), .. } => {
-            let found = measured(tables, files, path, places)?;
+            let found = measured(tables, files, path, source)?;
             let (own, wanted) = (found.sensors(), scene.robots[robot].infrared.angles.len());
             if own != wanted {
                 let why = format!("are of {own} sensors where the {} has {wanted}", scene.robots[robot].name);
-                return Err(places.wrong(&format!("{path}/tables"), why));
+                return Err(source.wrong(&format!("{path}/tables"), why));
             }
             Some(found)
         }
         SensorKind::Infrared { tables: Some(_), .. } => {
-            return Err(places.wrong(&format!("{path}/tables"), "are for the model `tables`"));
+            return Err(source.wrong(&format!("{path}/tables"), "are for the model `tables`"));
         }
         _ => None,
     };
-    check(&sensor.kind, path, places)?;
+    check(&sensor.kind, path, source)?;
     let parts = scene.parts(robot);
     let wheels = match &sensor.kind {
         SensorKind::JointPosition { joints, .. } | SensorKind::JointSpeed { joints } => {
             let named = joints.iter().enumerate();
-            named.map(|(index, joint)| wheel(joint, &parts, &format!("{path}/joints/{index}"), places)).collect()
+            named.map(|(index, joint)| wheel(joint, &parts, &format!("{path}/joints/{index}"), source)).collect()
         }
         _ => Ok(Vec::new()),
     };
     let wheels = wheels?;
     let wheels = if wheels.is_empty() { &parts.wheels[..] } else { &wheels };
     let made = bare(&sensor.kind, &scene.robots[robot], &parts, target, tables, wheels);
-    let mut made = made.map_err(|error| places.wrong(path, error))?;
+    let mut made = made.map_err(|error| source.wrong(path, error))?;
     for (index, wrapper) in sensor.wrappers.iter().enumerate() {
         let path = format!("{path}/wrappers/{index}");
-        made = Sensing::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
+        made = Sensing::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
     }
     Ok(made)
 }
 
-/// Refuses what only a robot with joints has.
-fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
+/// Rejects sensors of robots with joints.
+fn check(kind: &SensorKind, path: &str, source: &Source) -> Result<(), Error> {
     let (body, bodies, point) = match kind {
         SensorKind::Touch { bodies, with } | SensorKind::ContactForce { bodies, with } => {
             (with, &bodies[..], &[0.0; 3])
@@ -196,12 +196,12 @@ fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
         SensorKind::BodyPose { body } | SensorKind::BodyVelocity { body, .. } => (body, &[][..], &[0.0; 3]),
         SensorKind::Camera(camera) => (&camera.body, &[][..], &[0.0; 3]),
         SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
-            return Err(places.wrong(path, "is for robots with joints; one on wheels has a `camera` of sectors"));
+            return Err(source.wrong(path, "is for robots with joints; one on wheels has a `camera` of sectors"));
         }
         SensorKind::JointPosition { from, to, .. } => {
             let missing = [("from", from), ("to", to)].into_iter().find(|(_, end)| end.is_none());
             return missing.map_or(Ok(()), |(key, _)| {
-                Err(places.wrong(path, format!("lacks the key `{key}`: wheels turn on and on")))
+                Err(source.wrong(path, format!("lacks the key `{key}`: wheels turn on and on")))
             });
         }
         _ => return Ok(()),
@@ -209,25 +209,26 @@ fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
     if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
         return Ok(());
     }
-    Err(places
+    Err(source
         .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
 }
 
-/// A wheel by its name.
-fn wheel(name: &str, parts: &MobileParts, path: &str, places: &Places) -> Result<JointId, Error> {
+/// Returns a wheel by name.
+fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
     const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
     let found = WHEELS.iter().position(|known| *known == name);
-    Ok(parts.wheels[found.ok_or_else(|| Error::unknown(&places.of(path), "joint", name, WHEELS))?])
+    Ok(parts.wheels[found.ok_or_else(|| Error::unknown(&source.of(path), "joint", name, WHEELS))?])
 }
 
-/// The first of a list, or all of it for 0.
+/// Returns the first items of a list, or all of them for 0.
 fn first<T: Clone>(list: &[T], count: u32) -> Result<Vec<T>, ChannelError> {
     let end = if count == 0 { list.len() } else { count as usize };
     let found = list.get(..end).filter(|found| !found.is_empty());
     found.map(<[T]>::to_vec).ok_or(ChannelError::Selection { start: 0, end, channels: list.len() })
 }
 
-/// A sensor without wrappers; `target` is the body that it is for, if any, `wheels` are those that it is about.
+/// Builds a sensor without wrappers. `target` is the body that it observes, if any, and `wheels` the wheels that it
+/// reads.
 fn bare(
     kind: &SensorKind,
     robot: &MobileRobot,
@@ -259,9 +260,9 @@ fn bare(
         }
         SensorKind::Light { reference } => Sensing::Light(LightSensors::for_robot(robot, body, *reference as f32)?),
         SensorKind::GroundColor { rgb, first: count, middle } => {
-            let places = if *middle { vec![[0.0; 2]] } else { first(&robot.ground, *count)? };
-            let places: Vec<[f32; 2]> = places.into_iter().map(|at| at.map(|x| x as f32)).collect();
-            let sensor = GroundColor::new(body, places)?;
+            let source = if *middle { vec![[0.0; 2]] } else { first(&robot.ground, *count)? };
+            let source: Vec<[f32; 2]> = source.into_iter().map(|at| at.map(|x| x as f32)).collect();
+            let sensor = GroundColor::new(body, source)?;
             Sensing::Ground(if *rgb { sensor.rgb() } else { sensor })
         }
         SensorKind::LaserDistance { beams, field_of_view, range, height } => {
@@ -295,12 +296,12 @@ fn bare(
         SensorKind::JointSpeed { .. } => {
             Sensing::JointSpeed(wheels.iter().map(|wheel| JointSpeed::new(*wheel)).collect())
         }
-        // Refused by `check`.
+        // Rejected by `check`.
         SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
             return Err(ChannelError::Groups { field: "eyes", count: 0, size: 1 });
         }
-        SensorKind::Energy {} => Sensing::Felt(Felt::new(Feeling::Energy)),
-        SensorKind::Carried {} => Sensing::Felt(Felt::new(Feeling::Carried)),
+        SensorKind::Energy {} => Sensing::BodyState(BodyStateSensor::new(BodyState::Energy)),
+        SensorKind::Carried {} => Sensing::BodyState(BodyStateSensor::new(BodyState::Carried)),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
     })
 }
@@ -323,7 +324,7 @@ fn signal(body: farsa_body::ports::BodyId, range: f32, sectors: u32, mean: bool)
     })
 }
 
-/// Beams from left to right over an angle [rad], each from the hull along its direction.
+/// Returns beams from left to right over an angle [rad], each from the hull outwards.
 fn fan(radius: f64, angle: f64, beams: usize) -> Vec<Beam> {
     (0..beams)
         .map(|beam| {

@@ -1,4 +1,4 @@
-//! Where a trial puts things.
+//! Initial placements of robots and things.
 
 use core::f32::consts::PI;
 
@@ -9,18 +9,18 @@ use farsa_num::{Scalar, Stream, sin_cos};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::arena::scene::{ROBOT, Scene, Thing, flat, within_walls};
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Placing};
 use crate::parts::choice::Choice;
 
-/// A rule of the start with what it is about.
+/// A placement with its bodies.
 #[derive(Clone, Debug)]
 struct Rule {
     bodies: Vec<BodyId>,
-    /// Of what is in the way [m].
+    /// Radius of the obstacle [m].
     radius: f64,
     solid: bool,
-    /// Whether a heading is drawn.
+    /// True if a heading is drawn.
     turned: bool,
     how: How,
 }
@@ -35,7 +35,7 @@ enum How {
 }
 
 impl How {
-    /// Whether all bodies come to the same point.
+    /// Returns true if all bodies are placed at one point.
     fn is_one_point(&self) -> bool {
         match self {
             Self::Fixed { .. } => true,
@@ -45,29 +45,29 @@ impl How {
     }
 }
 
-/// The start of a trial.
+/// The placements of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Starting {
     rules: Vec<Rule>,
     size: [f64; 2],
-    /// What stands somewhere from the beginning.
+    /// Things with a fixed initial place.
     standing: Vec<BodyId>,
     before: Before,
-    /// The numbers of the points that rules have taken.
+    /// Numbers of the chosen points, by rule.
     chosen: Vec<usize>,
 }
 
-/// What was placed before: room for all.
+/// Bodies placed earlier, with capacity for all.
 #[derive(Clone, Debug)]
 struct Before {
-    /// What things placed later keep from, with the distance [m].
+    /// Obstacles with their least distance [m].
     others: Vec<(BodyId, f32)>,
     /// Areas, with their radius [m].
     areas: Vec<(BodyId, f64)>,
 }
 
 impl Before {
-    /// Whether anything was put exactly there.
+    /// Returns true if a body is exactly at this point.
     fn is_at<W: PlanarWorld>(&self, world: &W, point: [f32; 2]) -> bool {
         let others = self.others.iter().map(|(body, _)| body).chain(self.areas.iter().map(|(body, _)| body));
         others.map(|body| world.pose(*body).position).any(|[x, y, _]| [x, y] == point)
@@ -75,11 +75,11 @@ impl Before {
 }
 
 impl Starting {
-    /// The start that a document describes; robots that it does not name are placed last, anywhere.
+    /// Reads the placements of a document. Robots without one are placed last, anywhere.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a thing that there is not, [`Error::Setting`] for one that is placed twice or cannot be.
-    pub(crate) fn new(document: &Document, scene: &Scene, places: &Places) -> Result<Self, Error> {
+    /// [`Error::Unknown`] for an unknown thing, [`Error::Setting`] for one that is placed twice or cannot be placed.
+    pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();
         let robots: Vec<BodyId> = (0..scene.robots.len()).map(|robot| scene.parts(robot).body).collect();
         let of_robots = |bodies: Vec<BodyId>, how| {
@@ -87,18 +87,18 @@ impl Starting {
             let radius = radii.fold(0.0_f64, f64::max);
             Rule { bodies, radius, solid: true, turned: true, how }
         };
-        // What others are placed beside is there before them.
+        // A placement relative to a thing needs the thing placed earlier.
         let before = |name: &str, path: &str, rules: &[Rule]| {
-            let body = scene.body(name, path, places)?;
+            let body = scene.body(name, path, source)?;
             let stands = document.objects.iter().any(|object| object.name == name && object.at.is_some());
             if stands || rules.iter().any(|rule| rule.bodies.contains(&body)) {
                 return Ok(body);
             }
-            Err(places.wrong(path, format!("`{name}` has to be placed before")))
+            Err(source.wrong(path, format!("`{name}` has to be placed before")))
         };
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
-            let at_point = |point: &[f64], path: &str| point_of(document, &start.place, point, path, places);
+            let at_point = |point: &[f64], path: &str| point_of(document, &start.place, point, path, source);
             let how = match &start.how {
                 Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
                 Placing::Near { of, within, walls, apart } => {
@@ -108,7 +108,7 @@ impl Starting {
                 Placing::Around { of, distance } => {
                     let of = before(of, &format!("{path}/of"), &rules)?;
                     if distance[0] > distance[1] {
-                        return Err(places.wrong(&format!("{path}/distance"), "runs backwards"));
+                        return Err(source.wrong(&format!("{path}/distance"), "runs backwards"));
                     }
                     How::Around { of, distance: *distance }
                 }
@@ -116,10 +116,10 @@ impl Starting {
                     let points = points.iter().enumerate();
                     let point = |(index, at): (usize, &Vec<f64>)| at_point(at, &format!("{path}/points/{index}"));
                     let found = points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
-                    How::OneOf(Choice::new(found?, like.as_ref(), document, index, places)?)
+                    How::OneOf(Choice::new(found?, like.as_ref(), document, index, source)?)
                 }
                 Placing::InBox { .. } | Placing::Turned { .. } => {
-                    return Err(places.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
+                    return Err(source.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
                 }
                 Placing::Fixed { point, heading } => {
                     let point = at_point(point, &format!("{path}/point"))?;
@@ -128,22 +128,22 @@ impl Starting {
             };
             let rule = if start.place == ROBOT {
                 if how.is_one_point() && scene.robots.len() > 1 {
-                    return Err(places.wrong(&path, format!("puts {} robots on one point", scene.robots.len())));
+                    return Err(source.wrong(&path, format!("puts {} robots on one point", scene.robots.len())));
                 }
                 of_robots(robots.clone(), how)
             } else if let Some([first, end]) = scene.groups.named(&start.place) {
                 if how.is_one_point() && end - first > 1 {
-                    return Err(places.wrong(&path, format!("puts {} robots on one point", end - first)));
+                    return Err(source.wrong(&path, format!("puts {} robots on one point", end - first)));
                 }
                 of_robots(robots[first..end].to_vec(), how)
             } else if let Some(robot) = numbered(&start.place) {
                 let found = robot.checked_sub(1).and_then(|robot| robots.get(robot));
-                let why = || places.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
+                let why = || source.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
                 of_robots(vec![*found.ok_or_else(why)?], how)
             } else {
                 let path = format!("{path}/place");
-                let thing = scene.thing(&start.place, &path, places)?;
-                let body = scene.body(&start.place, &path, places)?;
+                let thing = scene.thing(&start.place, &path, source)?;
+                let body = scene.body(&start.place, &path, source)?;
                 Rule {
                     bodies: vec![body],
                     radius: thing.reach(),
@@ -153,15 +153,15 @@ impl Starting {
                 }
             };
             if rules.iter().any(|other| other.bodies.iter().any(|body| rule.bodies.contains(body))) {
-                return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
+                return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
             rules.push(rule);
         }
         for (index, object) in document.objects.iter().enumerate() {
             let path = format!("/objects/{index}");
-            let body = scene.body(&object.name, &path, places).ok().filter(|_| object.at.is_none());
+            let body = scene.body(&object.name, &path, source).ok().filter(|_| object.at.is_none());
             if body.is_some_and(|body| !rules.iter().any(|rule| rule.bodies.contains(&body))) {
-                return Err(places.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
+                return Err(source.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
             }
         }
         let placed = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));
@@ -178,7 +178,7 @@ impl Starting {
         Ok(Self { rules, size: scene.size, standing, before, chosen })
     }
 
-    /// Puts all in its place, by draws of the stream in the order of the rules.
+    /// Places all bodies, by draws in the order of the rules.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
@@ -216,24 +216,24 @@ impl Starting {
     }
 }
 
-/// A point of a thing or robot, which only a lamp may have beyond the walls.
+/// Reads the point of a thing or robot. Only lamps may be beyond the walls.
 ///
 /// # Errors
 /// [`Error::Setting`] for one beyond the walls or with three numbers.
-fn point_of(document: &Document, name: &str, at: &[f64], path: &str, places: &Places) -> Result<[f64; 2], Error> {
-    let point = flat(at, path, places)?;
+fn point_of(document: &Document, name: &str, at: &[f64], path: &str, source: &Source) -> Result<[f64; 2], Error> {
+    let point = flat(at, path, source)?;
     if !document.objects.iter().any(|object| object.name == name && object.shines()) {
-        within_walls(document, point, path, places)?;
+        within_walls(document, point, path, source)?;
     }
     Ok(point)
 }
 
-/// The number of a robot that is named alone: `robot-2`.
+/// Returns the number of a single robot, such as `robot-2`.
 fn numbered(name: &str) -> Option<usize> {
     name.strip_prefix(ROBOT)?.strip_prefix('-')?.parse().ok()
 }
 
-/// A place for one body of the rule of a number, which keeps from other bodies, or an area from other areas.
+/// Draws a place for one body of a rule. Obstacles keep their distance from other bodies, and areas from other areas.
 fn place<W: PlanarWorld>(
     rule: &Rule,
     number: usize,
@@ -270,7 +270,7 @@ fn place<W: PlanarWorld>(
         [-far, far].map(|far| [0, 1].map(|k| Scalar::clamp(at[k] + far, low[k], high[k])))
     });
     if rule.solid {
-        // The region keeps from the walls exactly; the hair's breadth is for the rounding of its ends.
+        // The region excludes the walls exactly. The margin of 1e-6 m allows for the rounding of its ends.
         let free =
             FreePlace { walls: (walls - 1e-6) as f32, within: near, ..FreePlace::new(region, rule.radius as f32) };
         return free.clear_of(&before.others).find(world, stream);
@@ -284,7 +284,7 @@ fn place<W: PlanarWorld>(
             Scalar::max(most, (rule.radius + reach + apart) as f32 - length([at[0] - x, at[1] - y]))
         });
         if near.is_none_or(|(centre, far)| length([at[0] - centre[0], at[1] - centre[1]]) <= far) {
-            // Areas may lie upon each other unless they are to be apart.
+            // Areas may overlap unless a distance is given.
             if *apart == 0.0 || lacks <= 0.0 {
                 return Ok(at);
             }
@@ -294,7 +294,7 @@ fn place<W: PlanarWorld>(
     Err(ArenaError::NoFreePlace { tries: TRIES, radius, short })
 }
 
-/// Places that are tried at most.
+/// Most attempts to find a place.
 const TRIES: u32 = 1000;
 
 fn length([x, y]: [f32; 2]) -> f32 {

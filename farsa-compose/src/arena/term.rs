@@ -1,4 +1,4 @@
-//! What a term of the fitness measures of robots in an arena.
+//! Terms of the fitness for robots in an arena.
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, PairId};
@@ -9,21 +9,21 @@ use farsa_num::{Scalar, atan2};
 use crate::arena::field::Field;
 use crate::arena::measure::Measure;
 use crate::arena::scene::Scene;
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::Reward;
 
-/// What a term measures, and where the thing is that it is about.
+/// A measure, and the place of its thing.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     measure: Measure,
-    /// The thing that it is about, and where that is.
+    /// The thing of the measure, and its pose.
     thing: Option<BodyId>,
     place: Pose,
-    /// Where it was at the start.
+    /// Pose of the thing at the start.
     began: Pose,
 }
 
-/// What robots sensed and did last, where they started and where they were a step before and are [m], robot by robot.
+/// Sensor and motor values of all robots, robot by robot, with poses at the start, in the previous step and now [m].
 pub(crate) struct Rows<'r> {
     pub(crate) x: &'r [f32],
     pub(crate) y: &'r [f32],
@@ -42,7 +42,7 @@ impl Rows<'_> {
     }
 }
 
-/// The greatest wheel speed [rad/s] and the radius [m] of the robots, and the control step [s].
+/// Greatest wheel speed [rad/s] and radius [m] of a robot, and the control step [s].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Numbers {
     pub(crate) wheel_speed: f64,
@@ -51,53 +51,54 @@ pub(crate) struct Numbers {
 }
 
 impl Term {
-    /// What a term that stands at a path of the document measures; `sensors` are those of a robot with their channels.
+    /// Reads the term at a path of the document. `sensors` are the channels of a robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a thing or sensor that there is not, [`Error::Setting`] for one that cannot be measured.
+    /// [`Error::Unknown`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
     pub(crate) fn new(
         reward: &Reward,
         number: usize,
         sensors: &[(String, [usize; 2])],
         scene: &Scene,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
-        let (measure, thing) = Measure::new(&reward.kind, &format!("/reward/{number}"), sensors, scene, places)?;
+        let (measure, thing) = Measure::new(&reward.kind, &format!("/reward/{number}"), sensors, scene, source)?;
         let nowhere = Pose::planar([0.0; 2], 0.0);
         Ok(Self { measure, thing, place: nowhere, began: nowhere })
     }
 
-    /// Whether it asks where robots were a step before.
+    /// Returns true if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
         matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_))
     }
 
-    /// Whether it is about a robot, which moves.
+    /// Returns true if the thing is a robot, which moves.
     pub(crate) fn is_about_robot(&self, scene: &Scene) -> bool {
         self.thing.is_some_and(|thing| (0..scene.robots.len()).any(|robot| scene.parts(robot).body == thing))
     }
 
-    /// Whether it asks for food or energy.
+    /// Returns true if the measure needs food or energy.
     pub(crate) fn of_foraging(&self) -> bool {
         matches!(self.measure, Measure::Food | Measure::Energy | Measure::Alive)
     }
 
-    /// Looks where its thing is at the start of a trial, if it has one.
+    /// Stores the pose of the thing at the start of a trial.
     pub(crate) fn begin<W: PlanarWorld>(&mut self, world: &W) {
         self.locate(world);
         self.began = self.place;
     }
 
-    /// Looks where its thing is, if it has one.
+    /// Updates the pose of the thing.
     pub(crate) fn locate<W: PlanarWorld>(&mut self, world: &W) {
         if let Some(thing) = self.thing {
             self.place = world.pose(thing);
         }
     }
 
-    /// What it measures of a robot, which is at `pose`, after a step; `None` for what [`value`](Self::value) measures.
+    /// Returns the measure of a robot at `pose`, or `None` for the measures of [`value`](Self::value).
     ///
-    /// What most experiments measure is here; the rest is apart, so that its values are not made ready in every step.
+    /// Contains the measures of most experiments. The others are separate, so that a step does not prepare their
+    /// inputs.
     #[inline]
     pub(crate) fn quick<W: PlanarWorld>(
         &self,
@@ -117,17 +118,17 @@ impl Term {
         })
     }
 
-    /// From a robot to the thing [m].
+    /// Returns the vector from a robot to the thing [m].
     fn way(&self, pose: &Pose) -> [f64; 2] {
         [0, 1].map(|k| f64::from(self.place.position[k] - pose.position[k]))
     }
 
-    /// From a robot to the thing, both as they are stored and in the robot's axes [m].
+    /// Returns the distance from a robot to the thing [m], with the difference formed in double precision.
     fn distance(&self, pose: &Pose) -> f64 {
         length(turned(pose, [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(pose.position[k]))))
     }
 
-    /// What it measures of robot number `robot` after a step.
+    /// Returns the measure of robot number `robot`.
     pub(crate) fn value<W: PlanarWorld>(
         &self,
         world: &W,
@@ -212,7 +213,7 @@ impl Term {
     }
 }
 
-/// A way in the axes of a pose.
+/// Rotates a vector into the axes of a pose.
 fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
     let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
     [ahead, left]

@@ -1,19 +1,19 @@
-//! Files that a text names, put into the text: a run that keeps the text needs no others.
+//! Embeds the files that a text names, so that a run with this text needs no other file.
 
 use std::fmt::Write as _;
 use std::path::{Component, Path};
 
 use farsa_lab::{Error, read_text_file};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, NetworkKind, SensorKind};
 
-/// The most bytes of a file that a text names.
+/// Most bytes of a named file.
 const MOST_BYTES: u64 = 1_000_000;
-/// The most files that a text names.
+/// Most named files.
 const MOST_FILES: usize = 16;
 
-/// The names of files in a document, with the paths where they stand.
+/// Returns the names of files in a document, with their paths.
 fn named(document: &Document) -> Vec<(String, &str)> {
     let scene = document.world.scene.as_deref().map(|name| ("/world/scene".to_owned(), name));
     let model =
@@ -31,28 +31,28 @@ fn named(document: &Document) -> Vec<(String, &str)> {
     found
 }
 
-/// A text with the files that its document names, where it has none of them yet; they are read from `folder`, which is that of
-/// `file`.
+/// Returns a text with the contents of the files that its document names, unless it has them already. The files are
+/// read from `folder`, the folder of `file`.
 ///
-/// Without a folder the text has to have them all, and no file is read: a text that a run has kept comes from anyone.
+/// Without a folder the text must contain them, because the text of a run is untrusted.
 ///
 /// # Errors
-/// [`Error::Setting`] for a name that leads out of the folder, for too many files, and for a file without a folder,
-/// [`Error::Unknown`] for a file that is not among those of the text, [`Error::Io`] and [`Error::Damaged`] for what cannot be
-/// read.
+/// [`Error::Setting`] for a name outside the folder, for too many files, and for a file without a folder.
+/// [`Error::Unknown`] for a file that is missing from those of the text. [`Error::Io`] and [`Error::Damaged`] for
+/// unreadable files.
 pub(crate) fn embedded(
     file: &str,
     text: &str,
     folder: Option<&Path>,
     document: &Document,
-    places: &Places,
+    source: &Source,
 ) -> Result<Option<String>, Error> {
     let named = named(document);
     if !document.files.is_empty() {
         for (path, name) in named {
             if !document.files.contains_key(name) {
                 let known = document.files.keys().map(String::as_str);
-                return Err(Error::unknown(&places.of(&path), "file", name, known));
+                return Err(Error::unknown(&source.of(&path), "file", name, known));
             }
         }
         return Ok(None);
@@ -61,7 +61,7 @@ pub(crate) fn embedded(
         let first = named.first();
         return first.map_or(Ok(None), |(path, name)| {
             let why = format!("`{name}` is not in the table `files`, and a text that is no file reads no others");
-            Err(places.wrong(path, why))
+            Err(source.wrong(path, why))
         });
     };
     let mut contents: Vec<(&str, String)> = Vec::new();
@@ -70,20 +70,20 @@ pub(crate) fn embedded(
             continue;
         }
         if contents.len() == MOST_FILES {
-            return Err(places.wrong(&path, format!("is one file more than {MOST_FILES}, which are the most")));
+            return Err(source.wrong(&path, format!("is one file more than {MOST_FILES}, which are the most")));
         }
         let own = Path::new(name);
         let within = own.components().all(|part| matches!(part, Component::Normal(_)));
         if !within || name.is_empty() || name.contains('\\') {
-            return Err(places.wrong(&path, format!("`{name}` is no file in the folder of {file} or below it")));
+            return Err(source.wrong(&path, format!("`{name}` is no file in the folder of {file} or below it")));
         }
         let found = folder.join(own);
-        // Links may lead anywhere; what is not there is named when it is read.
+        // Links may lead anywhere. A missing file is reported when it is read.
         let root = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let ends = found.canonicalize().and_then(|found| Ok((found, root.canonicalize()?)));
         let inside = ends.is_ok_and(|(found, root)| found.starts_with(root)) || !found.exists();
         if !inside {
-            return Err(places.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
+            return Err(source.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
         }
         contents.push((name, read_text_file(&found, MOST_BYTES)?));
     }

@@ -1,13 +1,12 @@
-//! A text against the schema of the format.
-//!
-//! - `places`: where in the text each value stands
-//! - `embed`: files that a text names, put into the text
-//! - `schema`: what a schema says of one value
-//! - `walk`: a text, checked value by value
-//! - `settings`: the numbers and words of a document as settings
+//! The text of a file, checked against the schema of the format.
 
+/// Embeds the files that a text names.
 pub(crate) mod embed;
-pub(crate) mod places;
+/// Access to the JSON schema.
 pub(crate) mod schema;
+/// The values of a document as settings.
 pub(crate) mod settings;
+/// The text: lines of its values, names of its parts, limits.
+pub(crate) mod source;
+/// Reads and checks a text value by value.
 pub(crate) mod walk;

@@ -1,4 +1,4 @@
-//! What a schema says of one value.
+//! Access to the JSON schema of the format.
 
 use std::sync::LazyLock;
 
@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::document::Document;
 
-/// The schema of the format, as JSON.
+/// Returns the JSON schema of the format.
 pub fn schema() -> Value {
     let settings = schemars::generate::SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Document>().to_value();
@@ -14,10 +14,10 @@ pub fn schema() -> Value {
     schema
 }
 
-/// The same for readers, made once: that takes a megabyte, whatever is read.
+/// The schema, built once because it takes a megabyte.
 pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
 
-/// The schema of a file that has objects only, made once.
+/// The schema of a file with objects only.
 pub(crate) static SCENE_SCHEMA: LazyLock<Value> = LazyLock::new(|| scene_schema(&SCHEMA));
 
 fn scene_schema(schema: &Value) -> Value {
@@ -31,7 +31,7 @@ fn scene_schema(schema: &Value) -> Value {
     })
 }
 
-/// Says of every table that it has no other keys than those that are named.
+/// Forbids unnamed keys in every table.
 fn close(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -40,7 +40,7 @@ fn close(schema: &mut Value) {
             if table && !map.contains_key("additionalProperties") {
                 map.insert("unevaluatedProperties".into(), false.into());
             }
-            // The branches of a table are closed by the table.
+            // Branches are closed by the table around them.
             for branches in ["oneOf", "anyOf", "allOf"] {
                 let branches = map.get_mut(branches).and_then(Value::as_array_mut).into_iter().flatten();
                 branches.filter_map(Value::as_object_mut).for_each(|branch| {
@@ -53,14 +53,14 @@ fn close(schema: &mut Value) {
     }
 }
 
-/// A part of a schema, with the whole of it for references.
+/// A part of a schema, with its root for references.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<'s> {
     root: &'s Value,
     own: &'s Map<String, Value>,
 }
 
-/// What a value has to be.
+/// The type of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Table,
@@ -74,7 +74,7 @@ pub(crate) enum Kind {
 }
 
 impl<'s> Part<'s> {
-    /// All of a schema.
+    /// Returns the root of a schema.
     pub(crate) fn root(root: &'s Value) -> Option<Self> {
         Some(Self { root, own: root.as_object()? })
     }
@@ -83,13 +83,13 @@ impl<'s> Part<'s> {
         Some(Self { root: self.root, own: value.as_object()? })
     }
 
-    /// What it refers to, if it does.
+    /// Resolves a reference.
     fn referred(self) -> Option<Self> {
         let name = self.own.get("$ref")?.as_str()?.strip_prefix("#/$defs/")?;
         self.at(self.root.get("$defs")?.get(name)?)
     }
 
-    /// A word of it, or of what it refers to.
+    /// Returns a keyword of the part or of its reference.
     fn word(self, name: &str) -> Option<&'s Value> {
         self.own.get(name).or_else(|| self.referred()?.word(name))
     }
@@ -99,13 +99,13 @@ impl<'s> Part<'s> {
         found.iter().filter_map(move |value| self.at(value))
     }
 
-    /// The same without the choice of leaving it away.
+    /// Returns the part without the alternative `null`.
     fn given(self) -> Self {
         let null = |part: &Self| part.own.get("type").is_some_and(|kind| kind == "null");
         self.branches("anyOf").find(|part| !null(part)).unwrap_or(self)
     }
 
-    /// What a value has to be.
+    /// Returns the type of the value.
     pub(crate) fn kind(self) -> Kind {
         let part = self.given();
         let words: Vec<&str> = match part.word("type") {
@@ -126,7 +126,7 @@ impl<'s> Part<'s> {
         }
     }
 
-    /// The words that a text may be; none if it may be any.
+    /// Returns the allowed words of a text, empty for free text.
     pub(crate) fn choices(self) -> Vec<&'s str> {
         let part = self.given();
         let own = |part: Self| {
@@ -137,36 +137,36 @@ impl<'s> Part<'s> {
         part.branches("oneOf").chain([part]).flat_map(own).collect()
     }
 
-    /// The least and the most that a number may be.
+    /// Returns the least and the greatest number.
     pub(crate) fn range(self) -> [Option<f64>; 2] {
         let part = self.given();
         ["minimum", "maximum"].map(|name| part.word(name).and_then(Value::as_f64))
     }
 
-    /// How many values a list may have.
+    /// Returns the least and the greatest length of a list.
     pub(crate) fn lengths(self) -> [Option<u64>; 2] {
         let part = self.given();
         ["minItems", "maxItems"].map(|name| part.word(name).and_then(Value::as_u64))
     }
 
-    /// What a text has to look like, if it says.
+    /// Returns the pattern of a text, if any.
     pub(crate) fn pattern(self) -> Option<&'s str> {
         self.given().word("pattern")?.as_str()
     }
 
-    /// The first paragraph of what it is.
+    /// Returns the first paragraph of the description.
     pub(crate) fn description(self) -> &'s str {
         let text = self.word("description").and_then(Value::as_str).unwrap_or_default();
         text.split("\n\n").next().unwrap_or_default()
     }
 
-    /// What the values of a list are.
+    /// Returns the schema of a list's items.
     pub(crate) fn items(self) -> Option<Self> {
         let part = self.given();
         part.at(part.word("items")?)
     }
 
-    /// The values of a table that may have any keys.
+    /// Returns the schema of the values in a table with free keys.
     pub(crate) fn any_key(self) -> Option<Self> {
         let part = self.given();
         match part.word("additionalProperties")? {
@@ -175,7 +175,7 @@ impl<'s> Part<'s> {
         }
     }
 
-    /// The keys of a table with what stands there, of the branch that `tag` chooses: the value of a key.
+    /// Returns the keys of a table. `tag` returns the value of the key that selects a branch.
     pub(crate) fn keys(self, tag: &dyn Fn(&str) -> Option<&'s str>) -> Keys<'s> {
         let mut keys = Keys::default();
         self.given().collect(tag, &mut keys);
@@ -206,7 +206,7 @@ impl<'s> Part<'s> {
         }
     }
 
-    /// What the parts of a list are: the first paragraph of the branch that a word chooses, and the name of the list.
+    /// Returns the first paragraph of the branch that a word selects among the items of a list.
     pub(crate) fn about(self, list: &str, word: &str) -> &'s str {
         let keys = self.keys(&|_| None);
         let items = keys.named.iter().find(|(name, _)| *name == list).and_then(|(_, part)| part.items());
@@ -220,19 +220,19 @@ impl<'s> Part<'s> {
         })
     }
 
-    /// The key and the word by which a branch is chosen.
+    /// Returns the key and the word that select a branch.
     fn tag(self) -> Option<(&'s str, &'s str)> {
         let found = self.word("properties")?.as_object()?;
         found.iter().find_map(|(name, value)| Some((name.as_str(), value.get("const")?.as_str()?)))
     }
 }
 
-/// The keys that a table may have.
+/// Keys of a table.
 #[derive(Default)]
 pub(crate) struct Keys<'s> {
     pub(crate) named: Vec<(&'s str, Part<'s>)>,
     pub(crate) required: Vec<&'s str>,
-    /// The key by whose word other keys are chosen, and its words.
+    /// The key that selects a branch, and its words.
     pub(crate) tag: Option<(&'s str, Vec<&'s str>)>,
 }
 

@@ -1,4 +1,4 @@
-//! The numbers and words of a document as settings, so that `--set`, sweeps and conditions can change them.
+//! The values of a document as settings, for `--set`, sweeps and conditions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,19 +7,19 @@ use serde_json::{Map, Value};
 
 use crate::check::schema::{Kind, Part};
 
-/// The tables of a document that are no settings by themselves.
+/// Tables without settings of their values.
 const ELSEWHERE: [&str; 6] = ["conditions", "evolution", "files", "genome", "strategy", "summary"];
 
-/// A setting and the path of its value in the document.
+/// A setting and the path of its value.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub(crate) setting: Setting,
     pub(crate) path: String,
-    /// Whether its numbers are whole ones.
+    /// True for whole numbers.
     whole: bool,
 }
 
-/// The settings of a document that fits the schema, in its order.
+/// Returns the settings of a valid document, in its order.
 pub(crate) fn entries(document: &Value, schema: &Value) -> Vec<Entry> {
     let mut found = Vec::new();
     if let (Some(part), Some(table)) = (Part::root(schema), document.as_object()) {
@@ -87,10 +87,10 @@ fn list(part: Part<'_>, items: &[Value], [key, path]: [&str; 2], found: &mut Vec
     }
 }
 
-/// What the parts of a list are called: by their name or else their kind, with a number where several have the same.
+/// Names the parts of a list by their name, or else their kind. Equal names get a number.
 pub(crate) fn names(items: &[Value]) -> Vec<String> {
     let mut taken = BTreeSet::new();
-    // The number by which a name is tried next: what was taken stays so.
+    // The number that is tried next for each name. Taken names stay taken.
     let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
     let one = |(index, item): (usize, &Value)| {
         let own = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
@@ -110,16 +110,16 @@ pub(crate) fn names(items: &[Value]) -> Vec<String> {
     items.iter().enumerate().map(one).collect()
 }
 
-/// A description without the unit that it ends with, and the unit.
+/// Splits a description into text and unit.
 fn unit(text: &str) -> (&str, &str) {
     let cut = text.trim_end_matches('.').strip_suffix(']').and_then(|text| text.rsplit_once(" ["));
     cut.unwrap_or((text, ""))
 }
 
-/// The document with the values of settings.
+/// Returns the document with the values of settings.
 ///
 /// # Errors
-/// [`Error::Unknown`] and [`Error::Setting`] for a table that is not the document's.
+/// [`Error::Unknown`] and [`Error::Setting`] for a table of another document.
 pub(crate) fn apply(document: &Value, entries: &[Entry], settings: &Settings) -> Result<Value, Error> {
     let mut document = document.clone();
     for Entry { setting, path, whole } in entries {
@@ -144,7 +144,7 @@ mod tests {
 
     use super::*;
 
-    /// As the names are described, one number after the other.
+    /// A direct implementation that tries one number after the other.
     fn one_by_one(items: &[Value]) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for (index, item) in items.iter().enumerate() {

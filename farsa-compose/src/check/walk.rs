@@ -1,40 +1,40 @@
-//! A text, checked value by value.
+//! Reads and checks a text value by value.
 
 use farsa_lab::{Error, limit_toml_tokens};
 use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::check::places::{Lines, Places, key};
 use crate::check::schema::{Kind, Part};
+use crate::check::source::{Lines, Source, key};
 use crate::name::{NAME, is_name};
 
-/// The most parts of a list.
+/// Most parts of a list.
 const MOST_PARTS: usize = 1000;
-/// The most errors that are told of one text.
+/// Most errors of one text.
 const MOST_ERRORS: usize = 20;
 
-/// The values of a text that fits a schema, and where they stand.
+/// Reads the values of a text that match a schema, with their places.
 ///
 /// # Errors
-/// [`Error::Usage`] for a text that is no TOML or has too many tokens, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
-/// what is wrong with a value; all with file, line and key. [`Error::Several`], by their lines, where more than one value is wrong.
-pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Places), Error> {
+/// [`Error::Usage`] for invalid TOML and too many tokens, [`Error::Unknown`] with the nearest key or word,
+/// [`Error::Setting`] for invalid values. Each has file, line and key. [`Error::Several`] for more than one, by line.
+pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Source), Error> {
     limit_toml_tokens(file, text)?;
     let lines = Lines::new(text);
-    let mut places = Places::new(file);
+    let mut source = Source::new(file);
     let table = DeTable::parse(text).map_err(|error| {
-        let place = error.span().map_or_else(|| file.to_owned(), |span| places.of_line(lines.of(span.start)));
+        let place = error.span().map_or_else(|| file.to_owned(), |span| source.of_line(lines.of(span.start)));
         Error::Usage(format!("{place}: {}", error.message()))
     })?;
     let part = Part::root(schema).ok_or_else(|| Error::Other("the schema is no table".into()))?;
-    let mut walk = Walk { lines: &lines, places: &mut places, errors: Vec::new() };
+    let mut walk = Walk { lines: &lines, source: &mut source, errors: Vec::new() };
     let value = walk.table(part, table.get_ref(), "", table.span().start);
     let mut errors = walk.errors;
     errors.sort_by_key(|(offset, _)| *offset);
     let mut errors: Vec<Error> = errors.into_iter().map(|(_, error)| error).collect();
     match value {
-        Ok(value) if errors.is_empty() => return Ok((value, places)),
+        Ok(value) if errors.is_empty() => return Ok((value, source)),
         Ok(_) => {}
         Err(last) => errors.push(last),
     }
@@ -43,13 +43,13 @@ pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Pla
 
 struct Walk<'w> {
     lines: &'w Lines,
-    places: &'w mut Places,
-    /// What was wrong so far, and where it stands.
+    source: &'w mut Source,
+    /// Errors so far, with their offsets.
     errors: Vec<(usize, Error)>,
 }
 
 impl Walk<'_> {
-    /// Keeps what is wrong with a value that stands there, and goes on with the next; no longer when there is enough.
+    /// Stores the error of a value, so that the next value is checked, until there are enough errors.
     fn kept(&mut self, offset: usize, value: Result<Value, Error>) -> Result<Value, Error> {
         match value {
             Err(error) if self.errors.len() + 1 < MOST_ERRORS => {
@@ -62,8 +62,8 @@ impl Walk<'_> {
 
     fn value(&mut self, part: Part<'_>, value: &Spanned<DeValue<'_>>, path: &str) -> Result<Value, Error> {
         let offset = value.span().start;
-        self.places.put(path, self.lines.of(offset));
-        let wrong = |why: String| self.places.wrong(path, why);
+        self.source.put(path, self.lines.of(offset));
+        let wrong = |why: String| self.source.wrong(path, why);
         match (part.kind(), value.get_ref()) {
             (Kind::Table, DeValue::Table(table)) => self.table(part, table, path, offset),
             (Kind::List, DeValue::Array(items)) => self.list(part, items, path),
@@ -89,43 +89,43 @@ impl Walk<'_> {
     }
 
     fn table(&mut self, part: Part<'_>, table: &DeTable<'_>, path: &str, offset: usize) -> Result<Value, Error> {
-        self.places.put(path, self.lines.of(offset));
+        self.source.put(path, self.lines.of(offset));
         if table.len() > MOST_PARTS {
-            return Err(self.places.wrong(path, format!("has {} keys; at most {MOST_PARTS}", table.len())));
+            return Err(self.source.wrong(path, format!("has {} keys; at most {MOST_PARTS}", table.len())));
         }
         let tag = |name: &str| {
             let (_, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
             value.get_ref().as_str()
         };
-        // The words of a tag are those of the schema, so that one lifetime is enough.
+        // Takes the word from the schema, whose lifetime is longer than the text's.
         let chosen = |keys: &[&str], name: &str| tag(name).and_then(|word| keys.iter().position(|key| *key == word));
         let all = part.keys(&|_| None);
         let word = all.tag.as_ref().and_then(|(name, words)| Some(words[chosen(words, name)?]));
         let keys = part.keys(&|_| word);
         if let Some((tag, words)) = keys.tag.as_ref().filter(|(name, _)| tag(name).is_none() && !has(table, name)) {
-            // Perhaps it is there under a wrong name.
+            // The tag may be misspelled.
             let mut valid = vec![*tag];
             for &word in words {
                 valid.extend(part.keys(&|_| Some(word)).named.into_iter().map(|(name, _)| name));
             }
             if let Some((name, _)) = table.iter().find(|(name, _)| !valid.contains(&name.get_ref().as_ref())) {
-                let place = self.places.of_line(self.lines.of(name.span().start));
+                let place = self.source.of_line(self.lines.of(name.span().start));
                 return Err(Error::unknown(&place, "key", name.get_ref(), valid));
             }
-            return Err(self.places.wrong(path, format!("lacks the key `{tag}`: one of {}", words.join(", "))));
+            return Err(self.source.wrong(path, format!("lacks the key `{tag}`: one of {}", words.join(", "))));
         }
-        // Before the other keys, which depend on it.
+        // The tag comes first, because the other keys depend on it.
         if let (Some((tag, words)), None) = (&keys.tag, word)
             && let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == tag)
         {
             let line = self.lines.of(name.span().start);
             let text = value.get_ref().as_str().ok_or_else(|| Error::Setting {
-                place: self.places.of_line(line),
+                place: self.source.of_line(line),
                 key: key(&format!("{path}/{tag}")),
                 why: "is not a text".into(),
             })?;
             let what = if *tag == "at" { "way to place something" } else { "kind" };
-            return Err(Error::unknown(&self.places.of_line(line), what, text, words.iter().copied()));
+            return Err(Error::unknown(&self.source.of_line(line), what, text, words.iter().copied()));
         }
         let (mut found, mut misnamed) = (Map::new(), false);
         for (name, value) in table {
@@ -135,19 +135,19 @@ impl Walk<'_> {
             let known = keys.named.iter().find(|(key, _)| *key == name).map(|(_, part)| *part);
             let Some(part) = known.or_else(|| part.any_key()) else {
                 let valid = keys.named.iter().map(|(name, _)| *name).chain(keys.tag.as_ref().map(|(tag, _)| *tag));
-                let error = Error::unknown(&self.places.of_line(line), "key", name, valid);
+                let error = Error::unknown(&self.source.of_line(line), "key", name, valid);
                 self.kept(offset, Err(error))?;
                 misnamed = true;
                 continue;
             };
             let value = self.value(part, value, &path);
             let value = self.kept(offset, value)?;
-            self.places.put(&path, line);
+            self.source.put(&path, line);
             found.insert(name.into(), value);
         }
-        // It may be there under a wrong name.
+        // The key may be misspelled.
         if let Some(missing) = keys.required.iter().find(|name| !misnamed && !found.contains_key(**name)) {
-            return Err(self.places.wrong(path, format!("lacks the key `{missing}`")));
+            return Err(self.source.wrong(path, format!("lacks the key `{missing}`")));
         }
         Ok(Value::Object(found))
     }
@@ -158,7 +158,7 @@ impl Walk<'_> {
         let (least, most) = (least.unwrap_or(0), most.unwrap_or(MOST_PARTS));
         if !(least..=most).contains(&count) {
             let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
-            return Err(self.places.wrong(path, format!("has {count} values where {wanted} are wanted")));
+            return Err(self.source.wrong(path, format!("has {count} values where {wanted} are wanted")));
         }
         let of_items = part.items();
         let item = |(index, item): (usize, &Spanned<DeValue<'_>>)| {
@@ -171,29 +171,29 @@ impl Walk<'_> {
     fn text(&self, part: Part<'_>, text: &str, path: &str) -> Result<Value, Error> {
         let choices = part.choices();
         if !choices.is_empty() && !choices.contains(&text) {
-            return Err(Error::unknown(&self.places.of(path), "choice", text, choices));
+            return Err(Error::unknown(&self.source.of(path), "choice", text, choices));
         }
         if part.pattern() == Some(NAME) && !is_name(text) {
             let why = "is not a name: 1 to 40 lower-case letters, digits, - and _, the first a letter or digit";
-            return Err(self.places.wrong(path, why));
+            return Err(self.source.wrong(path, why));
         }
         // Contents of files may be long.
         if path.starts_with("/files/") {
             return Ok(Value::from(text));
         }
         if text.chars().count() > 1000 || text.chars().any(char::is_control) {
-            return Err(self.places.wrong(path, "is longer than 1000 characters or has control characters"));
+            return Err(self.source.wrong(path, "is longer than 1000 characters or has control characters"));
         }
         Ok(Value::from(text))
     }
 }
 
-/// Whether a table has a key.
+/// Returns true if a table has a key.
 fn has(table: &DeTable<'_>, name: &str) -> bool {
     table.iter().any(|(key, _)| key.get_ref() == name)
 }
 
-/// Whether a number is within its range.
+/// Checks a number against its range.
 fn within(part: Part<'_>, number: f64) -> Result<(), String> {
     let [least, most] = part.range();
     let (least, most) = (least.unwrap_or(f64::MIN), most.unwrap_or(f64::MAX));

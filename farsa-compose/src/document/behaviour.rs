@@ -1,25 +1,25 @@
-//! What there is to say of an individual beside its fitness.
+//! Objectives and measures of an individual in addition to its fitness.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What strategies with several objectives or with an archive look at beside the fitness: means over the trials of what terms
-/// measure, before their weights.
+/// Objectives and measures for strategies that use more than the fitness: means over the trials of the terms, before
+/// their weights.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct BehaviourOfTerms {
-    /// Objectives beside the fitness, in their order.
+    /// Objectives in addition to the fitness, in this order.
     pub objectives: Vec<ObjectiveTerm>,
-    /// What tells behaviours apart.
+    /// Terms that describe a behavior.
     pub descriptors: Vec<DescriptorTerm>,
 }
 
 /// A term that is an objective.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ObjectiveTerm {
-    /// Its name.
+    /// Name of the term.
     pub term: String,
-    /// Whether less is better.
+    /// Lower values are better.
     #[serde(default)]
     pub less: bool,
 }
@@ -27,9 +27,9 @@ pub struct ObjectiveTerm {
 /// A term that describes a behaviour.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DescriptorTerm {
-    /// Its name.
+    /// Name of the term.
     pub term: String,
-    /// The range that an archive divides; a value beyond it counts as the nearest end.
+    /// The range that an archive divides. Values beyond it count as the nearest end.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: [f64; 2],
 }

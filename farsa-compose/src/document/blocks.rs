@@ -8,8 +8,9 @@ use crate::name::NAME;
 
 /// Clusters of neurons, and links between sensors, clusters and motors.
 ///
-/// In a step the clusters are computed in the order in which they stand here, then the outputs, which drive the motors, together.
-/// A link from a cluster further down, from the cluster itself or from motors brings what they were after the step before.
+/// A step computes the clusters in the order of this list, then all outputs together, which drive the motors.
+///
+/// A link from a later cluster, from the cluster itself or from motors carries the values of the previous step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Blocks {
     /// Clusters of neurons, in the order in which they are computed.
@@ -17,43 +18,43 @@ pub struct Blocks {
     pub clusters: Vec<Cluster>,
     /// Links, in the order in which a sum adds them.
     pub links: Vec<Link>,
-    /// Leaks, from what the smallest gene stands for to what the largest does.
+    /// Range of leaks, from the smallest gene to the largest.
     #[serde(default = "leaks")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub leaks: [f64; 2],
-    /// Whether outputs have biases.
+    /// Adds a bias to each output.
     #[serde(default = "yes")]
     pub output_biases: bool,
-    /// Whether outputs are leaky integrators.
+    /// Makes outputs leaky integrators.
     #[serde(default)]
     pub output_leaks: bool,
 }
 
-/// Neurons that are alike.
+/// A group of equal neurons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cluster {
-    /// What links, settings and parameters call it.
+    /// Name for links, settings and parameters.
     #[schemars(regex(pattern = NAME))]
     pub name: String,
-    /// How many neurons there are.
+    /// Number of neurons.
     #[schemars(range(min = 1, max = 10000))]
     pub neurons: u32,
-    /// What the neurons make of their sums.
+    /// Activation function of the neurons.
     #[serde(default)]
     pub activation: ClusterActivation,
-    /// What a sum is multiplied by before.
+    /// Factor of the net input.
     #[serde(default = "slope")]
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub slope: f64,
-    /// Whether each neuron has a bias.
+    /// Adds a bias to each neuron.
     #[serde(default = "yes")]
     pub biases: bool,
-    /// Whether the neurons are leaky integrators.
+    /// Makes the neurons leaky integrators.
     #[serde(default)]
     pub leaks: bool,
 }
 
-/// What the neurons of a cluster make of their sums; all are bounded.
+/// Activation functions, all of them bounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClusterActivation {
@@ -66,25 +67,23 @@ pub enum ClusterActivation {
     Step,
 }
 
-/// A link: a weight from every neuron of one end to every neuron of the other.
+/// A link with a weight from every neuron of one end to every neuron of the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
-    /// The name of a sensor, cluster or motor; `sensors` and `motors` are all of these.
+    /// Name of a sensor, cluster or motor. `sensors` and `motors` refer to all of them.
     pub from: String,
-    /// The name of a cluster or motor; `motors` are all of these.
+    /// Name of a cluster or motor. `motors` refers to all motors.
     pub to: String,
-    /// So many steps later than without [steps].
+    /// Additional delay [steps].
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000))]
     pub delay: u32,
 }
 
-/// The default range of leaks.
 pub(super) fn leaks() -> [f64; 2] {
     [0.0, 1.0]
 }
 
-/// The default slope.
 pub(super) fn slope() -> f64 {
     1.0
 }

@@ -1,4 +1,4 @@
-//! How a trial starts, goes on and ends.
+//! Start and end of a trial.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,10 +10,10 @@ pub struct Episode {
     /// Most steps of a trial.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub steps: u32,
-    /// Trials of an evaluation, each with a start of its own.
+    /// Trials of an evaluation, each with its own start.
     #[schemars(range(min = 1, max = 100_000))]
     pub trials: u32,
-    /// What ends a trial before its last step.
+    /// Events that end a trial before its last step.
     pub ends: Vec<Ending>,
 }
 
@@ -23,105 +23,106 @@ impl Default for Episode {
     }
 }
 
-/// What ends a trial.
+/// An event that ends a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ending {
-    /// A robot runs into something.
+    /// A robot collides with something.
     Collision,
     /// All conditions of success hold.
     Success,
-    /// All robots are dead, by the rules of `foraging`.
+    /// All robots are dead according to `foraging`.
     Death,
 }
 
-/// Where a trial puts something.
+/// A placement at the start of a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Start {
-    /// A thing by its name; `robot` for all robots one after the other, `robot-1`, `robot-2` for one of them, or a group of them; a joint.
+    /// Name of a thing, a joint or a group of robots. `robot` places all robots in turn, and `robot-1` or `robot-2` a
+    /// single one.
     pub place: String,
-    /// How.
+    /// The kind of placement.
     #[serde(flatten)]
     pub how: Placing,
 }
 
-/// How something is put somewhere; robots have a heading drawn uniformly after their place.
+/// Kinds of placements. The heading of a robot is drawn uniformly after its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "at", rename_all = "kebab-case")]
 pub enum Placing {
-    /// Uniformly where there is room.
+    /// Uniformly in free space.
     Anywhere {
         /// Least distance from the walls [m].
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         walls: f64,
-        /// Least distance from all that was placed before [m]; of areas from other areas.
+        /// Least distance from everything placed earlier [m], for areas from other areas.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         apart: f64,
     },
-    /// Uniformly near a thing, where there is room.
+    /// Uniformly in free space near a thing.
     Near {
-        /// Which thing.
+        /// Name of the thing.
         of: String,
-        /// Greatest distance of the middles [m].
+        /// Greatest distance between the centers [m].
         #[schemars(range(min = 0.0, max = 1000.0))]
         within: f64,
         /// Least distance from the walls [m].
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         walls: f64,
-        /// Least distance from all that was placed before [m].
+        /// Least distance from everything placed earlier [m].
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         apart: f64,
     },
-    /// In any direction from a thing, its middle from that of the thing at a distance drawn uniformly.
+    /// In a uniformly drawn direction from a thing, at a uniformly drawn distance between the centers.
     Around {
-        /// Which thing.
+        /// Name of the thing.
         of: String,
-        /// The least and the greatest distance [m].
+        /// Least and greatest distance [m].
         #[schemars(inner(range(min = 0.0, max = 1000.0)))]
         distance: [f64; 2],
     },
-    /// Uniformly in a box; beside a robot with joints.
+    /// Uniformly in a box, for experiments with joints.
     InBox {
-        /// The least x, y and z [m].
+        /// Least x, y and z [m].
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         low: [f64; 3],
-        /// The greatest x, y and z [m].
+        /// Greatest x, y and z [m].
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         high: [f64; 3],
-        /// Least distance from the things that were placed before [m].
+        /// Least distance from everything placed earlier [m].
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         apart: f64,
     },
-    /// On one of these points, drawn from those that are free of the things that were placed before.
+    /// On one of these points, drawn from those without an earlier thing.
     OneOf {
-        /// x and y of each, and z beside a robot with joints [m].
+        /// x and y of each point, and z for experiments with joints [m].
         #[schemars(length(min = 1, max = 100))]
         points: Vec<Vec<f64>>,
-        /// What was placed `one-of` as many points before: the point of the same number is taken, free or not; of several
-        /// robots, that of the last.
+        /// An earlier placement `one-of` the same number of points. The point of the same number is taken, even if it
+        /// is occupied. For several robots it is the point of the last one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         like: Option<String>,
     },
-    /// A joint at a position drawn uniformly.
+    /// A joint at a uniformly drawn position.
     Turned {
-        /// The least position [rad or m].
+        /// Least position [rad or m].
         #[schemars(range(min = -1e6, max = 1e6))]
         low: f64,
-        /// The greatest position [rad or m].
+        /// Greatest position [rad or m].
         #[schemars(range(min = -1e6, max = 1e6))]
         high: f64,
     },
-    /// Always there; a robot with this heading.
+    /// At a fixed point, and for robots with a fixed heading.
     Fixed {
-        /// Where its middle is: x and y, and z beside a robot with joints [m].
+        /// Center: x and y, and z for experiments with joints [m].
         #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
         point: Vec<f64>,
-        /// Where it looks to, counter-clockwise from the x axis [deg].
+        /// Heading, counter-clockwise from the x axis [deg].
         #[serde(default)]
         #[schemars(range(min = -360.0, max = 360.0))]
         heading: f64,

@@ -1,67 +1,67 @@
-//! The network of the original FARSA.
+//! The network of the 2013 program.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::yes;
 
-/// Logistic neurons as the original's Evonet connects them, with genes in its order and with its meaning: `.gen` files of the
-/// original are genotypes of it.
+/// Logistic neurons connected as in Evonet, the network of the 2013 program, with its order and reading of genes.
+/// `.gen` files of that program are genotypes of this network.
 ///
-/// The range of weights goes from the largest down, `[5.0, -5.0]`, as there. A leak is the size of its gene's number as a share
-/// of the largest weight, so that both ends of the range are a leak of 1.
+/// The range of weights begins with the largest, `[5.0, -5.0]`, as in the source. A leak is the magnitude of its
+/// gene's value divided by the largest weight, so both ends of the range mean a leak of 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the original's file")]
 pub struct Evonet {
-    /// A file in which the original keeps a network, `.net` or `.phe`, beside this one; it says what the keys below say, but for
-    /// the largest bias and gain.
+    /// Name of a network file of the 2013 program (`.net` or `.phe`) in the same folder. It replaces the keys below
+    /// except the largest bias and gain.
     ///
-    /// All parameters are searched for but those to which a `.phe` file gives a number with a mutation rate of 0, which keep it.
+    /// Parameters with a value and a mutation rate of 0 in a `.phe` file are fixed. All others are searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Hidden neurons.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000))]
     pub hidden: u32,
-    /// What hidden neurons are.
+    /// Kind of the hidden neurons.
     #[serde(default)]
     pub hidden_neurons: EvonetNeurons,
-    /// Whether hidden neurons have biases.
+    /// Adds biases to hidden neurons.
     #[serde(default = "yes")]
     pub hidden_biases: bool,
-    /// Whether outputs have biases.
+    /// Adds biases to outputs.
     #[serde(default = "yes")]
     pub output_biases: bool,
-    /// Whether hidden neurons hear each other a step later.
+    /// Links hidden neurons to each other with a delay of one step.
     #[serde(default)]
     pub recurrent_hidden: bool,
-    /// Whether outputs hear each other a step later.
+    /// Links outputs to each other with a delay of one step.
     #[serde(default)]
     pub recurrent_outputs: bool,
-    /// Whether outputs hear the inputs beside the hidden neurons; without hidden neurons they do.
+    /// Links inputs to outputs in addition to the hidden neurons. Always true without hidden neurons.
     #[serde(default)]
     pub direct: bool,
-    /// Whether outputs have leaks.
+    /// Adds leaks to outputs.
     #[serde(default)]
     pub output_leaks: bool,
-    /// The largest bias.
+    /// Largest bias.
     #[serde(default = "largest_bias")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub largest_bias: f64,
-    /// The largest gain, of neurons that have gains in a file.
+    /// Largest gain of neurons with gains in a file.
     #[serde(default = "largest_gain")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub largest_gain: f64,
 }
 
-/// What the hidden neurons of the original's network are.
+/// Kinds of hidden neurons of the 2013 program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EvonetNeurons {
     /// Logistic.
     #[default]
     Logistic,
-    /// Logistic, with a leak each.
+    /// Logistic, each with a leak.
     Leaky,
     /// 1 for a net input of at least 0, and 0 below.
     Binary,

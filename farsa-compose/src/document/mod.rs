@@ -1,17 +1,4 @@
-//! What a file says, as data: the schema of the format is made of these types.
-//!
-//! - `world`: the arena and what stands in it
-//! - `robot`: the robots
-//! - `sensor`: what they sense
-//! - `motor`: what they do
-//! - `wrapper`: what changes values on their way from a sensor or to a motor
-//! - `network`: what connects sensors with motors
-//! - `blocks`: a network of clusters of neurons and links between them
-//! - `evonet`: the network of the original FARSA
-//! - `episode`: how a trial starts, goes on and ends
-//! - `behaviour`: what there is to say of an individual beside its fitness
-//! - `foraging`: food and energy
-//! - `reward`: what a trial earns, and when it has succeeded
+//! The content of a file as data, from which the schema of the format is generated.
 
 use std::collections::BTreeMap;
 
@@ -20,17 +7,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::name::NAME;
 
+/// Objectives and measures in addition to the fitness.
 mod behaviour;
+/// Networks of clusters and links.
 mod blocks;
+/// Start and end of a trial.
 mod episode;
+/// The network of the 2013 program.
 mod evonet;
+/// Food and energy.
 mod foraging;
+/// Motors.
 mod motor;
+/// Networks.
 mod network;
+/// Terms of the fitness, success and failure.
 mod reward;
+/// Robots.
 mod robot;
+/// Sensors.
 mod sensor;
+/// The world and its objects.
 mod world;
+/// Wrappers of sensors and motors.
 mod wrapper;
 
 pub use behaviour::{BehaviourOfTerms, DescriptorTerm, ObjectiveTerm};
@@ -46,76 +45,76 @@ pub use sensor::{AxesName, Camera, ColorRange, Eye, InfraredModel, MeasuredBody,
 pub use world::{Engine, Object, ObjectKind, World};
 pub use wrapper::Wrapper;
 
-/// An experiment: robots in a world, what they sense, do and compute with, how a trial goes and what it earns.
+/// An experiment: robots in a world, their sensors, motors and network, the course of a trial and its reward.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Document {
-    /// What is asked, in one line.
+    /// The question of the experiment, in one line.
     #[serde(default)]
     pub summary: String,
     /// The arena.
     #[serde(default)]
     pub world: World,
-    /// What stands in the arena beside robots, each by a name of its own.
+    /// Things in the arena other than robots, each with its own name.
     #[serde(default)]
     pub objects: Vec<Object>,
-    /// The robot, or the robots of a team: all alike, with one genome.
+    /// The robot, or the robots of a team with one genome.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<Robot>,
-    /// Robots that are not all alike, in groups; in place of `robot`.
+    /// Groups of different robots, instead of `robot`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<RobotGroup>,
-    /// Whose genomes robots have.
+    /// Assignment of genomes to robots.
     #[serde(default)]
     pub team: Team,
-    /// What each robot senses, in the order of the network's inputs.
+    /// Sensors of each robot, in the order of the network's inputs.
     pub sensors: Vec<Sensor>,
-    /// What each robot does, in the order of the network's outputs.
+    /// Motors of each robot, in the order of the network's outputs.
     pub motors: Vec<Motor>,
-    /// What turns the sensors' values into the motors'.
+    /// The network from sensors to motors.
     pub network: Network,
     /// Steps and trials.
     #[serde(default)]
     pub episode: Episode,
-    /// Where a trial puts things, in this order; what is not named stays where its `at` says.
+    /// Placements at the start of a trial, in this order. All other things stay at their `at`.
     #[serde(default)]
     pub start: Vec<Start>,
-    /// Food and energy, if there are any.
+    /// Food and energy, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foraging: Option<Foraging>,
-    /// What a trial earns: the terms of the fitness.
+    /// Terms of the fitness.
     pub reward: Vec<Reward>,
-    /// How the terms become one number.
+    /// Combination of the terms into one number.
     #[serde(default)]
     pub fitness: Fitness,
-    /// When a trial has succeeded: if all of these hold at its end; by default it never does.
+    /// Conditions of success. A trial succeeds if all of them hold at its end. Without conditions it never does.
     #[serde(default)]
     pub success: Vec<Condition>,
-    /// When a trial has failed, which ends it: if any of these holds after a step.
+    /// Conditions of failure. A trial fails and ends if any of them holds after a step.
     #[serde(default)]
     pub failure: Vec<Condition>,
-    /// What strategies with several objectives or with an archive look at.
+    /// Objectives and measures for strategies that use more than the fitness.
     #[serde(default)]
     pub behaviour: BehaviourOfTerms,
-    /// Contents of the files that others keys name, by their names. The text of a run has them, so that it needs no other file.
+    /// Contents of the files that other keys name, by name. The text of a run contains them.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
-    /// Conditions that are compared, the default one first: at most a hundred, each of which is checked as an experiment.
+    /// Conditions for comparison, the default first. At most a hundred, each checked as an experiment.
     #[serde(default)]
     #[schemars(length(max = 100))]
     pub conditions: Vec<ConditionOfRuns>,
-    /// The strategy by its `name`, and its settings of the section `strategy`.
+    /// The strategy by its `name`, and the settings of its section `strategy`.
     #[serde(default)]
     pub strategy: BTreeMap<String, serde_json::Value>,
-    /// The settings of the section `evolution`: generations, population and what else the strategy has.
+    /// The settings of the section `evolution`, such as generations and population.
     #[serde(default)]
     pub evolution: BTreeMap<String, serde_json::Value>,
-    /// Genes of strategies that search with bits.
+    /// Genes of strategies with bits.
     #[serde(default)]
     pub genome: Genome,
 }
 
 impl Document {
-    /// Whether its robot has joints instead of wheels in a plane.
+    /// Returns true for a robot with joints instead of wheels.
     pub(crate) fn has_joints(&self) -> bool {
         self.robot.as_ref().is_some_and(|robot| robot.kind.has_joints())
     }
@@ -124,15 +123,15 @@ impl Document {
 /// A condition of runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConditionOfRuns {
-    /// What it is called.
+    /// Name of the condition.
     #[schemars(regex(pattern = NAME))]
     pub name: String,
-    /// The settings that differ from what the file says, by their full keys in quotes.
+    /// Changed settings, by their full keys in quotes.
     #[serde(default)]
     pub settings: BTreeMap<String, serde_json::Value>,
 }
 
-/// How parameters are encoded by strategies that search with bits.
+/// Encoding of parameters in bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Genome {
     /// Bits of a gene.
@@ -146,7 +145,6 @@ impl Default for Genome {
     }
 }
 
-/// The default of what is there unless it is switched off.
 fn yes() -> bool {
     true
 }

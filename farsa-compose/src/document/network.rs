@@ -1,4 +1,4 @@
-//! What connects sensors with motors.
+//! Networks.
 
 use std::collections::BTreeMap;
 
@@ -9,40 +9,40 @@ use crate::document::blocks::{Blocks, leaks, slope};
 use crate::document::evonet::Evonet;
 use crate::name::NAME;
 
-/// A network; its numbers of inputs and outputs follow from sensors and motors.
+/// A network, whose numbers of inputs and outputs follow from sensors and motors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Network {
-    /// Weights and biases, from what the smallest gene stands for to what the largest does.
+    /// Range of weights and biases, from the smallest gene to the largest.
     #[serde(default = "weights")]
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub weights: [f64; 2],
-    /// Parameters by their names that nothing searches for, with their values.
+    /// Fixed parameters, by name and value.
     #[serde(default)]
     pub fixed: BTreeMap<String, f64>,
-    /// Lists of names of parameters that are always equal: one is searched for in the place of all.
+    /// Lists of parameters with one common value.
     #[serde(default)]
     pub shared: Vec<Vec<String>>,
-    /// What it is.
+    /// The kind of network.
     #[serde(flatten)]
     pub kind: NetworkKind,
 }
 
-/// The kinds of networks. Neurons are logistic, with slope 1 where there is no other.
+/// The kinds of networks. Neurons are logistic with slope 1 unless a key changes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum NetworkKind {
-    /// One layer, without memory.
+    /// One layer without memory.
     Perceptron {
-        /// In which order the genes are.
+        /// Order of the genes.
         #[serde(default)]
         order: WeightOrder,
     },
-    /// A hidden layer, all linked to all, of neurons that are leaky integrators.
+    /// A fully connected hidden layer of leaky integrators.
     Leaky {
         /// Hidden neurons.
         #[schemars(range(min = 1, max = 10000))]
         hidden: u32,
-        /// Leaks, from what the smallest gene stands for to what the largest does.
+        /// Range of leaks, from the smallest gene to the largest.
         #[serde(default = "leaks")]
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         leaks: [f64; 2],
@@ -51,49 +51,49 @@ pub enum NetworkKind {
         #[schemars(range(min = 0.001, max = 1000.0))]
         slope: f64,
     },
-    /// Wires from inputs to outputs, as they stand.
+    /// Wires from inputs to outputs.
     Wired {
-        /// What each output's sum begins with, in the order of the outputs.
+        /// Biases of the outputs, in their order.
         #[schemars(inner(range(min = -1e6, max = 1e6)))]
         bias: Vec<f64>,
-        /// Whether other biases are searched for.
+        /// Searches other biases.
         #[serde(default)]
         search_bias: bool,
-        /// What the sums become.
+        /// Activation function of the outputs.
         #[serde(default)]
         activation: Activation,
-        /// The wires, in the order in which they are added.
+        /// Wires in the order of their addition.
         wires: Vec<Wire>,
     },
-    /// A continuous-time recurrent network, all linked to all; the last neurons are the outputs.
+    /// A fully connected continuous-time recurrent network. The last neurons are the outputs.
     Ctrnn {
-        /// Neurons, outputs among them.
+        /// Neurons including outputs.
         #[schemars(range(min = 1, max = 10000))]
         neurons: u32,
-        /// Time constants, from what the smallest gene stands for to what the largest does [s].
+        /// Range of time constants, from the smallest gene to the largest [s].
         #[schemars(inner(range(min = 0.0001, max = 10000.0)))]
         time_constants: [f64; 2],
     },
-    /// Hidden layers one after the other, without memory.
+    /// Feed-forward hidden layers without memory.
     FeedForward {
         /// Hidden neurons.
         #[serde(default)]
         #[schemars(range(min = 0, max = 10000))]
         hidden: u32,
     },
-    /// A hidden layer that hears itself a step later.
+    /// A hidden layer with links to itself, delayed by one step.
     Elman {
         /// Hidden neurons.
         #[schemars(range(min = 1, max = 10000))]
         hidden: u32,
     },
-    /// A hidden layer that hears the outputs a step later.
+    /// A hidden layer with links from the outputs, delayed by one step.
     Jordan {
         /// Hidden neurons.
         #[schemars(range(min = 1, max = 10000))]
         hidden: u32,
     },
-    /// Hidden neurons and outputs, which all hear each other a step later.
+    /// Hidden neurons and outputs with links among all of them, delayed by one step.
     FullyRecurrent {
         /// Hidden neurons.
         #[serde(default)]
@@ -102,48 +102,48 @@ pub enum NetworkKind {
     },
     /// Clusters of neurons, and links between sensors, clusters and motors.
     Blocks(Blocks),
-    /// The network of the original FARSA.
+    /// The network of the 2013 program.
     Evonet(Evonet),
 }
 
-/// A wire of a network that is wired by hand: it adds to an output so many times the sum of some inputs.
+/// A wire that adds to an output the weighted sum of some inputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wire {
-    /// What settings and parameters call it; by default its number.
+    /// Name for settings and parameters, by default the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
-    /// Names of inputs, such as `light 1`, in the order in which they are added.
+    /// Names of inputs, such as `light 1`, in the order of addition.
     pub from: Vec<String>,
-    /// The name of an output, such as `wheels left`.
+    /// Name of an output, such as `wheels left`.
     pub to: String,
-    /// What each input is multiplied by.
+    /// Factor of the inputs.
     #[schemars(range(min = -1e6, max = 1e6))]
     pub weight: f64,
-    /// Whether another weight is searched for, between the ends of `weights`.
+    /// Searches another weight between the ends of `weights`.
     #[serde(default)]
     pub searched: bool,
 }
 
-/// What the sum of an output becomes.
+/// Activation functions of outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Activation {
-    /// Itself, cut at 0 and 1.
+    /// Identity, clamped to 0 and 1.
     #[default]
     Clamp,
-    /// Its logistic function.
+    /// Logistic function.
     Logistic,
 }
 
-/// In which order the genes of a perceptron are.
+/// Orders of the genes of a perceptron.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum WeightOrder {
-    /// The weights input by input, then the biases.
+    /// Weights input by input, then biases.
     #[default]
     Inputs,
-    /// The biases, then the weights output by output.
+    /// Biases, then weights output by output.
     Outputs,
 }
 

@@ -1,4 +1,4 @@
-//! What a trial earns, and when it has succeeded.
+//! Terms of the fitness, success and failure.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,243 +8,243 @@ use crate::name::NAME;
 /// A term of the fitness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reward {
-    /// What logs, tests and other terms call it; by default its kind.
+    /// Name for logs, tests and other terms, by default the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
-    /// What it is multiplied by; below 0 it is a cost, with 0 it is measured and no part of the fitness.
+    /// Factor of the term. A negative one makes it a cost. With 0 it is only measured and not part of the fitness.
     #[serde(default = "one")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub weight: f64,
-    /// What of a trial's steps counts.
+    /// Aggregation over the steps of a trial.
     #[serde(default)]
     pub over: Over,
-    /// The robot that it is about, from 1; by default all of them.
+    /// Number of the robot, from 1, by default all robots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000))]
     pub robot: Option<u32>,
-    /// The group of `robots` that it is about; by default all of them, or those that evolve.
+    /// Name of a group of `robots`, by default all robots, or those that evolve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
-    /// The name of another term: only steps count in which that is more than 0.
+    /// Name of another term. Only steps with a positive value of that term count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<String>,
-    /// Two ends between which the value of a step is cut.
+    /// Lower and upper limit of the value of a step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub clip: Option<[f64; 2]>,
-    /// What it is.
+    /// The kind of term.
     #[serde(flatten)]
     pub kind: RewardKind,
 }
 
-/// The kinds of terms; what is measured of all robots is their mean.
+/// The kinds of terms. Terms of several robots are their mean.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RewardKind {
-    /// 1 while the surfaces of robot and thing are less than this apart.
+    /// 1 while the surfaces of robot and thing are closer than this.
     Near {
-        /// Which thing.
+        /// Name of the thing.
         object: String,
-        /// How far at most [m].
+        /// Greatest distance [m].
         #[schemars(range(min = 0.0, max = 1000.0))]
         within: f64,
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Of which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
-    /// How far the robot's middle is from that of a thing [m].
+    /// Distance between the centers of robot and thing [m].
     Distance {
-        /// Which thing.
+        /// Name of the thing.
         object: String,
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Of which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
-    /// How much nearer to a thing the robot is than at the start [m].
+    /// Decrease of the distance to a thing since the start [m].
     Approach {
-        /// Which thing.
+        /// Name of the thing.
         object: String,
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Of which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
-    /// How far off its heading the robot sees a thing [rad].
+    /// Angle between heading and thing [rad].
     Angle {
-        /// Which thing.
+        /// Name of the thing.
         object: String,
     },
     /// 1 while the robot touches something.
     Touch {
-        /// Bodies of a robot with joints that count; none is all of them.
+        /// Bodies of a robot with joints, by default all of them.
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
-    /// How far the robot is from where it started [m].
+    /// Distance of the robot from its start [m].
     Displacement {
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// How far a thing is from where it stood at the start [m].
+    /// Distance of a thing from its start [m].
     Moved {
-        /// Which thing.
+        /// Name of the thing.
         object: String,
     },
-    /// How fast the robot moves [m/s].
+    /// Speed of the robot [m/s].
     Speed {
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// How far the robot came in this step along its heading [m].
+    /// Displacement in this step along the heading [m].
     Forward {
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// How far the robot came in this step along a direction of the world [m].
+    /// Displacement in this step along a direction of the world [m].
     Progress {
-        /// The direction, of any length.
+        /// Direction, of any length.
         #[schemars(inner(range(min = -1.0, max = 1.0)))]
         along: [f64; 3],
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// Where a point of the robot is along a direction of the world, from its origin [m]: `[1.0, 0.0, 0.0]` for x.
+    /// Position of a point of the robot along a direction of the world, from its origin [m]: `[1.0, 0.0, 0.0]` for x.
     Position {
-        /// The direction, of any length.
+        /// Direction, of any length.
         #[schemars(inner(range(min = -1.0, max = 1.0)))]
         along: [f64; 3],
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Of which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
-    /// How high a point of the robot is [m].
+    /// Height of a point of the robot [m].
     Height {
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Of which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
-    /// How upright a body is: 1 upright .. 0 lying .. -1 upside down.
+    /// Uprightness of a body: 1 upright .. 0 lying .. -1 upside down.
     Upright {
-        /// Of which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// How fast joints turn in the mean [rad/s or m/s].
+    /// Mean speed of joints [rad/s or m/s].
     JointSpeed {
-        /// Which, of a robot with joints; none is all.
+        /// Names of joints of a robot with joints, by default all.
         #[serde(default)]
         joints: Vec<String>,
     },
-    /// How fast the wheels turn in the mean, as a share of the greatest speed: 0 to 1.
+    /// Mean speed of the wheels, as a share of the greatest speed: 0 to 1.
     WheelSpeed {},
-    /// How much the wheels turn alike: 1 both alike .. 0 against each other.
+    /// Similarity of the wheel speeds: 1 equal .. 0 opposite.
     StraightOn {},
-    /// The largest value of a sensor's channels.
+    /// Largest value of a sensor's channels.
     Sensor {
-        /// Which sensor.
+        /// Name of the sensor.
         sensor: String,
     },
-    /// 1 while the robot's middle is in an area.
+    /// 1 while the robot's center is in an area.
     InArea {
-        /// Which disc or rectangle.
+        /// Name of a disc or rectangle.
         area: String,
-        /// Others that count as well.
+        /// Further areas.
         #[serde(default)]
         or: Vec<String>,
     },
-    /// How near the other robots are: 1 at one place .. 0 at a mean distance of the arena's diagonal.
+    /// Proximity of the other robots: 1 at one place .. 0 at a mean distance of the arena's diagonal.
     NearOthers {},
-    /// Pieces of food that the team has brought to its nest, by the rules of `foraging`.
+    /// Pieces of food that the team has delivered to its nest, according to `foraging`.
     Food {},
-    /// The robot's energy, 0 dead .. 1, by the rules of `foraging`.
+    /// Energy of the robot, 0 dead .. 1, according to `foraging`.
     Energy {},
-    /// 1 while the robot lives, by the rules of `foraging`.
+    /// 1 while the robot is alive, according to `foraging`.
     Alive {},
     /// 1 while the robot's attachment device holds something.
     Held {},
-    /// The squares of the motors' values, of 0 to 1, in the mean.
+    /// Mean square of the motor values, each from 0 to 1.
     Effort {},
-    /// How far the motors' values are from 1/2, as a share, squared and in the mean: 0 at rest .. 1.
+    /// Mean square of the motor values' distance from 1/2, as a share: 0 at rest .. 1.
     Control {},
     /// 1 in every step.
     Steps {},
 }
 
-/// What of a trial's steps counts.
+/// Aggregations over the steps of a trial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Over {
-    /// The sum over the steps, divided by the most steps that a trial has.
+    /// Sum over the steps, divided by the greatest number of steps.
     #[default]
     Mean,
-    /// The sum over the steps.
+    /// Sum over the steps.
     Sum,
-    /// The value after the last step.
+    /// Value after the last step.
     End,
-    /// The largest value of a step.
+    /// Largest value of a step.
     Most,
 }
 
-/// How the terms become one number.
+/// Combination of the terms into one number.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Fitness {
-    /// Whether the terms of a trial are multiplied instead of added.
+    /// Multiplies the terms of a trial instead of adding them.
     pub product: bool,
-    /// How trials become one number.
+    /// Combination of trials into one number.
     pub trials: Trials,
 }
 
-/// How trials become one number.
+/// Combinations of trials into one number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trials {
-    /// By their mean.
+    /// Mean.
     #[default]
     Mean,
-    /// By their sum.
+    /// Sum.
     Sum,
-    /// By the worst of them.
+    /// Worst trial.
     Worst,
 }
 
-/// A condition of success, on the last step's value of a term before its weight.
+/// A condition on the last step's value of a term, before its weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Condition {
-    /// The name of a term.
+    /// Name of a term.
     pub term: String,
-    /// It has to be more than this.
+    /// Lower limit. The value must be greater.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub above: Option<f64>,
-    /// It has to be less than this.
+    /// Upper limit. The value must be less.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub below: Option<f64>,

@@ -1,16 +1,16 @@
-//! The robots.
+//! Robots.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::name::NAME;
 
-/// A robot on two wheels or with joints; what is not given is the named robot's own.
+/// A robot on two wheels or with joints. Defaults are those of the named robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Robot {
-    /// Which one.
+    /// The kind of robot.
     pub kind: RobotKind,
-    /// How many there are, all alike and with one genome.
+    /// Number of robots, all equal and with one genome.
     #[serde(default = "one")]
     #[schemars(range(min = 1, max = 1000))]
     pub count: u32,
@@ -18,46 +18,46 @@ pub struct Robot {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 10.0))]
     pub radius: Option<f64>,
-    /// The fastest that it drives [m/s].
+    /// Greatest speed [m/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0001, max = 10.0))]
     pub speed: Option<f64>,
-    /// How far its infrared sensors see from the hull [m].
+    /// Range of the infrared sensors, from the hull [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 10.0))]
     pub infrared_range: Option<f64>,
     /// The URDF or MJCF file of a `model`, in the folder of the experiment's file or below it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// Whether the first link of a URDF moves freely instead of standing in the world.
+    /// Lets the first link of a URDF move freely instead of fixing it to the world.
     #[serde(default)]
     pub floating: bool,
-    /// Where the origin of a robot with joints is [m].
+    /// Origin of a robot with joints [m].
     #[serde(default)]
     #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
     pub base: [f64; 3],
 }
 
-/// Robots that are alike.
+/// A group of equal robots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RobotGroup {
-    /// What other parts of the file call them; if they evolve by themselves, their population.
+    /// Name for other parts of the file, and of the population if groups evolve separately.
     #[schemars(regex(pattern = NAME))]
     pub name: String,
-    /// The colour of their hulls, as cameras see it: red, green and blue.
+    /// Color of the hulls for cameras: red, green and blue.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub color: Option<[f64; 3]>,
-    /// What they are.
+    /// The robots of the group.
     #[serde(flatten)]
     pub robot: Robot,
 }
 
-/// Whose genomes robots have.
+/// Assignment of genomes to robots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Team {
-    /// Whether each group of `robots` evolves as a population of its own; else all robots have one genome.
+    /// Evolves each group of `robots` as a separate population. Otherwise all robots have one genome.
     pub coevolution: bool,
 }
 
@@ -65,24 +65,24 @@ fn one() -> u32 {
     1
 }
 
-/// The robots that FARSA knows.
+/// Robots of FARSA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RobotKind {
-    /// 35 mm, eight infrared sensors.
+    /// 35 mm radius, eight infrared sensors.
     Khepera,
-    /// 35 mm, eight infrared sensors, three of the ground, LEDs, a signal.
+    /// 35 mm radius, eight infrared sensors, three ground sensors, LEDs, a signal.
     EPuck,
-    /// 85 mm, 24 infrared sensors, twelve of the ground, LEDs, a signal, an attachment device.
+    /// 85 mm radius, 24 infrared sensors, twelve ground sensors, LEDs, a signal, an attachment device.
     Marxbot,
-    /// An arm of seven joints that muscles move, and a hand of twenty.
+    /// An arm of seven joints with muscles, and a hand of twenty joints.
     ArmAndHand,
-    /// One from a URDF or MJCF file.
+    /// A model from a URDF or MJCF file.
     Model,
 }
 
 impl RobotKind {
-    /// Whether it has joints instead of wheels in a plane.
+    /// Returns true for robots with joints instead of wheels.
     pub(crate) fn has_joints(self) -> bool {
         matches!(self, Self::ArmAndHand | Self::Model)
     }

@@ -1,4 +1,4 @@
-//! What robots sense.
+//! Sensors.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,21 +7,21 @@ use crate::document::wrapper::Wrapper;
 use crate::document::yes;
 use crate::name::NAME;
 
-/// Something that each robot senses.
+/// A sensor of each robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensor {
-    /// What settings, drawings and recordings call it; by default its kind.
+    /// Name for settings, drawings and recordings, by default the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
-    /// Whether it is there; if not, the network has no inputs for it.
+    /// Enables the sensor. The network has no inputs for a disabled one.
     #[serde(default = "yes")]
     pub enabled: bool,
-    /// What happens to its values on their way, the first one first.
+    /// Wrappers of the values, of which the first is applied first.
     #[serde(default)]
     #[schemars(length(max = 32))]
     pub wrappers: Vec<Wrapper>,
-    /// What it is.
+    /// The kind of sensor.
     #[serde(flatten)]
     pub kind: SensorKind,
 }
@@ -32,14 +32,14 @@ pub struct Sensor {
 pub enum SensorKind {
     /// Infrared sensors around the hull: 0 nothing .. 1 at the hull.
     Infrared {
-        /// How they are computed.
+        /// Model of the readings.
         #[serde(default)]
         model: InfraredModel,
-        /// How many of them, from the robot's first on; 0 is all.
+        /// Number of sensors, from the robot's first. 0 means all.
         #[serde(default)]
         #[schemars(range(min = 0, max = 64))]
         first: u32,
-        /// In so many groups of neighbours, each of which gives its largest value, by rays; 0 is each alone.
+        /// Number of groups of neighboring sensors, each of which gives its largest value, by rays. 0 keeps each alone.
         #[serde(default)]
         #[schemars(range(min = 0, max = 64))]
         groups: u32,
@@ -47,219 +47,219 @@ pub enum SensorKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         tables: Option<MeasuredTables>,
     },
-    /// How brightly lamps shine where the infrared sensors are: 0 dark .. 1.
+    /// Light intensity at the places of the infrared sensors: 0 dark .. 1.
     Light {
-        /// Distance from which a sensor that looks at a lamp of intensity 1 reads 1 [m].
+        /// Distance at which a sensor that faces a lamp of intensity 1 reads 1 [m].
         #[serde(default = "reference")]
         #[schemars(range(min = 0.0001, max = 100.0))]
         reference: f64,
     },
-    /// The colour of the ground under the robot: grey, or red, green and blue, 0 to 1 each.
+    /// Color of the ground under the robot: gray, or red, green and blue, 0 to 1 each.
     GroundColor {
-        /// Whether red, green and blue are told apart.
+        /// Reads red, green and blue separately.
         #[serde(default)]
         rgb: bool,
-        /// At so many of the robot's places, from the first on; 0 is all.
+        /// Number of the robot's places, from the first. 0 means all.
         #[serde(default)]
         #[schemars(range(min = 0, max = 64))]
         first: u32,
-        /// Whether it is only one place, under the robot's middle.
+        /// Reads only the place under the robot's center.
         #[serde(default)]
         middle: bool,
     },
     /// A fan of laser range finders: 0 at the hull .. 1 nothing within the range.
     LaserDistance {
-        /// Beams from left to right.
+        /// Beams, from left to right.
         #[schemars(range(min = 1, max = 10000))]
         beams: u32,
-        /// How wide the fan is, around straight ahead [deg].
+        /// Width of the fan around straight ahead [deg].
         #[schemars(range(min = 0.0, max = 360.0))]
         field_of_view: f64,
-        /// How far they reach from the hull [m].
+        /// Range from the hull [m].
         #[schemars(range(min = 0.001, max = 1000.0))]
         range: f64,
-        /// How high they are [m].
+        /// Height of the beams [m].
         #[serde(default = "beam_height")]
         #[schemars(range(min = 0.0, max = 100.0))]
         height: f64,
     },
-    /// A camera of sectors from left to right: of each colour the share of a sector that shows it. With a robot with joints it sees
-    /// coloured things in the horizontal plane at `world.sight_height`.
+    /// A camera of sectors from left to right. Each channel is the share of a sector that shows a color. With a robot
+    /// with joints it sees colored things in the horizontal plane at `world.sight_height`.
     Camera(Camera),
-    /// What an eye sees: red, green and blue of each pixel, row by row from the upper left; 0 where there is nothing, or nothing with
-    /// a colour. Recordings show it.
+    /// Image of an eye: red, green and blue of each pixel, row by row from the upper left. Pixels without a colored
+    /// thing are 0. Recordings show the image.
     CameraImage {
         /// The eye.
         eye: Eye,
     },
-    /// Where colours are in an eye's image: how far to the left and upwards the middle of each is, in halves of the image's width, and
-    /// the share of all pixels; three zeros where it is not. Recordings show the image.
+    /// Positions of colors in an eye's image: the offset of each center to the left and upwards, in halves of the
+    /// image's width, and its share of all pixels. Absent colors are three zeros. Recordings show the image.
     ColorBlobs {
         /// The eye.
         eye: Eye,
-        /// The colours.
+        /// Colors.
         colors: Vec<ColorRange>,
     },
-    /// How far one thing is from another in an eye's image, to the left and upwards in widths of the image: -1 to 1; 0 where one is
-    /// behind the eye. Nothing hides them.
+    /// Offset between two things in an eye's image, to the left and upwards in widths of the image: -1 to 1. It is 0
+    /// if one is behind the eye. Nothing hides them.
     VisualOffset {
         /// The eye.
         eye: Eye,
-        /// Which thing, or which body of the robot.
+        /// Name of a thing, or of a body of the robot.
         of: String,
-        /// From which thing, or which body of the robot.
+        /// Name of the thing or body from which the offset is measured.
         from: String,
     },
-    /// How fast the wheels turn, left and right: 0 backwards .. 1/2 at rest .. 1 ahead.
+    /// Wheel speeds, left and right: 0 backwards .. 1/2 at rest .. 1 ahead.
     WheelSpeed {
-        /// Whether they read -1 .. 0 at rest .. 1 instead.
+        /// Reads -1 .. 0 at rest .. 1 instead.
         #[serde(default)]
         signed: bool,
     },
-    /// Where the robot is pulled, ahead and to the left: -1 to 1.
+    /// Traction force on the robot, ahead and to the left: -1 to 1.
     Traction {
-        /// The difference of speeds that reads 1 [m/s].
+        /// Difference of speeds that reads 1 [m/s].
         #[schemars(range(min = 0.0001, max = 100.0))]
         largest: f64,
     },
-    /// What other robots signal, in sectors counter-clockwise from ahead: the strongest, 0 to 1.
+    /// Signals of other robots, in sectors counter-clockwise from ahead: the strongest, 0 to 1.
     Signal {
-        /// How far it hears [m].
+        /// Range of the sensor [m].
         #[schemars(range(min = 0.001, max = 1000.0))]
         range: f64,
         /// Sectors around the robot: 1, 2, 4 or 8.
         #[serde(default = "four")]
         #[schemars(range(min = 1, max = 8))]
         sectors: u32,
-        /// Whether the mean of a sector is read instead of the strongest.
+        /// Reads the mean of a sector instead of the strongest signal.
         #[serde(default)]
         mean: bool,
     },
-    /// Whether the attachment device holds something: 0 or 1.
+    /// State of the attachment device: 1 while it holds something, else 0.
     Attachment {},
-    /// Whether the robot touches something: 0 or 1.
+    /// Contact of the robot: 1 while it touches something, else 0.
     Touch {
-        /// Bodies of a robot with joints that feel it; none is all of them.
+        /// Bodies of a robot with joints that sense contact, by default all of them.
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
-    /// The sum of the forces at which the robot is pushed [N]; nominal in the kinematic arena.
+    /// Sum of the contact forces on the robot [N], nominal in the kinematic arena.
     ContactForce {
-        /// Bodies of a robot with joints that feel it; none is all of them.
+        /// Bodies of a robot with joints that sense contact, by default all of them.
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
-    /// Where a thing is, three channels of which the third is its height.
+    /// Position of a thing, in three channels. The third is its height.
     TargetPosition {
-        /// Which thing, or which body of a robot with joints.
+        /// Name of a thing, or of a body of a robot with joints.
         target: String,
-        /// The body of a robot with joints that it is seen from; by default its first.
+        /// Body of a robot with joints from which it is seen, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// From which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
-        /// Seen by whom.
+        /// Axes of the position.
         #[serde(default)]
         axes: AxesName,
-        /// What a metre reads.
+        /// Reading per meter.
         #[serde(default = "unit")]
         #[schemars(range(min = -1000.0, max = 1000.0))]
         scale: f64,
     },
-    /// Where the robot is: x, y, z [m] and four numbers of its orientation.
+    /// Pose of the robot: x, y, z [m] and a quaternion.
     BodyPose {
-        /// Which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
-    /// How the robot moves: three of its velocity [m/s] and three of its angular velocity [rad/s].
+    /// Velocity of the robot [m/s] and angular velocity [rad/s], three channels each.
     BodyVelocity {
-        /// Which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// In which axes.
+        /// Axes of the velocity.
         #[serde(default)]
         axes: AxesName,
     },
-    /// How high the robot's origin is [m].
+    /// Height of the robot's origin [m].
     Height {
-        /// Which body of a robot with joints; by default its first.
+        /// Body of a robot with joints, by default the first.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
-        /// Which point of that body [m].
+        /// Point of that body [m].
         #[serde(default)]
         #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
         point: [f64; 3],
     },
     /// Positions of joints or wheels, 0 at `from` and 1 at `to`.
     JointPosition {
-        /// Which, `left-wheel` and `right-wheel` of a robot on wheels; none is all.
+        /// Names, `left-wheel` and `right-wheel` of a robot on wheels, by default all.
         #[serde(default)]
         joints: Vec<String>,
-        /// What reads 0 [rad or m]; by default the lowest that the joint allows.
+        /// Position that reads 0 [rad or m], by default the lowest of the joint.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         from: Option<f64>,
-        /// What reads 1 [rad or m]; by default the highest that the joint allows.
+        /// Position that reads 1 [rad or m], by default the highest of the joint.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         to: Option<f64>,
     },
     /// Speeds of joints or wheels [rad/s or m/s].
     JointSpeed {
-        /// Which, `left-wheel` and `right-wheel` of a robot on wheels; none is all.
+        /// Names, `left-wheel` and `right-wheel` of a robot on wheels, by default all.
         #[serde(default)]
         joints: Vec<String>,
     },
-    /// The robot's energy, 0 dead .. 1, by the rules of `foraging`.
+    /// Energy of the robot, 0 dead .. 1, according to `foraging`.
     Energy {},
-    /// Whether the robot carries food, 0 or 1, by the rules of `foraging`.
+    /// Food load of the robot: 1 while it carries food, else 0, according to `foraging`.
     Carried {},
-    /// A number that never changes, such as a label of the condition.
+    /// A constant, such as a label of the condition.
     Constant {
-        /// The number.
+        /// Value.
         #[schemars(range(min = -1e6, max = 1e6))]
         value: f64,
     },
 }
 
-/// How infrared sensors are computed.
+/// Models of infrared sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InfraredModel {
-    /// By a formula of distance and angle; its distances are a Khepera's.
+    /// A formula of distance and angle, with distances of a Khepera.
     #[default]
     Analytic,
-    /// By rays, as far as the robot's sensors see.
+    /// Rays, up to the range of the robot's sensors.
     Rays,
-    /// By measured readings, from files.
+    /// Measured readings from files.
     Tables,
 }
 
 /// Files of measured infrared readings, in the folder of the experiment's file or below it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredTables {
-    /// Readings beside a wall.
+    /// Readings near a wall.
     pub walls: String,
-    /// Readings beside round things: each takes the file whose radius is nearest to its own.
+    /// Readings near round things. Each thing takes the file of the nearest radius.
     #[serde(default)]
     pub bodies: Vec<MeasuredBody>,
 }
 
-/// A file of readings beside a round thing.
+/// A file of readings near a round thing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredBody {
-    /// Its name.
+    /// Name of the file.
     pub file: String,
-    /// The radius of the thing [m].
+    /// Radius of the thing [m].
     #[schemars(range(min = 0.0001, max = 10.0))]
     pub radius: f64,
 }
@@ -267,76 +267,77 @@ pub struct MeasuredBody {
 /// A camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Camera {
-    /// The body of a robot with joints that carries it at its origin and along whose x axis it looks; by default the first one.
+    /// Body of a robot with joints that carries the camera at its origin, with the view along its x axis, by default
+    /// the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
-    /// How much it sees, around straight ahead [deg].
+    /// Field of view around straight ahead [deg].
     #[schemars(range(min = 1.0, max = 360.0))]
     pub field_of_view: f64,
     /// Sectors from left to right.
     #[schemars(range(min = 1, max = 1000))]
     pub sectors: u32,
-    /// Rays by which each sector is searched.
+    /// Rays in each sector.
     #[serde(default = "nine")]
     #[schemars(range(min = 1, max = 1000))]
     pub rays: u32,
-    /// How far it sees [m].
+    /// Range [m].
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub range: f64,
-    /// The colours that it tells apart.
+    /// Colors of the channels.
     pub colors: Vec<ColorRange>,
 }
 
-/// An eye of a robot with joints, that looks along x of its own axes, with y to the left and z up.
+/// An eye of a robot with joints. It looks along the x axis of its frame, with y to the left and z up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Eye {
-    /// The body that carries it; by default the robot's first.
+    /// Body that carries it, by default the robot's first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
-    /// Where it is in the body's axes [m].
+    /// Position in the body's axes [m].
     #[serde(default)]
     #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
     pub at: [f64; 3],
-    /// How it is turned there, about x, then y, then z of the body [deg].
+    /// Rotation about x, then y, then z of the body [deg].
     #[serde(default)]
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     pub turned: [f64; 3],
     /// Pixels from left to right.
     #[schemars(range(min = 1, max = 1000))]
     pub columns: u32,
-    /// Pixels from top to bottom; they are squares.
+    /// Square pixels from top to bottom.
     #[schemars(range(min = 1, max = 1000))]
     pub rows: u32,
-    /// How much it sees from left to right [deg].
+    /// Field of view from left to right [deg].
     #[schemars(range(min = 1.0, max = 179.0))]
     pub field_of_view: f64,
-    /// How far it sees [m].
+    /// Range [m].
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub range: f64,
 }
 
-/// A range of colours.
+/// A range of colors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ColorRange {
-    /// What it is called.
+    /// Name of the color.
     #[schemars(regex(pattern = NAME))]
     pub name: String,
-    /// The least of red, green and blue.
+    /// Least red, green and blue.
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub low: [f64; 3],
-    /// The most of red, green and blue.
+    /// Greatest red, green and blue.
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub high: [f64; 3],
 }
 
-/// The axes in which a vector is read.
+/// Axes of a vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxesName {
-    /// Those of the robot.
+    /// Axes of the robot.
     #[default]
     Body,
-    /// Those of the world.
+    /// Axes of the world.
     World,
 }
 

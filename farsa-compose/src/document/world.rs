@@ -1,45 +1,45 @@
-//! The world and what stands in it.
+//! The world and its objects.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::name::NAME;
 
-/// A plane, usually with walls around it; or space, usually with a floor.
+/// A plane, usually with walls around it, or space, usually with a floor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct World {
-    /// What moves the robots.
+    /// Engine that moves the robots.
     pub engine: Engine,
-    /// Width and depth of the arena, whose lower left corner is the origin [m]; for robots on wheels.
+    /// Width and depth of the arena, whose lower left corner is the origin [m], for robots on wheels.
     #[schemars(inner(range(min = 0.05, max = 1000.0)))]
     pub size: [f64; 2],
     /// A file with more `objects`, in the folder of the experiment's file or below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
-    /// Whether there are walls around it; for robots on wheels.
+    /// Surrounds the arena with walls, for robots on wheels.
     pub walls: bool,
     /// Control step [s].
     #[schemars(range(min = 0.001, max = 0.2))]
     pub time_step: f64,
-    /// Colour of the ground where no area is: red, green and blue.
+    /// Color of the ground outside areas: red, green and blue.
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub ground: [f64; 3],
-    /// Whether there is a floor at height 0; for robots with joints.
+    /// Adds a floor at height 0, for robots with joints.
     pub floor: bool,
-    /// Gravity [m/s2]; for robots with joints.
+    /// Gravity [m/s2], for robots with joints.
     #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
     pub gravity: [f64; 3],
-    /// Steps of the dynamics in a control step; for robots with joints.
+    /// Steps of the dynamics in a control step, for robots with joints.
     #[schemars(range(min = 1, max = 1000))]
     pub substeps: u32,
-    /// Height of the horizontal plane that cameras see [m]; for robots with joints.
+    /// Height of the horizontal plane that cameras see [m], for robots with joints.
     #[schemars(range(min = -1000.0, max = 1000.0))]
     pub sight_height: f64,
-    /// How hard things and the floor are [N/m]; for robots with joints.
+    /// Stiffness of things and of the floor [N/m], for robots with joints.
     #[schemars(range(min = 1.0, max = 1e9))]
     pub stiffness: f64,
-    /// Friction of the robot with things and with the floor; for robots with joints.
+    /// Friction of the robot with things and with the floor, for robots with joints.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub friction: f64,
 }
@@ -63,40 +63,40 @@ impl Default for World {
     }
 }
 
-/// What moves the robots.
+/// Engines that move robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Engine {
-    /// The kinematic plane: wheels turn as they are told, a robot that would run into something stays where it was.
+    /// The kinematic plane. Wheels turn at their commanded speed. A robot that would collide stays in place.
     #[default]
     Arena,
     /// rapier: robots are rigid bodies, on driven wheels or with joints, and blocks can be pushed. It has no lanes.
     Rapier,
-    /// The articulated world: robots with joints, and things that can be pushed.
+    /// The articulated world: robots with joints, and movable things.
     Articulated,
 }
 
 /// A thing in the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Object {
-    /// What other parts of the file call it.
+    /// Name for other parts of the file.
     #[schemars(regex(pattern = NAME))]
     pub name: String,
-    /// Where its middle is at first: x and y, and z beside a robot with joints [m]; by default a trial has to place it.
+    /// Initial center: x and y, and z for experiments with joints [m], by default a trial has to place it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
     pub at: Option<Vec<f64>>,
-    /// Where its length points to, counter-clockwise from the x axis [deg].
+    /// Direction of the length, counter-clockwise from the x axis [deg].
     #[serde(default)]
     #[schemars(range(min = -360.0, max = 360.0))]
     pub heading: f64,
-    /// What it is.
+    /// The kind of thing.
     #[serde(flatten)]
     pub kind: ObjectKind,
 }
 
 impl Object {
-    /// Whether it is a lamp, which is seen beyond walls, too.
+    /// Returns true for lamps, which are visible beyond walls.
     pub(crate) fn shines(&self) -> bool {
         matches!(self.kind, ObjectKind::Cylinder { lamp, .. } if lamp > 0.0)
     }
@@ -106,7 +106,7 @@ impl Object {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ObjectKind {
-    /// A cylinder that stands on the ground, perhaps a lamp.
+    /// An upright cylinder, optionally a lamp.
     Cylinder {
         /// Radius [m].
         #[schemars(range(min = 0.0001, max = 100.0))]
@@ -119,12 +119,12 @@ pub enum ObjectKind {
         #[serde(default = "grey")]
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
-        /// How strongly it shines; 0 is no lamp.
+        /// Light intensity. 0 is no lamp.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1e6))]
         lamp: f64,
     },
-    /// A box that nothing moves.
+    /// A fixed box.
     Wall {
         /// Length and thickness [m].
         #[schemars(inner(range(min = 0.0001, max = 1000.0)))]
@@ -138,7 +138,7 @@ pub enum ObjectKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A box that robots can push; not in the engine `arena`.
+    /// A movable box, not in the engine `arena`.
     Block {
         /// Length, breadth and height [m].
         #[schemars(inner(range(min = 0.001, max = 100.0)))]
@@ -146,7 +146,7 @@ pub enum ObjectKind {
         /// Mass [kg].
         #[schemars(range(min = 0.0001, max = 10000.0))]
         mass: f64,
-        /// Coefficient of friction with the ground and with what is smoother.
+        /// Coefficient of friction with the ground and with smoother things.
         #[serde(default = "half")]
         #[schemars(range(min = 0.0, max = 10.0))]
         friction: f64,
@@ -155,7 +155,7 @@ pub enum ObjectKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A ball that robots can push; beside a robot with joints.
+    /// A movable ball, for experiments with joints.
     Ball {
         /// Radius [m].
         #[schemars(range(min = 0.0001, max = 100.0))]
@@ -172,9 +172,9 @@ pub enum ObjectKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A place that can be seen and reached and touches nothing; beside a robot with joints.
+    /// A visible place without contacts, for experiments with joints.
     Marker {
-        /// Radius of the ball that is drawn there [m].
+        /// Radius of the drawn ball [m].
         #[serde(default = "small")]
         #[schemars(range(min = 0.0001, max = 100.0))]
         radius: f64,
@@ -183,7 +183,7 @@ pub enum ObjectKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A disc of the ground in a colour of its own.
+    /// A disc of the ground with its own color.
     Disc {
         /// Radius [m].
         #[schemars(range(min = 0.0001, max = 1000.0))]
@@ -192,7 +192,7 @@ pub enum ObjectKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A rectangle of the ground in a colour of its own.
+    /// A rectangle of the ground with its own color.
     Rectangle {
         /// Length along the heading, and breadth [m].
         #[schemars(inner(range(min = 0.0001, max = 1000.0)))]

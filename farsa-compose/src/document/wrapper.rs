@@ -1,15 +1,15 @@
-//! What changes values on their way.
+//! Wrappers of sensors and motors.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What changes values on their way from a sensor or to a motor.
+/// A change of values on their way from a sensor or to a motor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Wrapper {
     /// Adds to each value a number drawn uniformly between minus and plus this.
     UniformNoise {
-        /// The most that is added.
+        /// Largest added value.
         #[schemars(range(min = 0.0, max = 1e6))]
         amplitude: f64,
     },
@@ -19,9 +19,9 @@ pub enum Wrapper {
         #[schemars(range(min = 0.0, max = 1e6))]
         deviation: f64,
     },
-    /// Passes values on so many steps later.
+    /// Delays values.
     Delay {
-        /// Steps.
+        /// Delay [steps].
         #[schemars(range(min = 0, max = 10000))]
         steps: u32,
     },
@@ -30,17 +30,17 @@ pub enum Wrapper {
         /// The factor.
         #[schemars(range(min = -1e6, max = 1e6))]
         gain: f64,
-        /// What is added then.
+        /// Added number.
         #[serde(default)]
         #[schemars(range(min = -1e6, max = 1e6))]
         offset: f64,
     },
-    /// Cuts values at two ends.
+    /// Clamps values.
     Saturate {
-        /// The lower end.
+        /// Lower limit.
         #[schemars(range(min = -1e6, max = 1e6))]
         low: f64,
-        /// The upper end.
+        /// Upper limit.
         #[schemars(range(min = -1e6, max = 1e6))]
         high: f64,
     },
@@ -52,22 +52,22 @@ pub enum Wrapper {
     },
     /// Passes on 0 for some channels.
     Lesion {
-        /// The first and the last of them, from 0; by default all.
+        /// First and last channel, from 0, by default all.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
         channels: Option<[u32; 2]>,
     },
-    /// Keeps some channels where they are after some steps.
+    /// Holds some channels at a value after some steps.
     Stuck {
-        /// The first and the last of them, from 0; by default all.
+        /// First and last channel, from 0, by default all.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
         channels: Option<[u32; 2]>,
-        /// The value that they have then; by default the last one before.
+        /// The held value, by default the last one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         value: Option<f64>,
-        /// Steps after which.
+        /// Number of steps before.
         #[serde(default)]
         #[schemars(range(min = 0, max = 4_294_967_295_u32))]
         after: u32,

@@ -1,13 +1,13 @@
-//! The actuators that motors drive: the model's own, or new ones.
+//! Actuators of motors: those of the model, or new ones.
 
 use farsa_body::actuators::{Held, Law, MusclePair, Servo, Torque, Velocity};
 use farsa_body::ports::{ActuatorId, JointId};
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::jointed::scene::Scene;
 
-/// The first actuator on a joint whose law is of a kind.
+/// Returns the first actuator of a joint with a law of this kind.
 fn own(scene: &Scene, joint: JointId, kind: fn(&Law<f64>) -> bool) -> Option<(ActuatorId, Law<f64>)> {
     let actuators = scene.robot.actuators.iter().enumerate();
     let mut found = actuators.filter(|(_, actuator)| actuator.joint == joint && kind(&actuator.law));
@@ -30,12 +30,12 @@ pub(crate) fn is_muscles(law: &Law<f64>) -> bool {
     matches!(law, Law::MusclePair(_))
 }
 
-/// Whether a joint has an actuator of a kind.
+/// Returns true for a joint with an actuator of this kind.
 pub(crate) fn has(scene: &Scene, joint: JointId, kind: fn(&Law<f64>) -> bool) -> bool {
     own(scene, joint, kind).is_some()
 }
 
-/// The largest torque of a joint's own motor, if it has one with a limit [N m or N].
+/// Returns the torque limit of a joint's own motor, if any [N m or N].
 pub(crate) fn limit(scene: &Scene, joint: JointId) -> Option<f64> {
     match own(scene, joint, is_torque)?.1 {
         Law::Torque(torque) => Some(torque.limit).filter(|limit| limit.is_finite()),
@@ -43,16 +43,16 @@ pub(crate) fn limit(scene: &Scene, joint: JointId) -> Option<f64> {
     }
 }
 
-/// An actuator that a motor at a path drives alone: the joint's own of a kind, or one of a law.
+/// Returns the actuator of the motor at a path: the joint's own of a kind, or a new one with the given law.
 ///
 /// # Errors
-/// [`Error::Setting`] for a joint without one, and for an actuator that two motors drive.
+/// [`Error::Setting`] for a joint without an actuator, and for an actuator of two motors.
 fn taken(
     scene: &mut Scene,
     joint: JointId,
     kind: fn(&Law<f64>) -> bool,
     law: Option<(Law<f64>, &str)>,
-    (lacking, path, places): (&str, &str, &Places),
+    (lacking, path, source): (&str, &str, &Source),
 ) -> Result<(ActuatorId, Law<f64>), Error> {
     let name = scene.joint_name(joint).to_owned();
     let actuator = if let Some((law, word)) = law {
@@ -61,36 +61,36 @@ fn taken(
         (known.unwrap_or_else(|| scene.robot.add_actuator(&called, joint, law)), law)
     } else {
         let why = format!("lacks the key {lacking}: `{name}` has no such motor of its own");
-        own(scene, joint, kind).ok_or_else(|| places.wrong(path, why))?
+        own(scene, joint, kind).ok_or_else(|| source.wrong(path, why))?
     };
     if scene.driven.contains(&actuator.0) {
-        return Err(places.wrong(path, format!("`{name}` has a motor of this kind already")));
+        return Err(source.wrong(path, format!("`{name}` has a motor of this kind already")));
     }
     scene.driven.push(actuator.0);
     Ok(actuator)
 }
 
-/// An actuator of speeds, and what its command is per unit of speed [N m s/rad or N s/m, or 1].
+/// Returns a velocity actuator, and its command per unit of speed [N m s/rad or N s/m, or 1].
 ///
 /// # Errors
-/// Those of [`taken`], and [`Error::Setting`] for a limit without a gain.
+/// As [`taken`], and [`Error::Setting`] for a limit without a gain.
 pub(crate) fn velocity(
     scene: &mut Scene,
     joint: JointId,
     [gain, limit]: [Option<f64>; 2],
     path: &str,
-    places: &Places,
+    source: &Source,
 ) -> Result<(ActuatorId, f64), Error> {
     if gain.is_none() && limit.is_some() {
-        return Err(places.wrong(path, "lacks the key `gain`, of the motor whose `limit` it says"));
+        return Err(source.wrong(path, "lacks the key `gain`, of the motor whose `limit` it says"));
     }
     let law = gain.map(|gain| match limit {
         Some(limit) => Law::Velocity(Velocity { gain, limit }),
         None => Law::Held(Held { stiffness: 0.0, damping: gain }),
     });
     let law = law.map(|law| (law, "velocity"));
-    let (actuator, law) = taken(scene, joint, is_velocity, law, ("`gain`", path, places))?;
-    // A law of the user's takes the torque that lacks at rest, a velocity motor the speed itself.
+    let (actuator, law) = taken(scene, joint, is_velocity, law, ("`gain`", path, source))?;
+    // With a custom gain the command is the torque at rest, g v. A velocity motor takes the speed v itself.
     let gain = match law {
         Law::Held(held) => held.damping,
         _ => 1.0,
@@ -98,72 +98,72 @@ pub(crate) fn velocity(
     Ok((actuator, gain))
 }
 
-/// An actuator of torques, and its largest [N m or N].
+/// Returns a torque actuator, and its limit [N m or N].
 ///
 /// # Errors
-/// Those of [`taken`], and [`Error::Setting`] for one without limit.
+/// As [`taken`], and [`Error::Setting`] without a limit.
 pub(crate) fn torque(
     scene: &mut Scene,
     joint: JointId,
     largest: Option<f64>,
     path: &str,
-    places: &Places,
+    source: &Source,
 ) -> Result<(ActuatorId, f64), Error> {
     let law = largest.filter(|_| own(scene, joint, is_torque).is_none());
     let law = law.map(|limit| (Law::Torque(Torque { limit }), "torque"));
-    let (actuator, law) = taken(scene, joint, is_torque, law, ("`largest`", path, places))?;
+    let (actuator, law) = taken(scene, joint, is_torque, law, ("`largest`", path, source))?;
     let limit = if let Law::Torque(torque) = law { torque.limit } else { 0.0 };
     let largest = largest.unwrap_or(limit);
     if !largest.is_finite() {
         let why = format!("lacks the key `largest`: the motor of `{}` has no limit", scene.joint_name(joint));
-        return Err(places.wrong(path, why));
+        return Err(source.wrong(path, why));
     }
     Ok((actuator, largest))
 }
 
-/// A servo; stiffness, damping and limit are those of one that is not the joint's own.
+/// Returns a servo. Stiffness, damping and limit are those of a new one.
 ///
 /// # Errors
-/// Those of [`taken`].
+/// As [`taken`].
 pub(crate) fn servo(
     scene: &mut Scene,
     joint: JointId,
     [stiffness, damping, limit]: [Option<f64>; 3],
     path: &str,
-    places: &Places,
+    source: &Source,
 ) -> Result<ActuatorId, Error> {
     if stiffness.is_none() && (damping.is_some() || limit.is_some()) {
-        return Err(places.wrong(path, "lacks the key `stiffness`, of the servo whose `damping` or `limit` it says"));
+        return Err(source.wrong(path, "lacks the key `stiffness`, of the servo whose `damping` or `limit` it says"));
     }
     let law = stiffness.map(|stiffness| {
         let (damping, limit) = (damping.unwrap_or(0.0), limit.unwrap_or(f64::INFINITY));
         (Law::Servo(Servo { stiffness, damping, limit }), "servo")
     });
-    Ok(taken(scene, joint, is_servo, law, ("`stiffness`", path, places))?.0)
+    Ok(taken(scene, joint, is_servo, law, ("`stiffness`", path, source))?.0)
 }
 
-/// A pair of muscles; tension and moment arm are those of one that is not the joint's own.
+/// Returns a pair of muscles. Tension and moment arm are those of a new pair.
 ///
 /// # Errors
-/// Those of [`taken`], and [`Error::Setting`] for a joint without range.
+/// As [`taken`], and [`Error::Setting`] for a joint without a range.
 pub(crate) fn muscles(
     scene: &mut Scene,
     joint: JointId,
     given: [Option<f64>; 2],
     path: &str,
-    places: &Places,
+    source: &Source,
 ) -> Result<ActuatorId, Error> {
     let law = match given {
         [Some(tension), Some(moment_arm)] => {
             let range = scene.range(joint);
             if range.iter().any(|end| !end.is_finite()) {
                 let why = format!("`{}` turns on and on; muscles need a joint with a range", scene.joint_name(joint));
-                return Err(places.wrong(path, why));
+                return Err(source.wrong(path, why));
             }
             Some((Law::MusclePair(MusclePair::thesis(tension, moment_arm, range)), "muscles"))
         }
         [None, None] => None,
-        _ => return Err(places.wrong(path, "has one of `tension` and `moment_arm`, which go together")),
+        _ => return Err(source.wrong(path, "has one of `tension` and `moment_arm`, which go together")),
     };
-    Ok(taken(scene, joint, is_muscles, law, ("`tension`", path, places))?.0)
+    Ok(taken(scene, joint, is_muscles, law, ("`tension`", path, source))?.0)
 }

@@ -1,4 +1,4 @@
-//! Any motor, with what is wrapped around it.
+//! Motors of a robot with joints, with their wrappers.
 
 use farsa_body::ChannelError;
 use farsa_body::actuators::Law;
@@ -6,12 +6,12 @@ use farsa_body::motors::{Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityM
 use farsa_body::ports::{Channels, JointId, Motor};
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{self, MotorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::actuation::{self, is_muscles, is_servo, is_torque, is_velocity};
 use crate::jointed::scene::Scene;
-use crate::parts::bounded::Room;
+use crate::parts::sizes::MemoryBudget;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot with joints.
@@ -24,7 +24,7 @@ pub(crate) enum Driving {
     Wrapped(Wrapped<Self>),
 }
 
-/// Calls a method of whatever motor it is.
+/// Calls a method of the motor of any kind.
 macro_rules! motor {
     ($driving:expr, $motor:ident => $call:expr) => {
         match $driving {
@@ -61,30 +61,31 @@ impl Reseed for Driving {
     }
 }
 
-/// A motor that stands at a path of the document, with its wrappers; actuators that the robot lacks are added to it.
+/// Builds the motor at a path of the document, with its wrappers. Adds the actuators that the robot lacks.
 ///
 /// # Errors
-/// [`Error::Setting`] for what the robot does not have or cannot be wrapped so, [`Error::Unknown`] for a joint that there is not.
+/// [`Error::Setting`] for a missing actuator and for invalid wrappers, [`Error::Unknown`] for an unknown joint.
 pub(crate) fn motor(
     motor: &document::Motor,
     scene: &mut Scene,
     path: &str,
-    room: &mut Room,
-    places: &Places,
+    budget: &mut MemoryBudget,
+    source: &Source,
 ) -> Result<Driving, Error> {
-    let mut made = bare(&motor.kind, scene, path, places)?;
+    let mut made = bare(&motor.kind, scene, path, source)?;
     for (index, wrapper) in motor.wrappers.iter().enumerate() {
         let path = format!("{path}/wrappers/{index}");
-        made = Driving::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
+        made = Driving::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
     }
     Ok(made)
 }
 
-/// The joints of a motor, by number: named, or all, or all that have an actuator of a kind where none is `given`.
+/// Returns the joints of a motor: those named, or all. Unless the law is `given`, all means those with an actuator of
+/// the kind.
 ///
 /// # Errors
-/// Those of [`Scene::joints`].
-pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, places: &Places) -> Result<Vec<JointId>, Error> {
+/// As [`Scene::joints`].
+pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &Source) -> Result<Vec<JointId>, Error> {
     type Is = fn(&Law<f64>) -> bool;
     let (joints, given, of_kind): (_, _, Is) = match kind {
         MotorKind::JointVelocity { joints, gain, .. } => (joints, gain.is_some(), is_velocity),
@@ -93,23 +94,23 @@ pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, places: &Pl
         MotorKind::Muscles { joints, tension, .. } => (joints, tension.is_some(), is_muscles),
         _ => return Ok(Vec::new()),
     };
-    scene.joints(joints, |joint| given || actuation::has(scene, joint, of_kind), path, places)
+    scene.joints(joints, |joint| given || actuation::has(scene, joint, of_kind), path, source)
 }
 
-fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, places: &Places) -> Result<Driving, Error> {
-    let wrong = |error: ChannelError| places.wrong(path, error);
-    let joints = joints_of(kind, scene, path, places)?;
+fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, source: &Source) -> Result<Driving, Error> {
+    let wrong = |error: ChannelError| source.wrong(path, error);
+    let joints = joints_of(kind, scene, path, source)?;
     Ok(match kind {
         MotorKind::JointVelocity { largest, gain, limit, .. } => {
             let one = |joint| {
-                let (actuator, gain) = actuation::velocity(scene, joint, [*gain, *limit], path, places)?;
+                let (actuator, gain) = actuation::velocity(scene, joint, [*gain, *limit], path, source)?;
                 VelocityMotor::new(actuator, *largest as f32, gain as f32).map_err(wrong)
             };
             Driving::Velocity(joints.into_iter().map(one).collect::<Result<_, _>>()?)
         }
         MotorKind::JointTorque { largest, .. } => {
             let one = |joint| {
-                let (actuator, largest) = actuation::torque(scene, joint, *largest, path, places)?;
+                let (actuator, largest) = actuation::torque(scene, joint, *largest, path, source)?;
                 TorqueMotor::new(actuator, largest as f32).map_err(wrong)
             };
             Driving::Torque(joints.into_iter().map(one).collect::<Result<_, _>>()?)
@@ -118,7 +119,7 @@ fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, places: &Places) -> Res
             let one = |joint| {
                 let [low, high] = scene.range(joint);
                 let [from, to] = [from.unwrap_or(low), to.unwrap_or(high)].map(|end| end as f32);
-                let servo = actuation::servo(scene, joint, [*stiffness, *damping, *limit], path, places)?;
+                let servo = actuation::servo(scene, joint, [*stiffness, *damping, *limit], path, source)?;
                 Ok(ServoRange { servo, from, to })
             };
             let servos = joints.into_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
@@ -127,13 +128,13 @@ fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, places: &Places) -> Res
         }
         MotorKind::Muscles { tension, moment_arm, .. } => {
             let one =
-                |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, places)?));
+                |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, source)?));
             Driving::Muscles(joints.into_iter().map(one).collect::<Result<_, Error>>()?)
         }
         MotorKind::Wheels {}
         | MotorKind::SpeedAndTurn { .. }
         | MotorKind::Leds { .. }
         | MotorKind::Signal {}
-        | MotorKind::Attachment {} => return Err(places.wrong(path, "is for robots on wheels; this one has joints")),
+        | MotorKind::Attachment {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }

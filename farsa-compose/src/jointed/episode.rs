@@ -9,51 +9,50 @@ use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Geometry, Role, SceneObject, Schema, screen_color};
 
-use crate::composed::Embodied;
+use crate::composed_task::Body;
 use crate::document::{Ending, MotorKind, SensorKind};
 use crate::jointed::SpatialWorld;
-use crate::jointed::composition::Composition;
-use crate::jointed::meaning;
+use crate::jointed::channel_quantity;
 use crate::jointed::sensing::Sensing;
+use crate::jointed::setup::Setup;
 use crate::parts::agents::Agents;
-use crate::parts::meaning::Meaning;
-use crate::parts::wiring::Wiring;
+use crate::parts::channel_quantity::ChannelQuantity;
+use crate::parts::network_spec::NetworkSpec;
 use crate::parts::wrapping::NOISE;
 
 /// A robot with its network in a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct JointedEpisode {
-    composition: Composition,
+    setup: Setup,
     agents: Agents,
-    /// Where the markers are [m].
+    /// Positions of the markers [m].
     markers: Vec<[f32; 3]>,
-    /// What is drawn, and what of it moves.
+    /// Schema of the drawing, and the bodies that move in it.
     drawn: Schema,
     shown: Vec<BodyId>,
 }
 
-/// A joint or body that is faster than this has left the dynamics behind [rad/s or m/s].
+/// Speed that shows a failure of the dynamics [rad/s or m/s].
 const FASTEST: f32 = 1000.0;
 
 impl JointedEpisode {
-    /// A trial of a composition.
-    pub(crate) fn new(composition: Composition, agents: Agents) -> Self {
-        let markers = vec![[0.0; 3]; composition.scene.markers.len()];
-        let drawn = drawn(&composition, &agents.wiring.sensors);
-        let bodies = composition.scene.robot.segments.len();
+    pub(crate) fn new(setup: Setup, agents: Agents) -> Self {
+        let markers = vec![[0.0; 3]; setup.scene.markers.len()];
+        let drawn = drawn(&setup, &agents.spec.sensors);
+        let bodies = setup.scene.robot.segments.len();
         let shown = drawn.shown().filter(|body| body.index() < bodies).collect();
-        Self { composition, agents, markers, drawn, shown }
+        Self { setup, agents, markers, drawn, shown }
     }
 
-    /// Puts everything in its place; false if something finds none.
+    /// Places everything at its start. Returns false if something finds no place.
     pub(crate) fn arrange<W: SpatialWorld>(&mut self, world: &mut W, id: EpisodeId) -> bool {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
-        self.composition.starting.arrange(world, &mut self.markers, &mut stream)
+        self.setup.starting.arrange(world, &mut self.markers, &mut stream)
     }
 
-    /// Measures the terms that are asked for after each step, or the late ones.
+    /// Measures the terms of each step, or the late ones.
     fn measure<W: SpatialWorld>(&mut self, world: &W, late: bool) {
-        for (number, term) in self.composition.terms.iter_mut().enumerate() {
+        for (number, term) in self.setup.terms.iter_mut().enumerate() {
             if self.agents.ledger.tallies[number].late != late {
                 continue;
             }
@@ -63,9 +62,9 @@ impl JointedEpisode {
         }
     }
 
-    /// Whether all moves as bodies do: not so after numbers that are none, or at speeds that no robot has.
+    /// Returns false after NaN or at impossible speeds.
     fn is_sane<W: SpatialWorld>(&self, world: &W) -> bool {
-        let Composition { joints, floating, .. } = &self.composition;
+        let Setup { joints, floating, .. } = &self.setup;
         // A comparison with NaN is false.
         joints.iter().all(|joint| world.speed(*joint).abs() < FASTEST && world.position(*joint).is_finite())
             && floating.iter().all(|body| {
@@ -75,9 +74,9 @@ impl JointedEpisode {
     }
 }
 
-/// The robot, the things in their colours, the markers as bodies after all others, and the images of its sensors.
-fn drawn(composition: &Composition, sensors: &[(String, [usize; 2])]) -> Schema {
-    let scene = &composition.scene;
+/// Returns the schema: robot, colored things, markers as bodies after all others, images of sensors.
+fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
+    let scene = &setup.scene;
     let mut robot = scene.alone();
     let mut objects = scene.drawn.clone();
     for marker in &scene.markers {
@@ -89,7 +88,7 @@ fn drawn(composition: &Composition, sensors: &[(String, [usize; 2])]) -> Schema 
         objects.push(object.on_body(body).with_color(screen_color(marker.color)));
     }
     let mut schema = Schema { objects, ..Schema::from_robot(&robot) };
-    for (sensor, (name, _)) in composition.sensors.iter().zip(sensors) {
+    for (sensor, (name, _)) in setup.sensors.iter().zip(sensors) {
         if let Some(camera) = sensor.camera() {
             schema = schema.with_image(name, camera.size());
         }
@@ -97,7 +96,7 @@ fn drawn(composition: &Composition, sensors: &[(String, [usize; 2])]) -> Schema 
     schema
 }
 
-impl Embodied for JointedEpisode {
+impl Body for JointedEpisode {
     fn agents(&self) -> &Agents {
         &self.agents
     }
@@ -110,8 +109,8 @@ impl Embodied for JointedEpisode {
         self.drawn.clone()
     }
 
-    fn places(&self) -> Vec<Channel> {
-        let scene = &self.composition.scene;
+    fn scalars(&self) -> Vec<Channel> {
+        let scene = &self.setup.scene;
         let joint = |joint: &farsa_body::ports::JointId| {
             let segment = &scene.robot.segments[joint.index()];
             let unit = if segment.joint.kind == JointKind::Prismatic { "m" } else { "rad" };
@@ -119,11 +118,11 @@ impl Embodied for JointedEpisode {
             let [low, high] = segment.joint.range;
             if low.is_finite() && high.is_finite() { channel.range(low, high) } else { channel }
         };
-        self.composition.joints.iter().map(joint).collect()
+        self.setup.joints.iter().map(joint).collect()
     }
 
     fn robot(&self) -> Robot {
-        self.composition.scene.robot.clone()
+        self.setup.scene.robot.clone()
     }
 
     fn mjcf_options(&self) -> Option<MjcfOptions> {
@@ -132,12 +131,12 @@ impl Embodied for JointedEpisode {
         Some(MjcfOptions { time_step, gravity: world.gravity, ..MjcfOptions::default() })
     }
 
-    fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> Meaning {
-        meaning::sensed(kind, channel, &self.composition.scene)
+    fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> ChannelQuantity {
+        channel_quantity::sensed(kind, channel, &self.setup.scene)
     }
 
-    fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> Meaning {
-        meaning::driven(kind, channel, &self.composition.scene)
+    fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> ChannelQuantity {
+        channel_quantity::driven(kind, channel, &self.setup.scene)
     }
 }
 
@@ -146,8 +145,8 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         let arranged = self.arrange(world, id);
         self.agents.begin(arranged);
         let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
-        self.composition.reseed(streams, self.agents.document.episode.steps);
-        let Composition { sensors, motors, terms, .. } = &mut self.composition;
+        self.setup.reseed(streams, self.agents.document.episode.steps);
+        let Setup { sensors, motors, terms, .. } = &mut self.setup;
         for sensor in sensors {
             sensor.reset();
             sensor.look(&self.markers);
@@ -163,9 +162,9 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     }
 
     fn act(&mut self, world: &mut W) {
-        let Composition { sensors, motors, .. } = &mut self.composition;
-        let Agents { wiring, networks, x, y, .. } = &mut self.agents;
-        let Wiring { sensors: inputs, motors: outputs, .. } = wiring;
+        let Setup { sensors, motors, .. } = &mut self.setup;
+        let Agents { spec, networks, x, y, .. } = &mut self.agents;
+        let NetworkSpec { sensors: inputs, motors: outputs, .. } = spec;
         for (sensor, (_, [first, end])) in sensors.iter_mut().zip(inputs) {
             sensor.read(world, &mut x[*first..*end]);
         }
@@ -181,7 +180,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         self.agents.ledger.failed |= !self.is_sane(world);
         let Agents { document, ledger, .. } = &self.agents;
         let ends = |ending: &Ending| match ending {
-            Ending::Collision => self.composition.collisions.iter().any(|pair| world.touches(*pair)),
+            Ending::Collision => self.setup.collisions.iter().any(|pair| world.touches(*pair)),
             Ending::Success => ledger.would_succeed(),
             Ending::Death => false,
         };
@@ -195,7 +194,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
-        for (number, camera) in self.composition.sensors.iter().filter_map(Sensing::camera).enumerate() {
+        for (number, camera) in self.setup.sensors.iter().filter_map(Sensing::camera).enumerate() {
             camera.record(number, recorder);
         }
         recorder.neurons(networks[0].controller().activations());
@@ -203,13 +202,12 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         for body in &self.shown {
             recorder.pose(*body, world.pose(*body));
         }
-        let bodies = self.composition.scene.robot.segments.len();
+        let bodies = self.setup.scene.robot.segments.len();
         for (number, place) in self.markers.iter().enumerate() {
             recorder.pose(BodyId((bodies + number) as u16), Pose::at(*place));
         }
-        let mut scalars: Vec<f64> =
-            self.composition.joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
-        for (tally, term) in ledger.tallies.iter().zip(&self.composition.terms) {
+        let mut scalars: Vec<f64> = self.setup.joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
+        for (tally, term) in ledger.tallies.iter().zip(&self.setup.terms) {
             scalars.push(if tally.late { term.value(world, &self.markers, &self.agents) } else { tally.last });
         }
         scalars.push(ledger.earned());

@@ -1,28 +1,28 @@
-//! Where a marker is, seen from a body.
+//! Positions of markers relative to a body.
 
 use farsa_body::ports::{Channels, Sensor};
 use farsa_body::sensors::{Axes, Point};
 
 use crate::jointed::SpatialWorld;
 
-/// Reads where a marker is relative to a point of a body, three channels (x, y, z), as `TargetPosition` does of bodies.
+/// A sensor of a marker's position relative to a point of a body, in three channels, as `TargetPosition` for bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MarkerPosition {
     marker: usize,
     from: Point,
     axes: Axes,
     scale: f32,
-    /// Where the marker is [m].
+    /// Position of the marker [m].
     place: [f32; 3],
 }
 
 impl MarkerPosition {
-    /// A sensor of `scale` times the way to the marker of this number.
+    /// Creates a sensor of `scale` times the vector to the marker of this number.
     pub(crate) fn new(marker: usize, from: Point, axes: Axes, scale: f32) -> Self {
         Self { marker, from, axes, scale, place: [0.0; 3] }
     }
 
-    /// Takes the places of all markers [m].
+    /// Updates the position from those of all markers [m].
     pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
         self.place = markers[self.marker];
     }

@@ -1,35 +1,34 @@
 //! A robot with joints in space.
-//!
-//! - `spatial_world`: what such a robot needs of a world
-//! - `composition`: the scene, the robot's sensors and motors, and what is measured of it
-//! - `scene`: the robot with the floor and the things, and what their names mean
-//! - `things`: things beside the robot, as parts of the scene
-//! - `body`: the robot itself
-//! - `spot`: a point that a name means
-//! - `sensing`: any sensor, with what is wrapped around it
-//! - `eyes`: cameras with an image
-//! - `marker_position`: where a marker is
-//! - `driving`: any motor, with what is wrapped around it
-//! - `actuation`: the actuators that motors drive
-//! - `starting`: where a trial puts joints and things
-//! - `term`: what a term measures
-//! - `episode`: a trial
-//! - `meaning`: what channels stand for
 
+/// Actuators of motors.
 mod actuation;
-mod body;
-pub(crate) mod composition;
+/// The quantities of channels.
+mod channel_quantity;
+/// Motors, with their wrappers.
 mod driving;
+/// The episode.
 pub(crate) mod episode;
+/// Cameras with an image.
 mod eyes;
+/// Positions of markers relative to a body.
 mod marker_position;
-mod meaning;
+/// A point of a body, or a marker.
+mod named_point;
+/// The robot, built in or from a file.
+mod robot_model;
+/// The robot with the floor and the objects, and the parts that names refer to.
 pub(crate) mod scene;
+/// Sensors, with their wrappers.
 mod sensing;
+/// The scene with the sensors, motors and terms of its robot.
+pub(crate) mod setup;
+/// The abilities that a world must have.
 mod spatial_world;
-mod spot;
+/// Initial placements.
 mod starting;
+/// Terms of the fitness.
 mod term;
+/// Objects of the scene.
 mod things;
 
 pub(crate) use spatial_world::SpatialWorld;

@@ -1,4 +1,4 @@
-//! The robot with the floor and the things, and what their names mean.
+//! The robot with the floor and the objects, and the parts that names refer to.
 
 use farsa_body::Pose;
 use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
@@ -8,41 +8,41 @@ use farsa_lab::Error;
 use farsa_num::Scalar;
 use farsa_view::{Geometry, Role, SceneObject};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::Document;
-use crate::jointed::body::Body;
-use crate::jointed::spot::Spot;
+use crate::jointed::named_point::NamedPoint;
+use crate::jointed::robot_model::RobotModel;
 use crate::jointed::things::{Marker, Thing, What};
 
-/// A scene made of a document.
+/// The scene of a document.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
-    /// The robot with the things, as one description.
+    /// Robot and things as one description.
     pub(crate) robot: Robot,
-    /// How many segments and colliders are the robot's own.
+    /// Numbers of the robot's own segments and colliders.
     own: [usize; 2],
     frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
     pub(crate) things: Vec<Thing>,
     pub(crate) markers: Vec<Marker>,
-    /// What is drawn beside the robot.
+    /// Drawn objects other than the robot.
     pub(crate) drawn: Vec<SceneObject>,
-    /// The collider of the floor.
+    /// Collider of the floor.
     floor: Option<usize>,
-    /// The actuators that a motor drives.
+    /// Actuators with a motor.
     pub(crate) driven: Vec<ActuatorId>,
 }
 
-/// What the robot is called where things are named, and what the floor is.
+/// Names of the robot and of the floor.
 pub(crate) const ROBOT: &str = "robot";
 const FLOOR: &str = "floor";
 
 impl Scene {
-    /// The robot of a document with its surroundings.
+    /// Builds the robot of a document with its surroundings.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a robot that cannot be, and for names that stand twice.
-    pub(crate) fn new(document: &Document, places: &Places) -> Result<Self, Error> {
-        let Body { mut robot, frames } = Body::new(document, places)?;
+    /// [`Error::Setting`] for an invalid robot and for duplicate names.
+    pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
+        let RobotModel { mut robot, frames } = RobotModel::new(document, source)?;
         let own = [robot.segments.len(), robot.colliders.len()];
         let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
         let floor = document.world.floor.then(|| {
@@ -59,19 +59,19 @@ impl Scene {
             let named = [ROBOT, FLOOR].contains(&object.name.as_str()) || known(&object.name);
             if named || things.iter().any(|thing: &Thing| thing.name == object.name) {
                 let why = format!("`{}` names something else already", object.name);
-                return Err(places.wrong(&format!("{path}/name"), why));
+                return Err(source.wrong(&format!("{path}/name"), why));
             }
-            things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, places))?);
+            things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
         let mut scene = Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new() };
         scene.pair(document);
         Ok(scene)
     }
 
-    /// Lets all touch that can meet: the robot and the floor, each thing and all else.
+    /// Adds the contact pairs: robot and floor, each thing and everything else.
     fn pair(&mut self, document: &Document) {
         let (stiffness, friction) = (document.world.stiffness, document.world.friction);
-        // Critically damped, as if all of the mass were on one point.
+        // Critical damping, c = 2 sqrt(k m), with the whole mass at one point.
         let surface = |mass: f64, friction| Surface {
             friction,
             rolling_friction: 0.0,
@@ -89,7 +89,7 @@ impl Scene {
         for (number, thing) in self.things.iter().enumerate() {
             let Some(collider) = thing.collider else { continue };
             let of_robot = (0..colliders).filter(|own| movable[*own] || movable[collider]);
-            // Beside a wall it is the robot that moves.
+            // Against a wall the mass is that of the robot.
             let smaller = if thing.mass > 0.0 { thing.mass } else { mass };
             pairs.extend(of_robot.map(|own| ([own, collider], surface(smaller, friction))));
             let floor = self.floor.filter(|_| thing.mass > 0.0);
@@ -105,7 +105,7 @@ impl Scene {
         }
     }
 
-    /// Whether a body can move in the world.
+    /// Returns true if a body can move in the world.
     fn moves(&self, body: BodyId) -> bool {
         let mut next = Some(body);
         while let Some(body) = next {
@@ -118,12 +118,12 @@ impl Scene {
         false
     }
 
-    /// The robot's own bodies, by number.
+    /// Returns the number of the robot's own bodies.
     pub(crate) fn own_bodies(&self) -> usize {
         self.own[0]
     }
 
-    /// The robot alone, as it is drawn.
+    /// Returns the robot without its surroundings, for drawings.
     pub(crate) fn alone(&self) -> Robot {
         let mut robot = self.robot.clone();
         robot.colliders.truncate(self.own[1]);
@@ -131,7 +131,8 @@ impl Scene {
         robot
     }
 
-    /// The body of the robot or the frame of its file that a name means, and where it is there; without a name the first body.
+    /// Returns a named body of the robot or frame of its file, with the pose in that body. Without a name it is the
+    /// first body.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest name.
@@ -139,17 +140,17 @@ impl Scene {
         &self,
         name: Option<&String>,
         path: &str,
-        places: &Places,
+        source: &Source,
     ) -> Result<(BodyId, Pose<f64>), Error> {
         let Some(name) = name else { return Ok((BodyId(0), Pose::identity())) };
         let of_file = self.frames.iter().find(|(known, body, _)| known == name && body.is_some());
         let of_file = of_file.and_then(|(_, body, placement)| Some(((*body)?, *placement)));
         let own =
             || self.robot.body(name).filter(|body| body.index() < self.own[0]).map(|body| (body, Pose::identity()));
-        of_file.or_else(own).ok_or_else(|| Error::unknown(&places.of(path), "body", name, self.body_names()))
+        of_file.or_else(own).ok_or_else(|| Error::unknown(&source.of(path), "body", name, self.body_names()))
     }
 
-    /// What a body is called.
+    /// Returns the name of a body.
     pub(crate) fn body_name(&self, body: BodyId) -> &str {
         self.robot.segments.get(body.index()).map_or("", |segment| &segment.name)
     }
@@ -160,7 +161,7 @@ impl Scene {
         own.chain(of_file).collect()
     }
 
-    /// A point of one of the robot's bodies.
+    /// Returns a point of a body of the robot.
     ///
     /// # Errors
     /// As [`body`](Self::body).
@@ -169,44 +170,44 @@ impl Scene {
         name: Option<&String>,
         point: [f64; 3],
         path: &str,
-        places: &Places,
+        source: &Source,
     ) -> Result<Point, Error> {
-        let (body, placement) = self.body(name, &format!("{path}/body"), places)?;
+        let (body, placement) = self.body(name, &format!("{path}/body"), source)?;
         Ok(Point { body, at: placement.transform(point).map(|x| x as f32) })
     }
 
-    /// The middle of a thing or of a body of the robot, and how far its surface is from there if that is a thing [m].
+    /// Returns the center of a thing or of a body of the robot, and the distance of a thing's surface from it [m].
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] for a wall.
-    pub(crate) fn spot(&self, name: &String, path: &str, places: &Places) -> Result<(Spot, f64), Error> {
+    pub(crate) fn point_named(&self, name: &String, path: &str, source: &Source) -> Result<(NamedPoint, f64), Error> {
         if let Some(thing) = self.things.iter().find(|thing| thing.name == *name) {
             return match thing.what {
-                What::Body(body) => Ok((Spot::Body(Point::origin(body)), thing.reach)),
-                What::Marker(number) => Ok((Spot::Marker(number), 0.0)),
+                What::Body(body) => Ok((NamedPoint::Body(Point::origin(body)), thing.reach)),
+                What::Marker(number) => Ok((NamedPoint::Marker(number), 0.0)),
                 What::Wall => {
-                    Err(places.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
+                    Err(source.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
                 }
             };
         }
-        let found = self.body(Some(name), path, places).map_err(|_| {
+        let found = self.body(Some(name), path, source).map_err(|_| {
             let names = self.things.iter().map(|thing| thing.name.as_str()).chain(self.body_names());
-            Error::unknown(&places.of(path), "object", name, names)
+            Error::unknown(&source.of(path), "object", name, names)
         });
         let (body, placement) = found?;
-        Ok((Spot::Body(Point { body, at: placement.position.map(|x| x as f32) }), 0.0))
+        Ok((NamedPoint::Body(Point { body, at: placement.position.map(|x| x as f32) }), 0.0))
     }
 
-    /// The joints that names mean; without names all of the robot for which `all` is true.
+    /// Returns named joints, or without names all of the robot for which `all` is true.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] if there is none.
+    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] without any joint.
     pub(crate) fn joints(
         &self,
         names: &[String],
         all: impl Fn(JointId) -> bool,
         path: &str,
-        places: &Places,
+        source: &Source,
     ) -> Result<Vec<JointId>, Error> {
         let own = || self.robot.joints().filter(|joint| joint.index() < self.own[0]);
         let found: Vec<JointId> = if names.is_empty() {
@@ -215,40 +216,40 @@ impl Scene {
             let named = |(index, name): (usize, &String)| {
                 let joint = own().find(|joint| self.joint_name(*joint) == name);
                 let known = own().map(|joint| self.joint_name(joint));
-                joint.ok_or_else(|| Error::unknown(&places.of(&format!("{path}/joints/{index}")), "joint", name, known))
+                joint.ok_or_else(|| Error::unknown(&source.of(&format!("{path}/joints/{index}")), "joint", name, known))
             };
             names.iter().enumerate().map(named).collect::<Result<_, _>>()?
         };
         if found.is_empty() {
-            return Err(places
+            return Err(source
                 .wrong(path, "is for joints that the robot does not have; name `joints`, and how strong they are"));
         }
         Ok(found)
     }
 
-    /// What a joint is called.
+    /// Returns the name of a joint.
     pub(crate) fn joint_name(&self, joint: JointId) -> &str {
         self.robot.segments.get(joint.index()).map_or("", |segment| &segment.joint.name)
     }
 
-    /// The positions that a joint can take [rad or m].
+    /// Returns the range of a joint [rad or m].
     pub(crate) fn range(&self, joint: JointId) -> [f64; 2] {
         self.robot.segments.get(joint.index()).map_or([f64::NEG_INFINITY, f64::INFINITY], |segment| segment.joint.range)
     }
 
-    /// The pairs of colliders by which bodies of the robot, or all, touch a thing, the floor or anything.
+    /// Returns the contact pairs between bodies of the robot, by default all, and a thing, the floor or everything.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] if there is none.
+    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] without any pair.
     pub(crate) fn pairs(
         &self,
         bodies: &[String],
         with: Option<&String>,
         path: &str,
-        places: &Places,
+        source: &Source,
     ) -> Result<Vec<PairId>, Error> {
         let named = bodies.iter().enumerate();
-        let named = named.map(|(index, name)| Ok(self.body(Some(name), &format!("{path}/bodies/{index}"), places)?.0));
+        let named = named.map(|(index, name)| Ok(self.body(Some(name), &format!("{path}/bodies/{index}"), source)?.0));
         let named = named.collect::<Result<Vec<_>, Error>>()?;
         let feels = |collider: usize| {
             let body = self.robot.colliders[collider].body.filter(|_| collider < self.own[1]);
@@ -258,12 +259,12 @@ impl Scene {
             Some(name) if name != FLOOR => {
                 let found = self.things.iter().find(|thing| thing.name == *name);
                 let names = self.things.iter().map(|thing| thing.name.as_str()).chain([FLOOR]);
-                let place = places.of(&format!("{path}/with"));
+                let place = source.of(&format!("{path}/with"));
                 found.ok_or_else(|| Error::unknown(&place, "object", name, names))?.collider
             }
             _ => None,
         };
-        // The floor of a model is what stands in it.
+        // The floor of a model is its fixed geometry.
         let is_floor = |collider: usize| {
             Some(collider) == self.floor || collider < self.own[1] && self.robot.colliders[collider].body.is_none()
         };
@@ -278,12 +279,12 @@ impl Scene {
         });
         let found: Vec<PairId> = pairs.map(|(number, _)| PairId(number as u16)).collect();
         if found.is_empty() {
-            return Err(places.wrong(path, "can touch nothing: no shape of the robot meets anything there"));
+            return Err(source.wrong(path, "can touch nothing: no shape of the robot meets anything there"));
         }
         Ok(found)
     }
 
-    /// The pairs by which the robot runs into a thing.
+    /// Returns the contact pairs between the robot and things.
     pub(crate) fn collisions(&self) -> Vec<PairId> {
         let things = self.things.iter().filter_map(|thing| thing.collider);
         let things: Vec<usize> = things.collect();

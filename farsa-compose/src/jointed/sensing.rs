@@ -1,4 +1,4 @@
-//! Any sensor, with what is wrapped around it.
+//! Sensors of a robot with joints, with their wrappers.
 
 use farsa_body::ports::{Channels, PairId, Sensor};
 use farsa_body::sensors::{
@@ -8,15 +8,15 @@ use farsa_body::sensors::{
 use farsa_body::{ChannelError, Pose};
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{self, AxesName, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::marker_position::MarkerPosition;
+use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
-use crate::jointed::spot::Spot;
-use crate::parts::bounded::Room;
 use crate::parts::eye::{Eye, eye};
+use crate::parts::sizes::MemoryBudget;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot with joints.
@@ -39,7 +39,7 @@ pub(crate) enum Sensing {
     Wrapped(Wrapped<Self>),
 }
 
-/// Calls a method of whatever sensor it is.
+/// Calls a method of the sensor of any kind.
 macro_rules! sensor {
     ($sensing:expr, $sensor:ident => $call:expr) => {
         match $sensing {
@@ -62,7 +62,7 @@ macro_rules! sensor {
     };
 }
 
-/// A camera, which only some worlds show something.
+/// A camera with sectors. Some worlds have nothing for it to see.
 #[derive(Clone, Debug)]
 pub(crate) struct Camera(Eye);
 
@@ -107,7 +107,7 @@ impl Reseed for Sensing {
 }
 
 impl Sensing {
-    /// The camera of which it has an image.
+    /// Returns the camera of an image.
     pub(crate) fn camera(&self) -> Option<&farsa_body::sensors::Camera> {
         match self {
             Self::Image(image) => Some(image.camera()),
@@ -117,7 +117,7 @@ impl Sensing {
         }
     }
 
-    /// Takes the places of all markers [m], if it looks at one.
+    /// Updates the position of a marker from those of all markers [m].
     pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
         match self {
             Self::Marker(marker) => marker.look(markers),
@@ -127,28 +127,28 @@ impl Sensing {
     }
 }
 
-/// A sensor that stands at a path of the document, with its wrappers.
+/// Builds the sensor at a path of the document, with its wrappers.
 ///
 /// # Errors
-/// [`Error::Setting`] for what cannot be sensed or wrapped so, [`Error::Unknown`] for a body, joint or thing that there is not.
+/// [`Error::Setting`] for invalid sensors and wrappers, [`Error::Unknown`] for an unknown body, joint or thing.
 pub(crate) fn sensor(
     sensor: &document::Sensor,
     scene: &Scene,
     path: &str,
-    room: &mut Room,
-    places: &Places,
+    budget: &mut MemoryBudget,
+    source: &Source,
 ) -> Result<Sensing, Error> {
-    let mut made = bare(&sensor.kind, scene, path, places)?;
+    let mut made = bare(&sensor.kind, scene, path, source)?;
     for (index, wrapper) in sensor.wrappers.iter().enumerate() {
         let path = format!("{path}/wrappers/{index}");
-        made = Sensing::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
+        made = Sensing::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
     }
     Ok(made)
 }
 
-fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result<Sensing, Error> {
-    let wrong = |error: ChannelError| places.wrong(path, error);
-    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), places).map(|(body, _)| body);
+fn bare(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
+    let wrong = |error: ChannelError| source.wrong(path, error);
+    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);
     Ok(match kind {
         SensorKind::JointPosition { joints, from, to } => {
             let one = |joint| {
@@ -158,30 +158,30 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result
                 if ends.iter().all(|end| end.is_finite()) {
                     return JointPosition::new(joint, ends[0], ends[1]).map_err(wrong);
                 }
-                Err(places.wrong(path, why()))
+                Err(source.wrong(path, why()))
             };
-            let joints = scene.joints(joints, |_| true, path, places)?;
+            let joints = scene.joints(joints, |_| true, path, source)?;
             Sensing::JointPosition(joints.into_iter().map(one).collect::<Result<_, _>>()?)
         }
         SensorKind::JointSpeed { joints } => {
-            let joints = scene.joints(joints, |_| true, path, places)?;
+            let joints = scene.joints(joints, |_| true, path, source)?;
             Sensing::JointSpeed(joints.into_iter().map(JointSpeed::new).collect())
         }
         SensorKind::Touch { bodies, with } => {
-            let pairs = scene.pairs(bodies, with.as_ref(), path, places)?;
+            let pairs = scene.pairs(bodies, with.as_ref(), path, source)?;
             Sensing::Touch(Touch::new(pairs, 1.0).map_err(wrong)?)
         }
         SensorKind::ContactForce { bodies, with } => {
-            Sensing::ContactForce(ContactForce::new(scene.pairs(bodies, with.as_ref(), path, places)?))
+            Sensing::ContactForce(ContactForce::new(scene.pairs(bodies, with.as_ref(), path, source)?))
         }
         SensorKind::TargetPosition { target, body, point, axes, scale } => {
-            let from = scene.point(body.as_ref(), *point, path, places)?;
+            let from = scene.point(body.as_ref(), *point, path, source)?;
             let axes = if *axes == AxesName::Body { Axes::Body } else { Axes::World };
-            match scene.spot(target, &format!("{path}/target"), places)?.0 {
-                Spot::Body(target) => {
+            match scene.point_named(target, &format!("{path}/target"), source)?.0 {
+                NamedPoint::Body(target) => {
                     Sensing::Target(TargetPosition::new(target, from, axes, *scale as f32).map_err(wrong)?)
                 }
-                Spot::Marker(marker) => Sensing::Marker(MarkerPosition::new(marker, from, axes, *scale as f32)),
+                NamedPoint::Marker(marker) => Sensing::Marker(MarkerPosition::new(marker, from, axes, *scale as f32)),
             }
         }
         SensorKind::BodyPose { body: name } => Sensing::Pose(BodyPose::new(body(name)?)),
@@ -190,19 +190,19 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result
             Sensing::Velocity(BodyVelocity::new(body(name)?, axes))
         }
         SensorKind::Height { body, point } => {
-            Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, places)?))
+            Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, source)?))
         }
         SensorKind::Camera(camera) => {
-            let (body, placement) = scene.body(camera.body.as_ref(), &format!("{path}/body"), places)?;
+            let (body, placement) = scene.body(camera.body.as_ref(), &format!("{path}/body"), source)?;
             if placement != Pose::identity() {
                 let why = format!("lies within `{}`; a camera is at the origin of a body", scene.body_name(body));
-                return Err(places.wrong(&format!("{path}/body"), why));
+                return Err(source.wrong(&format!("{path}/body"), why));
             }
             Sensing::Camera(Camera(eye(body, camera).map_err(wrong)?))
         }
-        SensorKind::CameraImage { eye } => Sensing::Image(image(eye, scene, path, places)?),
-        SensorKind::ColorBlobs { eye, colors } => Sensing::Blobs(blobs(eye, colors, scene, path, places)?),
-        SensorKind::VisualOffset { eye, of, from } => Sensing::Offset(offset(eye, [of, from], scene, path, places)?),
+        SensorKind::CameraImage { eye } => Sensing::Image(image(eye, scene, path, source)?),
+        SensorKind::ColorBlobs { eye, colors } => Sensing::Blobs(blobs(eye, colors, scene, path, source)?),
+        SensorKind::VisualOffset { eye, of, from } => Sensing::Offset(offset(eye, [of, from], scene, path, source)?),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
         SensorKind::Infrared { .. }
         | SensorKind::Light { .. }
@@ -213,6 +213,6 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result
         | SensorKind::Signal { .. }
         | SensorKind::Attachment {}
         | SensorKind::Energy {}
-        | SensorKind::Carried {} => return Err(places.wrong(path, "is for robots on wheels; this one has joints")),
+        | SensorKind::Carried {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }

@@ -1,4 +1,4 @@
-//! What a robot with joints needs of a world.
+//! The abilities that a world must have for a robot with joints.
 
 use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,
@@ -17,7 +17,7 @@ pub(crate) trait SpatialWorld:
     + Vision
     + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
 {
-    /// Shows a camera what it sees.
+    /// Draws the view of a camera.
     fn show(&self, eye: &mut Eye, out: &mut [f32]);
 }
 
@@ -35,7 +35,7 @@ impl SpatialWorld for Lane<'_> {
 
 #[cfg(feature = "rapier")]
 impl SpatialWorld for farsa_physics::rapier::World {
-    /// Shows nothing: a file with a camera is refused with this engine.
+    /// Draws nothing, because files with a camera are rejected for this engine.
     fn show(&self, _: &mut Eye, out: &mut [f32]) {
         out.fill(0.0);
     }

@@ -1,4 +1,4 @@
-//! Where a trial puts joints and things.
+//! Initial placements of joints and things.
 
 use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::JointKind;
@@ -6,23 +6,23 @@ use farsa_body::{Pose, Twist};
 use farsa_lab::Error;
 use farsa_num::{Scalar, Stream, sin_cos};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Placing};
 use crate::jointed::SpatialWorld;
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::things::What;
 use crate::parts::choice::Choice;
 
-/// A rule of the start.
+/// A placement with its part.
 #[derive(Clone, Debug)]
 struct Rule {
     what: Placed,
-    /// How far what is placed reaches from its middle at most [m].
+    /// Greatest distance of the surface from the center [m].
     reach: f64,
     how: How,
 }
 
-/// What is placed.
+/// A part that a trial places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Placed {
     Joint(JointId),
@@ -38,34 +38,35 @@ enum How {
     Fixed(Pose),
 }
 
-/// The start of a trial.
+/// The placements of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Starting {
     rules: Vec<Rule>,
-    /// Where markers are that no rule places.
+    /// Positions of markers without a rule.
     markers: Vec<[f32; 3]>,
-    /// What was placed before, with its reach [m].
+    /// Positions placed earlier, with their reach [m].
     before: Vec<([f32; 3], f64)>,
-    /// The numbers of the points that rules have taken.
+    /// Numbers of the chosen points, by rule.
     chosen: Vec<usize>,
 }
 
-/// Places that are tried at most.
+/// Most attempts to find a place.
 const TRIES: u32 = 1000;
 
 impl Starting {
-    /// The start that a document describes.
+    /// Reads the placements of a document.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a thing or joint that there is not, [`Error::Setting`] for one that is placed twice or cannot be.
-    pub(crate) fn new(document: &Document, scene: &Scene, places: &Places) -> Result<Self, Error> {
+    /// [`Error::Unknown`] for an unknown thing or joint, [`Error::Setting`] for one that is placed twice or cannot be
+    /// placed.
+    pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
-            let (what, reach) = named(&start.place, scene, &path, places)?;
-            let how = how(document, index, what, &path, places)?;
+            let (what, reach) = named(&start.place, scene, &path, source)?;
+            let how = how(document, index, what, &path, source)?;
             if rules.iter().any(|other| other.what == what) {
-                return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
+                return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
             rules.push(Rule { what, reach, how });
         }
@@ -77,10 +78,10 @@ impl Starting {
             };
             let path = format!("/objects/{index}");
             if object.at.is_none() && what.is_none() {
-                return Err(places.wrong(&path, "lacks the key `at`: no trial places walls"));
+                return Err(source.wrong(&path, "lacks the key `at`: no trial places walls"));
             }
             if object.at.is_none() && !rules.iter().any(|rule| Some(rule.what) == what) {
-                return Err(places.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
+                return Err(source.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
             }
         }
         let markers = scene.markers.iter().map(|marker| marker.at.map(|x| x as f32)).collect();
@@ -88,7 +89,7 @@ impl Starting {
         Ok(Self { rules, markers, before, chosen })
     }
 
-    /// Puts all in its place, by draws of the stream in the order of the rules; false if something finds no place.
+    /// Places all parts, by draws in the order of the rules. Returns false if one finds no place.
     pub(crate) fn arrange<W: SpatialWorld>(
         &mut self,
         world: &mut W,
@@ -131,7 +132,7 @@ impl Starting {
     }
 }
 
-/// A place in a box, so far from what was placed before.
+/// Draws a place in a box at the given distance from earlier ones.
 fn within(
     low: &[f64; 3],
     high: &[f64; 3],
@@ -150,44 +151,44 @@ fn within(
     })
 }
 
-/// What a name means, and how far it reaches.
-fn named(name: &String, scene: &Scene, path: &str, places: &Places) -> Result<(Placed, f64), Error> {
+/// Returns a named part and its reach.
+fn named(name: &String, scene: &Scene, path: &str, source: &Source) -> Result<(Placed, f64), Error> {
     let path = format!("{path}/place");
     if name == ROBOT {
         let root = scene.robot.segments.first().filter(|root| root.joint.kind == JointKind::Floating);
         let why = "`robot` stands in the world; only one whose first body floats is placed, and others have `base`";
-        return root.map(|_| (Placed::Body(BodyId(0)), 0.0)).ok_or_else(|| places.wrong(&path, why));
+        return root.map(|_| (Placed::Body(BodyId(0)), 0.0)).ok_or_else(|| source.wrong(&path, why));
     }
     if let Some(thing) = scene.things.iter().find(|thing| thing.name == *name) {
         return match thing.what {
             What::Body(body) => Ok((Placed::Body(body), thing.reach)),
             What::Marker(number) => Ok((Placed::Marker(number), 0.0)),
-            What::Wall => Err(places.wrong(&path, format!("`{name}` is a wall, which stands where `at` says"))),
+            What::Wall => Err(source.wrong(&path, format!("`{name}` is a wall, which stands where `at` says"))),
         };
     }
     let joints = || scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
     let joint = joints().find(|joint| scene.joint_name(*joint) == name);
     let known = joints().map(|joint| scene.joint_name(joint)).chain([ROBOT]);
     let known = known.chain(scene.things.iter().map(|thing| thing.name.as_str()));
-    let joint = joint.ok_or_else(|| Error::unknown(&places.of(&path), "joint or object", name, known))?;
+    let joint = joint.ok_or_else(|| Error::unknown(&source.of(&path), "joint or object", name, known))?;
     Ok((Placed::Joint(joint), 0.0))
 }
 
-/// How the rule of a number places what it is about.
-fn how(document: &Document, rule: usize, what: Placed, path: &str, places: &Places) -> Result<How, Error> {
+/// Reads the placement of a rule.
+fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Source) -> Result<How, Error> {
     let joint = matches!(what, Placed::Joint(_));
     match &document.start[rule].how {
         Placing::Turned { low, high } if joint => {
             if low > high {
-                return Err(places.wrong(path, format!("from {low} to {high} runs backwards")));
+                return Err(source.wrong(path, format!("from {low} to {high} runs backwards")));
             }
             Ok(How::Turned { low: *low, high: *high })
         }
-        Placing::Turned { .. } => Err(places.wrong(&format!("{path}/at"), "is for joints; this is none")),
-        _ if joint => Err(places.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
+        Placing::Turned { .. } => Err(source.wrong(&format!("{path}/at"), "is for joints; this is none")),
+        _ if joint => Err(source.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
         Placing::InBox { low, high, apart } => {
             if (0..3).any(|k| low[k] > high[k]) {
-                return Err(places.wrong(path, "has a `low` above its `high`"));
+                return Err(source.wrong(path, "has a `low` above its `high`"));
             }
             Ok(How::Within { low: *low, high: *high, apart: *apart })
         }
@@ -197,20 +198,20 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, places: &Plac
                 let found = <[f64; 3]>::try_from(point.as_slice());
                 found
                     .map(|point| point.map(|x| x as f32))
-                    .map_err(|_| places.wrong(&format!("{path}/points/{index}"), why()))
+                    .map_err(|_| source.wrong(&format!("{path}/points/{index}"), why()))
             };
             let points = points.iter().enumerate().map(point).collect::<Result<_, _>>()?;
-            Ok(How::OneOf(Choice::new(points, like.as_ref(), document, rule, places)?))
+            Ok(How::OneOf(Choice::new(points, like.as_ref(), document, rule, source)?))
         }
         Placing::Fixed { point, heading } => {
             let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {
-                return Err(places.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
+                return Err(source.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
             };
             let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
             let pose = Pose { position: point, rotation: [0.0, 0.0, sine, cosine] };
             Ok(How::Fixed(pose.cast()))
         }
-        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(places
+        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(source
             .wrong(&format!("{path}/at"), "is for robots on wheels; beside one with joints it is `in-box` or `fixed`")),
     }
 }

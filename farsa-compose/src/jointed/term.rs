@@ -1,30 +1,30 @@
-//! What a term of the fitness measures of a robot with joints.
+//! Terms of the fitness for a robot with joints.
 
 use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::jointed::SpatialWorld;
+use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
-use crate::jointed::spot::Spot;
 use crate::parts::agents::Agents;
 
-/// What is measured.
+/// The measure of a term.
 #[derive(Clone, Debug)]
 enum Measure {
-    /// Nearer than so far beyond the thing's surface [m].
-    Near(Spot, Point, f64),
-    Distance(Spot, Point),
-    Approach(Spot, Point),
+    /// With the greatest distance of the surfaces [m].
+    Near(NamedPoint, Point, f64),
+    Distance(NamedPoint, Point),
+    Approach(NamedPoint, Point),
     Touch(Vec<PairId>),
     Displacement(Point),
-    Moved(Spot),
+    Moved(NamedPoint),
     Speed(BodyId),
     Forward(BodyId),
-    /// These two along a unit vector of the world.
+    /// With the components of a unit vector of the world.
     Progress(BodyId, [f64; 3]),
     Position(Point, [f64; 3]),
     Height(Point),
@@ -37,75 +37,78 @@ enum Measure {
     Steps,
 }
 
-/// A term's measure with what it remembers of the trial.
+/// A measure with its state in a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     measure: Measure,
-    /// Where what it measures was at the start, and a step before [m].
+    /// Position at the start, and in the previous step [m].
     began: [f64; 3],
     before: [f64; 3],
-    /// The distance at the start [m].
+    /// Distance at the start [m].
     far: f64,
 }
 
 impl Term {
-    /// What a kind of term that stands at a path of the document measures; `sensors` are those of the robot with their channels.
+    /// Reads a term at a path of the document. `sensors` are the channels of the robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a thing, body, joint or sensor that there is not, [`Error::Setting`] for what cannot be measured.
+    /// [`Error::Unknown`] for an unknown thing, body, joint or sensor, [`Error::Setting`] for a part without the
+    /// measure.
     pub(crate) fn new(
         kind: &RewardKind,
         path: &str,
         sensors: &[(String, [usize; 2])],
         scene: &Scene,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
-        let measure = measure(kind, path, sensors, scene, places)?;
+        let measure = measure(kind, path, sensors, scene, source)?;
         Ok(Self { measure, began: [0.0; 3], before: [0.0; 3], far: 0.0 })
     }
 
-    /// Whether it measures what happened in a step.
+    /// Returns true if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
         matches!(self.measure, Measure::Forward(_) | Measure::Progress(..))
     }
 
-    /// Looks how the trial begins.
+    /// Stores the state at the start of a trial.
     pub(crate) fn begin<W: SpatialWorld>(&mut self, world: &W, markers: &[[f32; 3]]) {
         self.began = self.place(world, markers);
         self.before = self.began;
-        if let Measure::Approach(spot, point) = &self.measure {
-            self.far = apart(spot.position(world, markers), place_of(world, point));
+        if let Measure::Approach(point_named, point) = &self.measure {
+            self.far = apart(point_named.position(world, markers), place_of(world, point));
         }
     }
 
-    /// Remembers where it is now, for the next step.
+    /// Stores the position for the next step.
     pub(crate) fn remember<W: SpatialWorld>(&mut self, world: &W, markers: &[[f32; 3]]) {
         if self.looks_back() {
             self.before = self.place(world, markers);
         }
     }
 
-    /// Where what it measures is [m].
+    /// Returns the position of the measured part [m].
     fn place<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         match &self.measure {
-            Measure::Moved(spot) => spot.position(world, markers),
+            Measure::Moved(point_named) => point_named.position(world, markers),
             Measure::Displacement(point) => place_of(world, point),
             Measure::Forward(body) | Measure::Progress(body, _) => place_of(world, &Point::origin(*body)),
             _ => [0.0; 3],
         }
     }
 
-    /// What it measures after a step.
+    /// Returns the measure after a step.
     pub(crate) fn value<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]], agents: &Agents) -> f64 {
-        let distance = |spot: &Spot, point: &Point| apart(spot.position(world, markers), place_of(world, point));
+        let distance = |point_named: &NamedPoint, point: &Point| {
+            apart(point_named.position(world, markers), place_of(world, point))
+        };
         let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
         match &self.measure {
-            Measure::Near(spot, point, within) => {
-                let distance = distance(spot, point);
+            Measure::Near(point_named, point, within) => {
+                let distance = distance(point_named, point);
                 if distance.is_finite() { yes(distance < *within) } else { f64::NAN }
             }
-            Measure::Distance(spot, point) => distance(spot, point),
-            Measure::Approach(spot, point) => self.far - distance(spot, point),
+            Measure::Distance(point_named, point) => distance(point_named, point),
+            Measure::Approach(point_named, point) => self.far - distance(point_named, point),
             Measure::Touch(pairs) => yes(pairs.iter().any(|pair| world.touches(*pair))),
             Measure::Displacement(_) | Measure::Moved(_) => apart(self.place(world, markers), self.began),
             Measure::Speed(body) => length(world.velocity(*body).linear.map(f64::from)),
@@ -139,7 +142,7 @@ impl Term {
         }
     }
 
-    /// The way of the last step [m].
+    /// Returns the displacement of the last step [m].
     fn way<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         let now = self.place(world, markers);
         [0, 1, 2].map(|k| now[k] - self.before[k])
@@ -151,37 +154,37 @@ fn measure(
     path: &str,
     sensors: &[(String, [usize; 2])],
     scene: &Scene,
-    places: &Places,
+    source: &Source,
 ) -> Result<Measure, Error> {
-    let spot = |object: &String| scene.spot(object, &format!("{path}/object"), places);
-    let point = |body: &Option<String>, at: &[f64; 3]| scene.point(body.as_ref(), *at, path, places);
-    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), places).map(|(body, _)| body);
+    let point_named = |object: &String| scene.point_named(object, &format!("{path}/object"), source);
+    let point = |body: &Option<String>, at: &[f64; 3]| scene.point(body.as_ref(), *at, path, source);
+    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);
     let direction = |along: &[f64; 3]| {
         let far = length(*along);
         let points = far != 0.0;
-        points.then(|| along.map(|x| x / far)).ok_or_else(|| places.wrong(&format!("{path}/along"), "points nowhere"))
+        points.then(|| along.map(|x| x / far)).ok_or_else(|| source.wrong(&format!("{path}/along"), "points nowhere"))
     };
     Ok(match kind {
         RewardKind::Near { object, within, body, point: at } => {
-            let (spot, reach) = spot(object)?;
-            Measure::Near(spot, point(body, at)?, reach + within)
+            let (point_named, reach) = point_named(object)?;
+            Measure::Near(point_named, point(body, at)?, reach + within)
         }
-        RewardKind::Distance { object, body, point: at } => Measure::Distance(spot(object)?.0, point(body, at)?),
-        RewardKind::Approach { object, body, point: at } => Measure::Approach(spot(object)?.0, point(body, at)?),
-        RewardKind::Touch { bodies, with } => Measure::Touch(scene.pairs(bodies, with.as_ref(), path, places)?),
+        RewardKind::Distance { object, body, point: at } => Measure::Distance(point_named(object)?.0, point(body, at)?),
+        RewardKind::Approach { object, body, point: at } => Measure::Approach(point_named(object)?.0, point(body, at)?),
+        RewardKind::Touch { bodies, with } => Measure::Touch(scene.pairs(bodies, with.as_ref(), path, source)?),
         RewardKind::Displacement { body } => Measure::Displacement(point(body, &[0.0; 3])?),
-        RewardKind::Moved { object } => Measure::Moved(spot(object)?.0),
+        RewardKind::Moved { object } => Measure::Moved(point_named(object)?.0),
         RewardKind::Speed { body: name } => Measure::Speed(body(name)?),
         RewardKind::Forward { body: name } => Measure::Forward(body(name)?),
         RewardKind::Progress { along, body: name } => Measure::Progress(body(name)?, direction(along)?),
         RewardKind::Position { along, body, point: at } => Measure::Position(point(body, at)?, direction(along)?),
         RewardKind::Height { body, point: at } => Measure::Height(point(body, at)?),
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
-        RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, places)?),
+        RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, source)?),
         RewardKind::Sensor { sensor } => {
             let found = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
             let names = sensors.iter().map(|(name, _)| name.as_str());
-            let place = places.of(&format!("{path}/sensor"));
+            let place = source.of(&format!("{path}/sensor"));
             Measure::Sensor(found.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
         }
         RewardKind::Effort {} => Measure::Effort,
@@ -195,7 +198,7 @@ fn measure(
         | RewardKind::Food {}
         | RewardKind::Energy {}
         | RewardKind::Alive {}
-        | RewardKind::Held {} => return Err(places.wrong(path, "is for robots on wheels; this one has joints")),
+        | RewardKind::Held {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }
 

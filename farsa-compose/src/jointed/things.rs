@@ -1,4 +1,4 @@
-//! Things beside the robot, as parts of the scene.
+//! Objects of the scene.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -7,46 +7,46 @@ use farsa_lab::Error;
 use farsa_num::{Scalar, sin_cos};
 use farsa_view::{Geometry, Role, SceneObject, screen_color};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Object, ObjectKind};
 
-/// A thing that a name means.
+/// A named thing.
 #[derive(Clone, Debug)]
 pub(crate) struct Thing {
     pub(crate) name: String,
     pub(crate) what: What,
-    /// How far its surface is from its middle at most [m].
+    /// Greatest distance of the surface from the center [m].
     pub(crate) reach: f64,
-    /// Coefficient of friction with what is no robot.
+    /// Coefficient of friction with other things.
     pub(crate) friction: f64,
-    /// Mass, or 0 of what does not move [kg].
+    /// Mass, 0 for fixed things [kg].
     pub(crate) mass: f64,
-    /// Its collider.
+    /// Collider of the thing.
     pub(crate) collider: Option<usize>,
 }
 
-/// What a thing is.
+/// The kind of a thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum What {
-    /// A body that moves.
+    /// A movable body.
     Body(BodyId),
-    /// A marker by its number.
+    /// A marker, by number.
     Marker(usize),
-    /// Something that stands.
+    /// A fixed obstacle.
     Wall,
 }
 
-/// A place that is seen and touches nothing.
+/// A visible place without contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Marker {
     pub(crate) name: String,
     pub(crate) radius: f64,
     pub(crate) color: [f64; 3],
-    /// Where it is at first [m].
+    /// Initial position [m].
     pub(crate) at: [f64; 3],
 }
 
-/// A point of which the height may be left open.
+/// Reads a point whose height is optional.
 fn in_space(at: Option<&[f64]>, height: f64) -> [f64; 3] {
     match at {
         Some(&[x, y, z]) => [x, y, z],
@@ -56,16 +56,16 @@ fn in_space(at: Option<&[f64]>, height: f64) -> [f64; 3] {
 }
 
 impl Thing {
-    /// Adds an object of the document to a scene; walls in grey are drawn so.
+    /// Adds an object of the document to a scene.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what there is beside robots on wheels only.
+    /// [`Error::Setting`] for objects of robots on wheels.
     pub(crate) fn add(
         object: &Object,
         robot: &mut Robot,
         markers: &mut Vec<Marker>,
         drawn: &mut Vec<SceneObject>,
-        (path, places): (&str, &Places),
+        (path, source): (&str, &Source),
     ) -> Result<Self, Error> {
         let Object { name, at, heading, kind } = object;
         let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
@@ -104,7 +104,7 @@ impl Thing {
             }
             ObjectKind::Cylinder { .. } | ObjectKind::Disc { .. } | ObjectKind::Rectangle { .. } => {
                 let why = "is for robots on wheels; beside one with joints are walls, blocks, balls and markers";
-                return Err(places.wrong(path, why));
+                return Err(source.wrong(path, why));
             }
         };
         Ok(Self { name: name.clone(), what, reach, friction, mass, collider })

@@ -1,4 +1,4 @@
-//! Robots as they are controlled: channels, copies of one network, and what they have earned.
+//! Controlled robots: channels, copies of one network, rewards.
 
 use std::sync::Arc;
 
@@ -11,46 +11,46 @@ use crate::parts::groups::Groups;
 use crate::parts::interventions::{first_output, interventions};
 use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
-use crate::parts::wiring::Wiring;
+use crate::parts::network_spec::NetworkSpec;
 
-/// What robots of a document have in any world. Copies share the document and the test protocols.
+/// The robots of a document in any world. Copies share the document and the test protocols.
 #[derive(Clone, Debug)]
 pub(crate) struct Agents {
     pub(crate) document: Arc<Document>,
-    pub(crate) wiring: Wiring,
+    pub(crate) spec: NetworkSpec,
     pub(crate) ledger: Ledger,
     pub(crate) groups: Groups,
-    /// The test protocols.
+    /// Test protocols.
     pub(crate) interventions: Arc<Interventions>,
-    /// The individuals of each population, where there are several.
+    /// Individuals of each population, if there are several.
     pub(crate) size: usize,
-    /// The robots that evolve in this trial, from the first to before the last.
+    /// Evolving robots of this trial, from the first up to the one after the last.
     pub(crate) evolving: [usize; 2],
     pub(crate) networks: Vec<NormalisedController<AnyNetwork>>,
-    /// What each robot sensed and did last.
+    /// Last sensor and motor values of all robots.
     pub(crate) x: Vec<f32>,
     pub(crate) y: Vec<f32>,
 }
 
 impl Agents {
-    /// Robots at rest.
-    pub(crate) fn new(document: Document, wiring: Wiring, ledger: Ledger, groups: Groups) -> Self {
+    /// Creates robots at rest.
+    pub(crate) fn new(document: Document, spec: NetworkSpec, ledger: Ledger, groups: Groups) -> Self {
         let robots = groups.robots();
-        let networks = vec![NormalisedController::new(wiring.network.clone()); robots];
-        let (x, y) = (vec![0.0; robots * wiring.inputs.len()], vec![0.0; robots * wiring.outputs.len()]);
-        let interventions = Arc::new(interventions(&document.network, &wiring));
+        let networks = vec![NormalisedController::new(spec.network.clone()); robots];
+        let (x, y) = (vec![0.0; robots * spec.inputs.len()], vec![0.0; robots * spec.outputs.len()]);
+        let interventions = Arc::new(interventions(&document.network, &spec));
         let document = Arc::new(document);
-        Self { document, wiring, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
+        Self { document, spec, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
     }
 
-    /// Begins a trial; `arranged` says whether it could.
+    /// Begins a trial. `arranged` is false if something had no place.
     pub(crate) fn begin(&mut self, arranged: bool) {
         self.ledger.begin(arranged);
         self.networks.iter_mut().for_each(farsa_nn::Controller::reset);
     }
 
-    /// Gives the robots of each population their network, those that are tested as the case says; false if there are more or
-    /// fewer parameters.
+    /// Loads the network of each population, and applies the test case to the evolving robots. Returns false for
+    /// another number of parameters.
     pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
         let ranges = self.groups.ranges();
@@ -60,7 +60,7 @@ impl Agents {
         let mut others = opponents.iter().copied();
         let mut loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
             let given = if population == own { parameters } else { others.next().unwrap_or(parameters) };
-            let Some(all) = self.wiring.searched.all(given) else { return false };
+            let Some(all) = self.spec.searched.all(given) else { return false };
             let mut networks = self.networks[first..end].iter_mut();
             networks.all(|network| network.load(normalisation) && network.controller_mut().load(all))
         });
@@ -72,7 +72,7 @@ impl Agents {
         loaded
     }
 
-    /// What came of a trial.
+    /// Returns the outcome of a trial.
     pub(crate) fn outcome(&self) -> Outcome {
         if self.ledger.failed {
             return Outcome::failed();
@@ -87,9 +87,9 @@ impl Agents {
         Outcome { observed: merged, ..self.ledger.outcome() }
     }
 
-    /// A schema of bodies with channels, network and terms; `places` are the scalars before those of the terms.
-    pub(crate) fn schema(&self, bodies: Schema, places: Vec<Channel>) -> Schema {
-        let Wiring { inputs, outputs, network, .. } = &self.wiring;
+    /// Returns the schema of bodies with channels, network and terms. `scalars` come first among the scalars.
+    pub(crate) fn schema(&self, bodies: Schema, scalars: Vec<Channel>) -> Schema {
+        let NetworkSpec { inputs, outputs, network, .. } = &self.spec;
         let mut schema = bodies.with_sensors(inputs).with_outputs(outputs);
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
         let (x, y) = (inputs.len(), inputs.len() + outputs.len());
@@ -108,27 +108,27 @@ impl Agents {
         };
         let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&tally.name).group("term"));
         let fitness = Channel::new("fitness so far").group("fitness");
-        Schema { scalars: places.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
+        Schema { scalars: scalars.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
     }
 
-    /// What tests can change by name, where `schema` is what robots record: neurons by their numbers in the network.
+    /// Returns the names for tests, for recordings with `schema`. Neurons are numbered as in the network.
     pub(crate) fn anatomy(&self, schema: &Schema) -> Anatomy {
-        let Wiring { network, outputs, .. } = &self.wiring;
+        let NetworkSpec { network, outputs, .. } = &self.spec;
         Anatomy::new(schema, &self.description()).with_first(0, first_output(network, outputs.len()))
     }
 
-    /// What robots sense, do and compute with.
+    /// Describes sensors, motors and network.
     pub(crate) fn description(&self) -> Description {
-        let Self { document, wiring, .. } = self;
+        let Self { document, spec, .. } = self;
         let group = |((name, [first, end]), about): (&(String, [usize; 2]), &String)| {
             ChannelGroup::new(name, end - first, about)
         };
-        let (of_sensors, of_motors) = wiring.about.split_at(wiring.sensors.len().min(wiring.about.len()));
+        let (of_sensors, of_motors) = spec.about.split_at(spec.sensors.len().min(spec.about.len()));
         Description {
-            sensors: wiring.sensors.iter().zip(of_sensors).map(group).collect(),
-            motors: wiring.motors.iter().zip(of_motors).map(group).collect(),
-            network: wiring.network.summary(),
-            parameters: wiring.searched.parameters().len(),
+            sensors: spec.sensors.iter().zip(of_sensors).map(group).collect(),
+            motors: spec.motors.iter().zip(of_motors).map(group).collect(),
+            network: spec.network.summary(),
+            parameters: spec.searched.parameters().len(),
             steps: document.episode.steps as usize,
             step_seconds: document.world.time_step,
         }

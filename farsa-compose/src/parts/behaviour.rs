@@ -1,31 +1,31 @@
-//! What there is to say of an individual beside its fitness.
+//! Objectives and measures of an individual in addition to its fitness.
 
 use farsa_lab::{Behaviour, Error, Note, Outcome, Parameter};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::BehaviourOfTerms;
 
-/// Terms that are objectives or describe a behaviour, by the notes of outcomes.
+/// Terms that are objectives or measures, from the notes of outcomes.
 #[derive(Clone, Debug)]
 pub(crate) struct TermBehaviour {
     objectives: Vec<(String, f64)>,
     descriptors: Vec<Parameter>,
 }
 
-/// What the note is called that has the measure of a term before its weight.
+/// Returns the name of the note with a term before its weight.
 pub(crate) fn note_of(term: &str) -> String {
     format!("measured {term}")
 }
 
 impl TermBehaviour {
-    /// What a document says, whose terms have these names; `None` if it says nothing.
+    /// Reads the objectives and measures of a document with these terms. Returns `None` without any.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a term that there is not, [`Error::Setting`] for a range that does not rise.
-    pub(crate) fn new(behaviour: &BehaviourOfTerms, names: &[String], places: &Places) -> Result<Option<Self>, Error> {
+    /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for an empty range.
+    pub(crate) fn new(behaviour: &BehaviourOfTerms, names: &[String], source: &Source) -> Result<Option<Self>, Error> {
         let known = |name: &String, path: String| {
             let found = names.iter().find(|known| *known == name).cloned();
-            found.ok_or_else(|| Error::unknown(&places.of(&path), "term", name, names.iter().map(String::as_str)))
+            found.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))
         };
         let objectives = behaviour.objectives.iter().enumerate().map(|(index, objective)| {
             let name = known(&objective.term, format!("/behaviour/objectives/{index}/term"))?;
@@ -35,7 +35,7 @@ impl TermBehaviour {
             let path = format!("/behaviour/descriptors/{index}");
             let [low, high] = descriptor.range;
             if low >= high {
-                return Err(places.wrong(&format!("{path}/range"), format!("{low} to {high} does not rise")));
+                return Err(source.wrong(&format!("{path}/range"), format!("{low} to {high} does not rise")));
             }
             Ok(Parameter::new(known(&descriptor.term, format!("{path}/term"))?, descriptor.range))
         });
@@ -45,7 +45,7 @@ impl TermBehaviour {
         Ok(says.then_some(Self { objectives, descriptors }))
     }
 
-    /// Whether it looks at a term.
+    /// Returns true if a term is an objective or a measure.
     pub(crate) fn looks_at(&self, name: &str) -> bool {
         let objectives = self.objectives.iter().map(|(name, _)| name.as_str());
         objectives.chain(self.descriptors.iter().map(|descriptor| descriptor.name.as_str())).any(|known| known == name)

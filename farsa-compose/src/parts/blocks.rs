@@ -4,13 +4,13 @@ use farsa_lab::{Error, Parameter};
 use farsa_nn::Activation;
 use farsa_nn::block::{Block, BlockLayout, BlockLayoutBuf, BlockParameter, Group, Span};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Blocks, Cluster, ClusterActivation, Link};
 use crate::parts::ends::Ends;
 
-/// What links may name, with its neurons.
+/// A possible end of a link, with its neurons.
 struct Known {
-    /// What it is, for messages.
+    /// Kind of the end, for messages.
     what: &'static str,
     name: String,
     span: Span,
@@ -24,24 +24,23 @@ struct Found {
     delay: usize,
 }
 
-/// The layout of a document: first the inputs are updated, then each cluster is linked and updated, then the outputs.
+/// Builds the layout of a document. It updates the inputs, then links and updates each cluster, then the outputs.
 ///
 /// # Errors
-/// [`Error::Unknown`] for an end that there is not, [`Error::Setting`] for a name that means several things and for links that
-/// stand twice.
-pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<BlockLayoutBuf, Error> {
-    let known = known(blocks, ends, places)?;
+/// [`Error::Unknown`] for an unknown end, [`Error::Setting`] for an ambiguous name and for duplicate links.
+pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<BlockLayoutBuf, Error> {
+    let known = known(blocks, ends, source)?;
     let mut links: Vec<(usize, Found)> = Vec::new();
     for (number, link) in blocks.links.iter().enumerate() {
         let path = format!("/network/links/{number}");
-        let Some(found) = resolved(link, &known, ends, &path, places)? else { continue };
+        let Some(found) = resolved(link, &known, ends, &path, source)? else { continue };
         let overlap = |a: Span, b: Span| a.first < b.end() && b.first < a.end();
         let same =
             |other: Found| overlap(other.from, found.from) && overlap(other.to, found.to) && other.delay == found.delay;
         if let Some((other, _)) = links.iter().find(|(_, other)| same(*other)) {
             let Link { from, to, .. } = link;
             let why = format!("links `{from}` with `{to}`, as link {} does with the same delay", other + 1);
-            return Err(places.wrong(&path, why));
+            return Err(source.wrong(&path, why));
         }
         links.push((number, found));
     }
@@ -71,8 +70,8 @@ fn group(cluster: &Cluster) -> Group {
     Group { bias: cluster.biases, leak: cluster.leaks, ..group }
 }
 
-/// Sensors, clusters and motors, and all sensors and all motors.
-fn known(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<Vec<Known>, Error> {
+/// Returns all ends of links: sensors, clusters, motors, all sensors and all motors.
+fn known(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<Known>, Error> {
     let part = |what, (name, [first, end]): &(String, [usize; 2]), before: usize| {
         let span = Span::new(before + first, end - first);
         Known { what, name: name.clone(), span }
@@ -86,7 +85,7 @@ fn known(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<Vec<Known>,
         let mut taken = before.chain(ends.motors.iter().map(|(name, _)| name));
         if name == "motors" || taken.any(|known| known == name) {
             let path = format!("/network/clusters/{number}/name");
-            return Err(places.wrong(&path, format!("`{name}` names something else already")));
+            return Err(source.wrong(&path, format!("`{name}` names something else already")));
         }
         let span = Span::new(next, cluster.neurons as usize);
         next = span.end();
@@ -97,8 +96,8 @@ fn known(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<Vec<Known>,
     Ok(known)
 }
 
-/// The neurons of a link that stands at a path; `None` if a sensor or motor at its end is switched off.
-fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, places: &Places) -> Result<Option<Found>, Error> {
+/// Resolves the link at a path. Returns `None` if a sensor or motor at its end is disabled.
+fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, source: &Source) -> Result<Option<Found>, Error> {
     let inputs = ends.inputs.len();
     let end = |key: &str, name: &str| {
         let path = format!("{path}/{key}");
@@ -109,14 +108,14 @@ fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, places: &P
             (Some(one), None) => Ok(one.span),
             (Some(one), Some(other)) => {
                 let why = format!("`{name}` is {} and {}: give one of them another `name`", one.what, other.what);
-                Err(places.wrong(&path, why))
+                Err(source.wrong(&path, why))
             }
             (None, _) if known.iter().any(|known| known.name == name) => {
-                Err(places.wrong(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
+                Err(source.wrong(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
             }
             (None, _) => {
                 let names = valid().map(|known| known.name.as_str());
-                Err(Error::unknown(&places.of(&path), "end of a link", name, names))
+                Err(Error::unknown(&source.of(&path), "end of a link", name, names))
             }
         }
     };
@@ -125,17 +124,17 @@ fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, places: &P
         return Ok(None);
     }
     let (from, to) = (end("from", &link.from)?, end("to", &link.to)?);
-    // Parameters are told apart by the names of channels.
+    // Names of channels must be unique, because parameters are named after them.
     let outputs = known.iter().find(|known| known.name == "motors").map_or(0, |known| known.span.first);
     let sources = ends.outputs.iter().enumerate().filter(|(output, _)| from.contains(outputs + output));
     if let Some((_, name)) = sources.into_iter().find(|(_, name)| ends.inputs.contains(name)) {
         let why = format!("`{name}` is a sensor and a motor: give one of them another `name`");
-        return Err(places.wrong(&format!("{path}/from"), why));
+        return Err(source.wrong(&format!("{path}/from"), why));
     }
     Ok(Some(Found { from, to, delay: link.delay as usize }))
 }
 
-/// The names of the neurons of clusters, in their order.
+/// Names the neurons of clusters.
 pub(crate) fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
     let of_cluster = |cluster: &Cluster| match cluster.neurons {
         1 => vec![cluster.name.clone()],
@@ -144,7 +143,7 @@ pub(crate) fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
     blocks.clusters.iter().flat_map(of_cluster).collect()
 }
 
-/// All parameters of a layout by their names, in their order.
+/// Names all parameters of a layout.
 pub(crate) fn parameters(
     blocks: &Blocks,
     layout: BlockLayout<'_>,

@@ -1,51 +1,51 @@
-//! Choices among points, of which one may follow another.
+//! Choices among points. A choice may follow an earlier one.
 
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Placing};
 
-/// Some points, one of which a trial takes.
+/// Points, of which a trial takes one.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice<const N: usize> {
     pub(crate) points: Vec<[f32; N]>,
-    /// The number of the rule whose choice this one follows.
+    /// Number of the earlier rule that this choice follows.
     like: Option<usize>,
 }
 
 impl<const N: usize> Choice<N> {
-    /// That of a document's rule of a number, which may follow an earlier one.
+    /// Builds the choice of a rule of a document. `like` names an earlier rule.
     ///
     /// # Errors
-    /// [`Error::Setting`] if that is none, or has another number of points.
+    /// [`Error::Setting`] for a name without an earlier choice, or with another number of points.
     pub(crate) fn new(
         points: Vec<[f32; N]>,
         like: Option<&String>,
         document: &Document,
         rule: usize,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
         let Some(name) = like else { return Ok(Self { points, like: None }) };
         let path = format!("/start/{rule}/like");
         let earlier = document.start.iter().take(rule).enumerate().find(|(_, start)| start.place == *name);
         let Some((number, Placing::OneOf { points: others, .. })) = earlier.map(|(number, start)| (number, &start.how))
         else {
-            return Err(places.wrong(&path, format!("`{name}` has to be placed before, on one of some points")));
+            return Err(source.wrong(&path, format!("`{name}` has to be placed before, on one of some points")));
         };
         if others.len() != points.len() {
             let why = format!("`{name}` is placed on one of {} points, and here are {}", others.len(), points.len());
-            return Err(places.wrong(&path, why));
+            return Err(source.wrong(&path, why));
         }
         Ok(Self { points, like: Some(number) })
     }
 
-    /// Whether it is drawn, and does not follow another.
+    /// Returns false if the choice follows another one.
     pub(crate) fn is_drawn(&self) -> bool {
         self.like.is_none()
     }
 
-    /// The number of the point that is taken, of those that are free unless it follows another; `chosen` has the numbers that
-    /// earlier rules have taken, and `draw` draws a number below another.
+    /// Chooses a free point, or the point of the earlier choice. `chosen` contains the choices of earlier rules, and
+    /// `draw` draws a number below its argument.
     pub(crate) fn take(
         &self,
         chosen: &[usize],

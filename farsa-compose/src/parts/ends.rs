@@ -1,14 +1,14 @@
-//! What a network is between.
+//! The inputs and outputs between which a network is built.
 
-/// The names of what is sensed and of what is driven, channel by channel and part by part.
+/// Names of inputs and outputs, and of the sensors and motors that they belong to.
 #[derive(Clone, Copy)]
 pub(crate) struct Ends<'n> {
     pub(crate) inputs: &'n [String],
     pub(crate) outputs: &'n [String],
-    /// Names of sensors, with the first channel of each and the one after the last.
+    /// Sensors, with the first channel of each and the one after the last.
     pub(crate) sensors: &'n [(String, [usize; 2])],
-    /// Names of motors, likewise.
+    /// Motors, with the first channel of each and the one after the last.
     pub(crate) motors: &'n [(String, [usize; 2])],
-    /// Names of sensors and motors that are switched off.
+    /// Disabled sensors and motors.
     pub(crate) absent: &'n [String],
 }

@@ -1,4 +1,4 @@
-//! The network of the original, with genes in its order.
+//! The network of the 2013 program, with genes in its order.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,54 +7,53 @@ use farsa_lab::Error;
 use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges};
 use farsa_nn::{Activation, Leak};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Evonet, EvonetNeurons};
-use crate::parts::bounded::bounded;
-use crate::parts::kept::kept;
+use crate::parts::static_layout::static_layout;
 
-/// A network of blocks whose parameters are searched for as the original writes its genes.
+/// A network of blocks whose searched parameters are those of the 2013 program.
 #[derive(Clone, Debug)]
 pub(crate) struct EvonetNetwork {
     pub(crate) network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
     ranges: EvonetRanges,
-    /// For each of the original's numbers the index of its parameter, and what that is.
+    /// Index and kind of the parameter of each number of that program.
     order: Arc<[(usize, BlockParameter)]>,
-    /// The numbers that a file gives, in the original's order.
+    /// Numbers that a file fixes, in the order of that program.
     given: Arc<[Option<f32>]>,
 }
 
-/// The most neurons of a file, as many as the original has, and the most blocks.
+/// Most neurons of a file, as in the 2013 program, and most blocks.
 const MOST_LINES: usize = 1000;
 
 impl EvonetNetwork {
-    /// A network at rest between so many inputs and outputs, whose weights go from one end to the other, of flags or of one of
-    /// these files.
+    /// Builds a network at rest between the given numbers of inputs and outputs, from flags or from a file.
     ///
     /// # Errors
-    /// [`Error::Other`] for weights that are all 0, and for numbers of which no network can be made; [`Error::Setting`] for a
-    /// file that is no network, or one between others, and for flags beside it.
+    /// [`Error::Other`] for weights that are all 0 and for invalid numbers. [`Error::Setting`] for a file that is not
+    /// a network of this shape, and for flags in addition to a file.
     pub(crate) fn new(
         evonet: &Evonet,
         shape: [usize; 2],
         weights: [f64; 2],
         files: &BTreeMap<String, String>,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
         let weight = weights[0].abs().max(weights[1].abs()) as f32;
         if weight <= 0.0 {
             return Err(Error::Other("weights are all 0, so that biases and leaks have no size".into()));
         }
         let ranges = EvonetRanges { weight, bias: evonet.largest_bias as f32, gain: evonet.largest_gain as f32 };
-        let Some(name) = &evonet.file else { return Self::of_layout(of_flags(evonet, shape), Vec::new(), ranges) };
+        let Some(name) = &evonet.file else {
+            return Self::from_layout(from_flags(evonet, shape), Vec::new(), ranges, source);
+        };
         if let Some(flag) = flags(evonet).into_iter().find_map(|(flag, set)| set.then_some(flag)) {
             return Err(
-                places.wrong(&format!("/network/{flag}"), format!("says nothing beside `file`: {name} says it"))
+                source.wrong(&format!("/network/{flag}"), format!("says nothing beside `file`: {name} says it"))
             );
         }
-        let wrong = |why: &dyn std::fmt::Display| places.wrong("/network/file", format!("{name}: {why}"));
+        let wrong = |why: &dyn std::fmt::Display| source.wrong("/network/file", format!("{name}: {why}"));
         let text = files.get(name).map(String::as_str).unwrap_or_default();
-        let found: farsa_nn::block::Evonet = text.parse().map_err(|error| wrong(&error))?;
-        let farsa_nn::block::Evonet { layout, numbers, mutations } = found;
+        let farsa_nn::block::Evonet { layout, numbers, mutations } = text.parse().map_err(|error| wrong(&error))?;
         let [inputs, outputs] = shape;
         if [layout.inputs, layout.outputs] != shape {
             let why = format!(
@@ -68,16 +67,21 @@ impl EvonetNetwork {
                 return Err(wrong(&format!("has {count} {what}; at most {MOST_LINES}")));
             }
         }
-        // What never mutates stays; the original draws what has no number.
-        let kept = numbers.iter().zip(mutations).map(|(number, rate)| number.filter(|_| rate == Some(0.0)));
-        let made = Self::of_layout(layout, kept.collect(), ranges);
+        // A number with a mutation rate of 0 is fixed. The 2013 program draws all others.
+        let fixed = numbers.iter().zip(mutations).map(|(number, rate)| number.filter(|_| rate == Some(0.0)));
+        let made = Self::from_layout(layout, fixed.collect(), ranges, source);
         made.map_err(|error| if let Error::Other(why) = error { wrong(&why) } else { error })
     }
 
-    fn of_layout(layout: BlockLayoutBuf, given: Vec<Option<f32>>, ranges: EvonetRanges) -> Result<Self, Error> {
+    fn from_layout(
+        layout: BlockLayoutBuf,
+        given: Vec<Option<f32>>,
+        ranges: EvonetRanges,
+        source: &Source,
+    ) -> Result<Self, Error> {
         let count = layout.layout().parameter_count();
-        bounded(count, layout.layout().state_len())?;
-        let layout = kept(layout).layout();
+        source.limits.check_network(count, layout.layout().state_len())?;
+        let layout = static_layout(layout).layout();
         let kinds: Vec<BlockParameter> = layout.kinds().collect();
         let mut seen = vec![false; count];
         let mut order = Vec::new();
@@ -96,7 +100,7 @@ impl EvonetNetwork {
         Ok(Self { network, ranges, order: order.into(), given: given.into() })
     }
 
-    /// What each of the searched parameters is, in the original's order; all have the range of the weights.
+    /// Returns the kinds of the searched parameters. All have the range of the weights.
     pub(crate) fn kinds(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.order.iter().map(|(_, kind)| match kind {
             BlockParameter::Leak => "leak",
@@ -106,25 +110,25 @@ impl EvonetNetwork {
         })
     }
 
-    /// The numbers that a file gives, in the original's order.
+    /// Returns the numbers that a file fixes.
     pub(crate) fn given(&self) -> &[Option<f32>] {
         &self.given
     }
 
-    /// Takes the parameters that were searched for; false for others than the network's.
-    pub(crate) fn load(&mut self, parameters: &[f32]) -> bool {
+    /// Returns the network's parameters from those of a search, or `None` for another number.
+    pub(crate) fn decode(&self, parameters: &[f32]) -> Option<Vec<f32>> {
         if parameters.len() != self.order.len() {
-            return false;
+            return None;
         }
-        let mut own = vec![0.0; parameters.len()];
+        let mut decoded = vec![0.0; parameters.len()];
         for ((index, kind), p) in self.order.iter().zip(parameters) {
-            own[*index] = self.ranges.decode(*kind, *p);
+            decoded[*index] = self.ranges.decode(*kind, *p);
         }
-        self.network.copy_parameters(&own).is_ok()
+        Some(decoded)
     }
 }
 
-/// Keys that a file stands for, and whether they say something else than by default.
+/// Returns the keys that a file replaces, with true for those that differ from their default.
 fn flags(evonet: &Evonet) -> [(&'static str, bool); 8] {
     [
         ("hidden", evonet.hidden > 0),
@@ -138,8 +142,8 @@ fn flags(evonet: &Evonet) -> [(&'static str, bool); 8] {
     ]
 }
 
-/// The layout of flags.
-fn of_flags(evonet: &Evonet, [inputs, outputs]: [usize; 2]) -> BlockLayoutBuf {
+/// Builds the layout of flags.
+fn from_flags(evonet: &Evonet, [inputs, outputs]: [usize; 2]) -> BlockLayoutBuf {
     let hidden = evonet.hidden as usize;
     let mut plan = if evonet.recurrent_hidden && hidden > 0 {
         Architecture::elman(inputs, hidden, outputs)
@@ -186,14 +190,15 @@ mod tests {
     }
 
     fn new(evonet: &Evonet, weights: [f64; 2]) -> Result<EvonetNetwork, Error> {
-        EvonetNetwork::new(evonet, [3, 2], weights, &BTreeMap::new(), &Places::new("own.toml"))
+        EvonetNetwork::new(evonet, [3, 2], weights, &BTreeMap::new(), &Source::new("own.toml"))
     }
 
     fn logistic(x: f32) -> f32 {
         farsa_num::logistic(x)
     }
 
-    /// A transcription of the original for leaky hidden neurons that hear each other, direct links and recurrent outputs.
+    /// Transcribes the 2013 program for leaky hidden neurons with links among them, direct links and recurrent
+    /// outputs.
     #[test]
     fn steps_are_those_of_the_original() {
         let evonet = Evonet {
@@ -210,7 +215,8 @@ mod tests {
         let count = 4 + 6 + 4 + 2 + 6 + 4 + 4;
         assert_eq!(made.kinds().count(), count);
         let p: Vec<f32> = (0..count).map(|n| 5.0 - (n * 37 % 256) as f32 / 255.0 * 10.0).collect();
-        assert!(made.load(&p) && !made.load(&p[1..]));
+        let decoded = made.decode(&p).unwrap();
+        assert!(made.network.copy_parameters(&decoded).is_ok() && made.decode(&p[1..]).is_none());
         let x = [0.2, 0.9, 0.4];
         let (mut h, mut o, mut y) = ([0.0f32; 2], [0.0f32; 2], [0.0; 2]);
         for _ in 0..5 {

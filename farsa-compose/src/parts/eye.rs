@@ -1,19 +1,19 @@
-//! A camera of the document as the sensor that it is.
+//! Cameras with sectors.
 
 use farsa_body::ChannelError;
 use farsa_body::ports::BodyId;
 use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
 
 use crate::document::{Camera, ColorRange, SensorKind};
-use crate::parts::meaning::Meaning;
+use crate::parts::channel_quantity::ChannelQuantity;
 
 /// A camera.
 pub(crate) type Eye = LinearCamera<Vec<Beam>, Vec<ColorBand>>;
 
-/// A camera on a body.
+/// Builds a camera on a body.
 ///
 /// # Errors
-/// Those of [`LinearCamera::for_view`].
+/// As [`LinearCamera::for_view`].
 pub(crate) fn eye(body: BodyId, camera: &Camera) -> Result<Eye, ChannelError> {
     let narrow = |ends: [f64; 3]| ends.map(|x| x as f32);
     let band = |color: &ColorRange| ColorBand { low: narrow(color.low), high: narrow(color.high) };
@@ -22,15 +22,15 @@ pub(crate) fn eye(body: BodyId, camera: &Camera) -> Result<Eye, ChannelError> {
     LinearCamera::for_view(body, view, sectors as usize, rays as usize, bands, camera.range as f32)
 }
 
-/// What a channel of a camera reads.
-pub(crate) fn seen(camera: &Camera, channel: usize) -> Meaning {
+/// Returns the quantity of a camera channel.
+pub(crate) fn seen(camera: &Camera, channel: usize) -> ChannelQuantity {
     let colors = camera.colors.len().max(1);
     let color = camera.colors.get(channel % colors).map_or("", |color| color.name.as_str());
     let sector = channel / colors + 1;
-    Meaning::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
+    ChannelQuantity::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
 }
 
-/// How many rays a sensor sends out in a step, but for infrared sensors, which have those of their robot.
+/// Returns the number of rays of a sensor in a step. Rays of infrared sensors depend on the robot.
 pub(crate) fn rays_of(kind: &SensorKind) -> usize {
     match kind {
         SensorKind::LaserDistance { beams, .. } => *beams as usize,

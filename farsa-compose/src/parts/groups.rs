@@ -1,20 +1,20 @@
-//! Which robots are alike, and whose genomes are searched for.
+//! Groups of equal robots, and their populations.
 
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 
-/// Groups of robots, which are numbered through.
+/// Groups of consecutive robots.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Groups {
-    /// The name of each, its first robot and the one after its last.
+    /// Name of each group, its first robot and the one after its last.
     groups: Vec<(String, [usize; 2])>,
-    /// Whether each is a population.
+    /// True if each group is a population.
     apart: bool,
 }
 
 impl Groups {
-    /// Groups of these names and sizes; `apart` if each is a population.
+    /// Creates groups of these names and sizes. `apart` makes each a population.
     pub(crate) fn new(sizes: impl IntoIterator<Item = (String, usize)>, apart: bool) -> Self {
         let mut first = 0;
         let group = |(name, size): (String, usize)| {
@@ -24,37 +24,37 @@ impl Groups {
         Self { groups: sizes.into_iter().map(group).collect(), apart }
     }
 
-    /// How many robots there are.
+    /// Returns the number of robots.
     pub(crate) fn robots(&self) -> usize {
         self.groups.last().map_or(0, |(_, [_, end])| *end)
     }
 
-    /// The group of a name.
+    /// Returns a named group.
     pub(crate) fn named(&self, name: &str) -> Option<[usize; 2]> {
         self.groups.iter().find(|(known, _)| known == name).map(|(_, range)| *range)
     }
 
-    /// The group of a name that stands at a path.
+    /// Returns the group of the name at a path.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest name.
-    pub(crate) fn find(&self, name: &str, path: &str, places: &Places) -> Result<[usize; 2], Error> {
+    pub(crate) fn find(&self, name: &str, path: &str, source: &Source) -> Result<[usize; 2], Error> {
         let names = self.groups.iter().map(|(name, _)| name.as_str());
-        self.named(name).ok_or_else(|| Error::unknown(&places.of(path), "group of robots", name, names))
+        self.named(name).ok_or_else(|| Error::unknown(&source.of(path), "group of robots", name, names))
     }
 
-    /// The group of a robot.
+    /// Returns the group of a robot.
     pub(crate) fn of(&self, robot: usize) -> &str {
         let found = self.groups.iter().find(|(_, [first, end])| (*first..*end).contains(&robot));
         found.map_or("", |(name, _)| name)
     }
 
-    /// The names of the populations; none where all robots have one genome.
+    /// Returns the names of the populations, empty if all robots have one genome.
     pub(crate) fn populations(&self) -> Vec<String> {
         if self.apart { self.groups.iter().map(|(name, _)| name.clone()).collect() } else { Vec::new() }
     }
 
-    /// The robots of each population.
+    /// Returns the robots of each population.
     pub(crate) fn ranges(&self) -> Vec<[usize; 2]> {
         if self.apart { self.groups.iter().map(|(_, range)| *range).collect() } else { vec![[0, self.robots()]] }
     }

@@ -1,17 +1,17 @@
-//! What the test protocols do to a network.
+//! Lesions and noise of the test protocols.
 
 use farsa_lab::Interventions;
-use farsa_nn::{Ablatable, Controller as _, Lesion};
+use farsa_nn::Ablatable as _;
 
 use crate::document::{Network, NetworkKind};
 use crate::parts::blocks;
 use crate::parts::network::AnyNetwork;
-use crate::parts::wiring::Wiring;
+use crate::parts::network_spec::NetworkSpec;
 
-/// The protocols of robots: `lesions`, in which each sensor is cut and each neuron silent, unless the network has no neurons,
-/// and `noise` on all inputs.
-pub(crate) fn interventions(network: &Network, wiring: &Wiring) -> Interventions {
-    let Wiring { sensors, inputs, outputs, network: own, .. } = wiring;
+/// Returns the protocols: `lesions` of each sensor and neuron, unless the network has no neurons, and `noise` on all
+/// inputs.
+pub(crate) fn interventions(network: &Network, spec: &NetworkSpec) -> Interventions {
+    let NetworkSpec { sensors, inputs, outputs, network: own, .. } = spec;
     let all = Interventions::default();
     let all = if own.neurons() == 0 {
         all
@@ -22,7 +22,7 @@ pub(crate) fn interventions(network: &Network, wiring: &Wiring) -> Interventions
     all.with_noise(&Interventions::NOISE)
 }
 
-/// The neurons that can be silent, by their names: none that stands for an input, which is cut as one.
+/// Names the neurons that can be silenced. Neurons of inputs are excluded, because a cut sensor silences them.
 fn neurons(network: &Network, own: &AnyNetwork, inputs: usize, outputs: &[String]) -> Vec<(String, usize)> {
     let first = match own {
         AnyNetwork::Block(_) | AnyNetwork::Evonet(_) => inputs,
@@ -41,35 +41,10 @@ fn neurons(network: &Network, own: &AnyNetwork, inputs: usize, outputs: &[String
     (first..own.neurons()).map(name).zip(first..).collect()
 }
 
-/// The number of the first of so many output neurons.
+/// Returns the number of the first output neuron.
 pub(crate) fn first_output(network: &AnyNetwork, outputs: usize) -> usize {
     match network {
         AnyNetwork::Ctrnn(ctrnn) => ctrnn.layout().output_neurons().start,
         _ => network.neurons().saturating_sub(outputs),
-    }
-}
-
-/// Neurons are those of the network that it is; one that is wired by hand has none.
-impl Ablatable for AnyNetwork {
-    fn neurons(&self) -> usize {
-        match self {
-            Self::Perceptron(layer, _) => layer.neurons(),
-            Self::Leaky(leaky) => leaky.neurons(),
-            Self::Ctrnn(ctrnn) => ctrnn.neurons(),
-            Self::Block(block) => block.neurons(),
-            Self::Wired(_) => 0,
-            Self::Evonet(evonet) => evonet.network.neurons(),
-        }
-    }
-
-    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
-        match self {
-            Self::Perceptron(layer, _) => layer.step_ablated(lesions, x, y),
-            Self::Leaky(leaky) => leaky.step_ablated(lesions, x, y),
-            Self::Ctrnn(ctrnn) => ctrnn.step_ablated(lesions, x, y),
-            Self::Block(block) => block.step_ablated(lesions, x, y),
-            Self::Wired(wired) => wired.step(x, y),
-            Self::Evonet(evonet) => evonet.network.step_ablated(lesions, x, y),
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! What a trial has earned, and whether it has succeeded.
+//! The terms of a trial, with success and failure.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -6,25 +6,23 @@ use std::sync::{Mutex, PoisonError};
 use farsa_lab::{Error, Note, Outcome, mean_of_trials};
 use farsa_num::Scalar;
 
-use crate::check::places::Places;
-use crate::check::settings::names;
+use crate::check::source::Source;
 use crate::document::{Condition, Document, Ending, Trials};
 use crate::parts::behaviour::{TermBehaviour, note_of};
 use crate::parts::groups::Groups;
 use crate::parts::tally::Tally;
 use crate::parts::wanted::Wanted;
-use crate::parts::wiring::json;
 
-/// The terms of a trial, with what they have come to.
+/// The terms of a trial with their totals.
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
     pub(crate) tallies: Vec<Tally>,
     success: Vec<Wanted>,
     failure: Vec<Wanted>,
     pub(crate) behaviour: Option<TermBehaviour>,
-    /// The terms that fitness is made of: those with a weight, or all where none has one.
+    /// Terms of the fitness: those with a weight, or all if none has one.
     paid: Vec<usize>,
-    /// The terms whose measures are notes of an outcome, with their names.
+    /// Terms in the notes of an outcome, with the names of the notes.
     notes: Vec<(usize, &'static str)>,
     /// Most steps of a trial.
     most_steps: u32,
@@ -32,25 +30,26 @@ pub(crate) struct Ledger {
     trials: Trials,
     /// Steps of this trial.
     pub(crate) steps: u32,
-    /// Whether it broke down, and whether it succeeded.
+    /// Result of the trial.
     pub(crate) failed: bool,
     succeeded: bool,
 }
 
 impl Ledger {
-    /// That of a document with these robots; `of_steps` says of each term whether it measures what happened in a step.
+    /// Builds the terms of a document with these robots. `of_steps` is true for terms that depend on the previous
+    /// step.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a term that there is not, [`Error::Setting`] for what does not go together.
-    pub(crate) fn new(document: &Document, of_steps: &[bool], groups: &Groups, places: &Places) -> Result<Self, Error> {
-        let rewards = names(&json(&document.reward)?);
-        let tally = |(number, reward)| Tally::new(reward, number, &rewards, groups, places);
+    /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
+    pub(crate) fn new(document: &Document, of_steps: &[bool], groups: &Groups, source: &Source) -> Result<Self, Error> {
+        let rewards = &source.names.terms;
+        let tally = |(number, reward)| Tally::new(reward, number, rewards, groups, source);
         let mut tallies = document.reward.iter().enumerate().map(tally).collect::<Result<Vec<_>, _>>()?;
         if tallies.is_empty() {
-            return Err(places.wrong("/reward", "has no term: nothing is earned"));
+            return Err(source.wrong("/reward", "has no term: nothing is earned"));
         }
         let conditions = |list: &str, all: &[Condition]| {
-            let one = |(index, own)| Wanted::new(own, &format!("/{list}/{index}"), &rewards, places);
+            let one = |(index, own)| Wanted::new(own, &format!("/{list}/{index}"), rewards, source);
             all.iter().enumerate().map(one).collect::<Result<Vec<_>, Error>>()
         };
         let (success, failure) = (conditions("success", &document.success)?, conditions("failure", &document.failure)?);
@@ -60,7 +59,7 @@ impl Ledger {
         for (number, tally) in tallies.iter_mut().enumerate() {
             tally.late = tally.may_be_late() && !of_steps[number] && !watched.contains(&number);
         }
-        let behaviour = TermBehaviour::new(&document.behaviour, &rewards, places)?;
+        let behaviour = TermBehaviour::new(&document.behaviour, rewards, source)?;
         let noted = tallies.iter().enumerate().filter(|(_, tally)| {
             tally.is_only_measured() || behaviour.as_ref().is_some_and(|behaviour| behaviour.looks_at(&tally.name))
         });
@@ -83,18 +82,18 @@ impl Ledger {
         })
     }
 
-    /// Forgets an earlier trial; `arranged` says whether this one could begin.
+    /// Resets all totals. `arranged` is false if something had no place.
     pub(crate) fn begin(&mut self, arranged: bool) {
         (self.steps, self.succeeded, self.failed) = (0, false, !arranged);
         self.tallies.iter_mut().for_each(Tally::reset);
     }
 
-    /// Says which robots evolve in the next trial, from the first to before the last.
+    /// Sets the evolving robots of the next trial, from the first up to the one after the last.
     pub(crate) fn evolve(&mut self, robots: [usize; 2]) {
         self.tallies.iter_mut().for_each(|tally| tally.evolve(robots));
     }
 
-    /// Counts what a term has measured in a step.
+    /// Adds the value of a term in a step.
     #[inline]
     pub(crate) fn count(&mut self, number: usize, value: f64) {
         self.failed |= !value.is_finite();
@@ -102,29 +101,29 @@ impl Ledger {
         tally[0].count(value, others);
     }
 
-    /// Whether the trial is over by steps, by failure or by having broken down.
+    /// Returns true after the last step, a failure or NaN.
     #[inline]
     pub(crate) fn is_over(&self) -> bool {
         self.failed || self.steps >= self.most_steps || self.has_failed()
     }
 
-    /// Whether a condition of failure holds.
+    /// Returns true if a condition of failure holds.
     fn has_failed(&self) -> bool {
         self.failure.iter().any(|wanted| wanted.holds(&self.tallies))
     }
 
-    /// Whether a trial that ended now would have succeeded.
+    /// Returns true if all conditions of success hold.
     pub(crate) fn would_succeed(&self) -> bool {
         !self.success.is_empty() && self.success.iter().all(|wanted| wanted.holds(&self.tallies))
     }
 
-    /// What a trial that ends now has earned; NaN if it broke down.
+    /// Ends the trial and returns its reward, NaN after a failure of the dynamics.
     pub(crate) fn conclude(&mut self) -> f64 {
         self.succeeded = self.would_succeed() && !self.has_failed();
         if self.failed { f64::NAN } else { self.earned() }
     }
 
-    /// What the trial has earned so far.
+    /// Returns the reward so far.
     pub(crate) fn earned(&self) -> f64 {
         let terms = self.paid().map(|tally| tally.earned(self.most_steps));
         if self.product { terms.product() } else { terms.sum() }
@@ -134,12 +133,12 @@ impl Ledger {
         self.paid.iter().filter_map(|number| self.tallies.get(*number))
     }
 
-    /// The names of the terms that fitness is made of.
+    /// Returns the names of the fitness terms.
     pub(crate) fn names(&self) -> Vec<String> {
         self.paid().map(|tally| tally.name.clone()).collect()
     }
 
-    /// What came of the trial.
+    /// Returns the outcome of the trial.
     pub(crate) fn outcome(&self) -> Outcome {
         let (steps, tallies) = (self.most_steps, &self.tallies);
         Outcome {
@@ -155,7 +154,7 @@ impl Ledger {
         }
     }
 
-    /// The fitness of an individual by its trials.
+    /// Returns the fitness of an individual from its trials.
     pub(crate) fn fitness(&self, trials: &[Outcome]) -> f64 {
         if !self.product && self.trials == Trials::Mean {
             return mean_of_trials(trials);
@@ -175,7 +174,7 @@ impl Ledger {
     }
 }
 
-/// A name that lasts as long as the process, as those of notes do; equal ones are one.
+/// Leaks the name of a note, once for equal ones.
 fn lasting(name: &str) -> &'static str {
     static KEPT: Mutex<BTreeSet<&str>> = Mutex::new(BTreeSet::new());
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);

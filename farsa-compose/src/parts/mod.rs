@@ -1,45 +1,44 @@
-//! The parts that experiments have in any world, made of what a document names.
-//!
-//! - `agents`: robots as they are controlled
-//! - `wiring`: channels, and the network between them
-//! - `groups`: which robots are alike
-//! - `ledger`: what a trial has earned
-//! - `tally`: what a term has come to
-//! - `meaning`: what a channel stands for
-//! - `behaviour`: what there is to say of an individual beside its fitness
-//! - `files`: what is made of files that a document names
-//! - `wired`: a network that is wired by hand
-//! - `ends`: what a network is between
-//! - `searched`: which parameters of a network are searched for
-//! - `network`: any network
-//! - `blocks`: networks of clusters and links
-//! - `interventions`: what the test protocols do to a network
-//! - `bounded`: the sizes of networks
-//! - `choice`: choices among points, of which one may follow another
-//! - `eye`: a camera of the document as the sensor that it is
-//! - `evonet`: the network of the original, with genes in its order
-//! - `kept`: layouts of networks of blocks, which borrow theirs
-//! - `wanted`: when a trial has succeeded
-//! - `wrapping`: what is wrapped around sensors and motors alike
+//! The parts that experiments have in any world, built from a document.
 
+/// Controlled robots: channels, copies of one network, rewards.
 pub(crate) mod agents;
+/// Objectives and measures of an individual in addition to its fitness.
 pub(crate) mod behaviour;
+/// Networks of clusters and links.
 pub(crate) mod blocks;
-pub(crate) mod bounded;
+/// The quantity of a channel, for exports.
+pub(crate) mod channel_quantity;
+/// Choices among points. A choice may follow an earlier one.
 pub(crate) mod choice;
+/// The inputs and outputs between which a network is built.
 pub(crate) mod ends;
+/// The network of the 2013 program, with genes in its order.
 pub(crate) mod evonet;
+/// Cameras with sectors.
 pub(crate) mod eye;
+/// Infrared tables from files that a document names.
 pub(crate) mod files;
+/// Groups of equal robots, and their populations.
 pub(crate) mod groups;
+/// Networks with wires set by hand.
+pub(crate) mod hand_wired;
+/// Lesions and noise of the test protocols.
 pub(crate) mod interventions;
-pub(crate) mod kept;
+/// The terms of a trial, with success and failure.
 pub(crate) mod ledger;
-pub(crate) mod meaning;
+/// A network of any kind.
 pub(crate) mod network;
+/// The channels of a robot, and the network between them.
+pub(crate) mod network_spec;
+/// The parameters of a search, and those of the network.
 pub(crate) mod searched;
+/// Checks of sizes by the limits of a reader.
+pub(crate) mod sizes;
+/// Layouts of block networks with a static lifetime.
+pub(crate) mod static_layout;
+/// The total of a term in a trial.
 pub(crate) mod tally;
+/// Conditions of success and failure.
 pub(crate) mod wanted;
-pub(crate) mod wired;
-pub(crate) mod wiring;
+/// Wrappers of sensors and motors.
 pub(crate) mod wrapping;

@@ -1,48 +1,50 @@
-//! Any network.
+//! A network of any kind.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use farsa_lab::{Error, Intervention, OwnedNetwork, Parameter, resting_network};
 use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter};
-use farsa_nn::{Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak, LeakyLayout, LeakyParameter, Perceptron};
+use farsa_nn::{
+    Ablatable, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak, LeakyLayout, LeakyParameter, Lesion, Perceptron,
+};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Network, NetworkKind, WeightOrder, Wire};
 use crate::parts::blocks;
-use crate::parts::bounded::bounded;
 use crate::parts::ends::Ends;
 use crate::parts::evonet::EvonetNetwork;
-use crate::parts::kept::kept;
-use crate::parts::wired::Wired;
+use crate::parts::hand_wired::HandWired;
+use crate::parts::static_layout::static_layout;
 
-/// A network, and how the parameters that are searched for become its own.
+/// A network, with the order in which a search has its parameters.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyNetwork {
     Perceptron(Perceptron<Vec<f32>>, WeightOrder),
     Leaky(OwnedNetwork),
     Ctrnn(Ctrnn<Vec<f32>, Vec<f32>>),
     Block(BlockNetwork<'static, Vec<f32>, Vec<f32>>),
-    Wired(Wired),
+    HandWired(HandWired),
     Evonet(EvonetNetwork),
 }
 
 impl AnyNetwork {
-    /// The network of a document at rest, between these inputs and outputs.
+    /// Builds the network of a document at rest.
     ///
     /// # Errors
-    /// [`Error::Setting`] for numbers of which no network can be made, and those of [`Wired::new`], [`blocks::layout`] and
+    /// [`Error::Setting`] for invalid numbers, and the errors of [`HandWired::new`], [`blocks::layout`] and
     /// [`EvonetNetwork::new`].
-    pub(crate) fn new(document: &Document, ends: Ends<'_>, places: &Places) -> Result<Self, Error> {
-        let made = Self::between(document, ends, places);
-        made.map_err(|error| if let Error::Other(why) = error { places.wrong("/network", why) } else { error })
+    pub(crate) fn new(document: &Document, ends: Ends<'_>, source: &Source) -> Result<Self, Error> {
+        let made = Self::between(document, ends, source);
+        made.map_err(|error| if let Error::Other(why) = error { source.wrong("/network", why) } else { error })
     }
 
-    fn between(document: &Document, ends: Ends<'_>, places: &Places) -> Result<Self, Error> {
+    fn between(document: &Document, ends: Ends<'_>, source: &Source) -> Result<Self, Error> {
         let Document { network, files, .. } = document;
         let [inputs, outputs] = [ends.inputs.len(), ends.outputs.len()];
         let architecture = match &network.kind {
             NetworkKind::Wired { bias, activation, wires, .. } => {
-                return Ok(Self::Wired(Wired::new(wires, bias, *activation, ends, places)?));
+                return Ok(Self::HandWired(HandWired::new(wires, bias, *activation, ends, source)?));
             }
             NetworkKind::Evonet(evonet) => {
                 return Ok(Self::Evonet(EvonetNetwork::new(
@@ -50,18 +52,18 @@ impl AnyNetwork {
                     [inputs, outputs],
                     network.weights,
                     files,
-                    places,
+                    source,
                 )?));
             }
-            NetworkKind::Blocks(own) => return Self::of_blocks(blocks::layout(own, ends, places)?),
+            NetworkKind::Blocks(own) => return Self::from_blocks(blocks::layout(own, ends, source)?, source),
             &NetworkKind::Perceptron { order } => {
-                bounded(Perceptron::parameter_count(inputs, outputs), 0)?;
+                source.limits.check_network(Perceptron::parameter_count(inputs, outputs), 0)?;
                 let parameters = vec![0.0; Perceptron::parameter_count(inputs, outputs)];
                 return Ok(Self::Perceptron(Perceptron::new(inputs, outputs, 1.0, parameters)?, order));
             }
             &NetworkKind::Leaky { hidden, slope, .. } => {
                 let layout = LeakyLayout::new(inputs, hidden as usize, outputs).with_slope(slope as f32);
-                bounded(layout.parameter_count(), layout.state_len())?;
+                source.limits.check_network(layout.parameter_count(), layout.state_len())?;
                 return Ok(Self::Leaky(resting_network(&layout)?));
             }
             &NetworkKind::Ctrnn { neurons, time_constants } => {
@@ -70,11 +72,11 @@ impl AnyNetwork {
                     return Err(Error::Other(format!("{neurons} neurons where the motors want {outputs} outputs")));
                 }
                 let layout = CtrnnLayout::new(inputs, neurons, outputs);
-                bounded(layout.parameter_count(), layout.state_len())?;
+                source.limits.check_network(layout.parameter_count(), layout.state_len())?;
                 let time_step = document.world.time_step;
                 let own = ctrnn_parameters(&layout, &vec![time_constants[0] as f32; searched(&layout)]);
                 let state = vec![0.0; layout.state_len()];
-                // Each end makes a network or none.
+                // Both ends of the range must be valid.
                 let other = ctrnn_parameters(&layout, &vec![time_constants[1] as f32; searched(&layout)]);
                 Ctrnn::new(layout, time_step as f32, other, state.clone())?;
                 return Ok(Self::Ctrnn(Ctrnn::new(layout, time_step as f32, own, state)?));
@@ -84,19 +86,19 @@ impl AnyNetwork {
             &NetworkKind::Jordan { hidden } => Architecture::jordan(inputs, hidden as usize, outputs),
             &NetworkKind::FullyRecurrent { hidden } => Architecture::fully_recurrent(inputs, hidden as usize, outputs),
         };
-        Self::of_blocks(architecture.plan().into())
+        Self::from_blocks(architecture.plan().into(), source)
     }
 
-    fn of_blocks(layout: BlockLayoutBuf) -> Result<Self, Error> {
-        bounded(layout.layout().parameter_count(), layout.layout().state_len())?;
-        let layout = kept(layout).layout();
+    fn from_blocks(layout: BlockLayoutBuf, source: &Source) -> Result<Self, Error> {
+        source.limits.check_network(layout.layout().parameter_count(), layout.layout().state_len())?;
+        let layout = static_layout(layout).layout();
         let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
         Ok(Self::Block(BlockNetwork::new(layout, Leak::Filter, parameters, state)?))
     }
 
-    /// All parameters, with names and ranges.
+    /// Names all parameters, with ranges.
     pub(crate) fn parameters(&self, network: &Network, ends: Ends<'_>) -> Vec<Parameter> {
-        // As networks compute: in single precision.
+        // Networks compute in single precision.
         let single = |ends: [f64; 2]| ends.map(|end| f64::from(end as f32));
         let weights = single(network.weights);
         match self {
@@ -119,9 +121,9 @@ impl AnyNetwork {
                     _ => ("weight", weights),
                 }))
             }
-            Self::Wired(_) => {
+            Self::HandWired(_) => {
                 let NetworkKind::Wired { wires, .. } = &network.kind else { return Vec::new() };
-                Wired::named(wires, &wire_names(wires), ends.outputs, weights)
+                HandWired::named(wires, &wire_names(wires), ends.outputs, weights)
             }
             Self::Block(block) => match &network.kind {
                 NetworkKind::Blocks(own) => blocks::parameters(own, block.layout(), ends, [weights, single(own.leaks)]),
@@ -136,7 +138,7 @@ impl AnyNetwork {
         }
     }
 
-    /// Parameters that are not searched for unless the document says so, with their values.
+    /// Returns the parameters that are fixed unless the document searches them.
     pub(crate) fn given(&self, network: &Network, ends: Ends<'_>) -> BTreeMap<String, f64> {
         match (self, &network.kind) {
             (Self::Evonet(evonet), _) => {
@@ -154,66 +156,63 @@ impl AnyNetwork {
         }
     }
 
-    /// Takes all its parameters; false for others than the network's.
+    /// Loads the parameters of a search. Returns false for another number of them or for values out of range.
     pub(crate) fn load(&mut self, parameters: &[f32]) -> bool {
-        match self {
-            Self::Perceptron(layer, order) => {
-                let (inputs, outputs) = (layer.inputs(), layer.outputs());
-                if parameters.len() != Perceptron::parameter_count(inputs, outputs) {
-                    return false;
-                }
-                let own = match order {
-                    WeightOrder::Inputs => parameters.to_vec(),
-                    WeightOrder::Outputs => by_outputs(parameters, [inputs, outputs]),
-                };
-                Perceptron::new(inputs, outputs, 1.0, own).map(|made| *layer = made).is_ok()
+        let ordered = match self {
+            Self::Perceptron(layer, WeightOrder::Outputs) => {
+                let shape = [layer.inputs(), layer.outputs()];
+                let fits = parameters.len() == Perceptron::parameter_count(shape[0], shape[1]);
+                fits.then(|| by_outputs(parameters, shape).into())
             }
-            Self::Leaky(leaky) => leaky.copy_parameters(parameters).is_ok(),
             Self::Ctrnn(ctrnn) => {
                 let layout = ctrnn.layout();
-                parameters.len() == searched(&layout)
-                    && ctrnn.copy_parameters(&ctrnn_parameters(&layout, parameters)).is_ok()
+                (parameters.len() == searched(&layout)).then(|| ctrnn_parameters(&layout, parameters).into())
             }
-            Self::Block(block) => block.copy_parameters(parameters).is_ok(),
-            Self::Wired(wired) => wired.copy_parameters(parameters),
-            Self::Evonet(evonet) => evonet.load(parameters),
+            Self::Evonet(evonet) => evonet.decode(parameters).map(Cow::from),
+            _ => Some(parameters.into()),
+        };
+        ordered.is_some_and(|ordered: Cow<'_, [f32]>| self.copy_parameters(&ordered))
+    }
+
+    /// Edits the network's parameters for a test. Returns false for values out of range.
+    pub(crate) fn edit(&mut self, change: &Intervention) -> bool {
+        change.parameters.is_empty() || {
+            let edited = change.edited(self.own_parameters()).into_owned();
+            self.copy_parameters(&edited)
         }
     }
 
-    /// Changes its own parameters as a test says; false for what makes no network.
-    pub(crate) fn edit(&mut self, change: &Intervention) -> bool {
-        if change.parameters.is_empty() {
-            return true;
-        }
-        let own = change.edited(self.own_parameters()).into_owned();
+    /// Copies parameters in the network's own order.
+    fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
         match self {
             Self::Perceptron(layer, _) => {
-                Perceptron::new(layer.inputs(), layer.outputs(), 1.0, own).map(|made| *layer = made).is_ok()
+                let made = Perceptron::new(layer.inputs(), layer.outputs(), 1.0, parameters.to_vec());
+                made.map(|made| *layer = made).is_ok()
             }
-            Self::Leaky(leaky) => leaky.copy_parameters(&own).is_ok(),
-            Self::Ctrnn(ctrnn) => ctrnn.copy_parameters(&own).is_ok(),
-            Self::Block(block) => block.copy_parameters(&own).is_ok(),
-            Self::Wired(wired) => wired.copy_parameters(&own),
-            Self::Evonet(evonet) => evonet.network.copy_parameters(&own).is_ok(),
+            Self::Leaky(leaky) => leaky.copy_parameters(parameters).is_ok(),
+            Self::Ctrnn(ctrnn) => ctrnn.copy_parameters(parameters).is_ok(),
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => {
+                block.copy_parameters(parameters).is_ok()
+            }
+            Self::HandWired(wired) => wired.copy_parameters(parameters),
         }
     }
 
-    /// The network's own parameters, for the picture of it.
+    /// Returns the parameters in the network's own order.
     pub(crate) fn own_parameters(&self) -> &[f32] {
         match self {
             Self::Perceptron(layer, _) => layer.parameters(),
             Self::Leaky(leaky) => leaky.parameters(),
             Self::Ctrnn(ctrnn) => ctrnn.parameters(),
-            Self::Block(block) => block.parameters(),
-            Self::Wired(wired) => wired.parameters(),
-            Self::Evonet(evonet) => evonet.network.parameters(),
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.parameters(),
+            Self::HandWired(wired) => wired.parameters(),
         }
     }
 
-    /// How many values it keeps: its own parameters and its state.
-    pub(crate) fn kept(&self) -> usize {
+    /// Returns the number of values that the network keeps: parameters and state.
+    pub(crate) fn values(&self) -> usize {
         let state = match self {
-            Self::Perceptron(..) | Self::Wired(_) => 0,
+            Self::Perceptron(..) | Self::HandWired(_) => 0,
             Self::Leaky(leaky) => leaky.layout().state_len(),
             Self::Ctrnn(ctrnn) => ctrnn.layout().state_len(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.layout().state_len(),
@@ -221,75 +220,71 @@ impl AnyNetwork {
         self.own_parameters().len() + state
     }
 
-    /// What its hidden neurons, or all its neurons, are at.
+    /// Returns the activations of the hidden neurons of a leaky network, and of all neurons of the others.
     pub(crate) fn activations(&self) -> &[f32] {
         match self {
-            Self::Perceptron(..) | Self::Wired(_) => &[],
+            Self::Perceptron(..) | Self::HandWired(_) => &[],
             Self::Leaky(leaky) => leaky.hidden(),
             Self::Ctrnn(ctrnn) => ctrnn.neuron_outputs(),
-            Self::Block(block) => block.activations(),
-            Self::Evonet(evonet) => evonet.network.activations(),
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.activations(),
         }
     }
 
-    /// What it is, in one line.
+    /// Describes the network in one line.
     pub(crate) fn summary(&self) -> String {
-        let (inputs, outputs) = (self.inputs(), self.outputs());
+        let shape = format!("{}-{}", self.inputs(), self.outputs());
         match self {
-            Self::Perceptron(..) => format!("{inputs}-{outputs}, one layer of logistic units without memory"),
+            Self::Perceptron(..) => format!("{shape}, one layer of logistic units without memory"),
             Self::Leaky(leaky) => {
-                format!("{inputs}-{}-{outputs}, recurrent hidden layer, leaks as filters", leaky.layout().hidden())
+                let [inputs, hidden, outputs] = [self.inputs(), leaky.layout().hidden(), self.outputs()];
+                format!("{inputs}-{hidden}-{outputs}, recurrent hidden layer, leaks as filters")
             }
             Self::Ctrnn(ctrnn) => {
-                format!(
-                    "{inputs}-{outputs}, {} neurons in continuous time, all linked to all",
-                    ctrnn.layout().neurons()
-                )
+                format!("{shape}, {} neurons in continuous time, all linked to all", ctrnn.layout().neurons())
             }
-            Self::Wired(_) => format!("{inputs}-{outputs}, wired by hand"),
-            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => {
-                let neurons = block.activations().len().saturating_sub(inputs);
-                format!("{inputs}-{outputs}, {neurons} neurons in blocks")
+            Self::HandWired(_) => format!("{shape}, wired by hand"),
+            Self::Block(_) | Self::Evonet(_) => {
+                format!("{shape}, {} neurons in blocks", self.activations().len().saturating_sub(self.inputs()))
             }
+        }
+    }
+
+    /// Returns the network for calls that are not in the loop of a trial.
+    fn kind(&self) -> &dyn Ablatable {
+        match self {
+            Self::Perceptron(layer, _) => layer,
+            Self::Leaky(leaky) => leaky,
+            Self::Ctrnn(ctrnn) => ctrnn,
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
+            Self::HandWired(wired) => wired,
+        }
+    }
+
+    fn kind_mut(&mut self) -> &mut dyn Ablatable {
+        match self {
+            Self::Perceptron(layer, _) => layer,
+            Self::Leaky(leaky) => leaky,
+            Self::Ctrnn(ctrnn) => ctrnn,
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
+            Self::HandWired(wired) => wired,
         }
     }
 }
 
 impl Controller for AnyNetwork {
     fn inputs(&self) -> usize {
-        match self {
-            Self::Perceptron(layer, _) => layer.inputs(),
-            Self::Leaky(leaky) => leaky.inputs(),
-            Self::Ctrnn(ctrnn) => ctrnn.inputs(),
-            Self::Block(block) => block.inputs(),
-            Self::Wired(wired) => wired.inputs(),
-            Self::Evonet(evonet) => evonet.network.inputs(),
-        }
+        self.kind().inputs()
     }
 
     fn outputs(&self) -> usize {
-        match self {
-            Self::Perceptron(layer, _) => layer.outputs(),
-            Self::Leaky(leaky) => leaky.outputs(),
-            Self::Ctrnn(ctrnn) => ctrnn.outputs(),
-            Self::Block(block) => block.outputs(),
-            Self::Wired(wired) => wired.outputs(),
-            Self::Evonet(evonet) => evonet.network.outputs(),
-        }
+        self.kind().outputs()
     }
 
     fn reset(&mut self) {
-        match self {
-            Self::Perceptron(layer, _) => layer.reset(),
-            Self::Leaky(leaky) => leaky.reset(),
-            Self::Ctrnn(ctrnn) => ctrnn.reset(),
-            Self::Block(block) => block.reset(),
-            Self::Wired(wired) => wired.reset(),
-            Self::Evonet(evonet) => evonet.network.reset(),
-        }
+        self.kind_mut().reset();
     }
 
-    /// Networks without memory are stepped here, without a call.
+    /// Steps a perceptron inline, because an indirect call costs more than its sums.
     #[inline(always)]
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
         if let Self::Perceptron(layer, _) = self {
@@ -303,24 +298,27 @@ impl Controller for AnyNetwork {
 impl AnyNetwork {
     #[inline(never)]
     fn step_other(&mut self, x: &[f32], y: &mut [f32]) {
-        match self {
-            Self::Perceptron(layer, _) => layer.step(x, y),
-            Self::Leaky(leaky) => leaky.step(x, y),
-            Self::Ctrnn(ctrnn) => ctrnn.step(x, y),
-            Self::Block(block) => block.step(x, y),
-            Self::Wired(wired) => wired.step(x, y),
-            Self::Evonet(evonet) => evonet.network.step(x, y),
-        }
+        self.kind_mut().step(x, y);
     }
 }
 
-/// What wires are called.
+impl Ablatable for AnyNetwork {
+    fn neurons(&self) -> usize {
+        self.kind().neurons()
+    }
+
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+        self.kind_mut().step_ablated(lesions, x, y);
+    }
+}
+
+/// Names the wires.
 fn wire_names(wires: &[Wire]) -> Vec<String> {
     let own = |(number, wire): (usize, &Wire)| wire.name.clone().unwrap_or_else(|| format!("wire {}", number + 1));
     wires.iter().enumerate().map(own).collect()
 }
 
-/// A layer's own order from that in which the biases come first and then the weights, output by output.
+/// Reorders parameters from biases and weights output by output to weights input by input and biases.
 fn by_outputs(parameters: &[f32], [inputs, outputs]: [usize; 2]) -> Vec<f32> {
     let weight = |input: usize, output: usize| parameters[outputs + output * inputs + input];
     let weights = (0..inputs).flat_map(|input| (0..outputs).map(move |output| weight(input, output)));
@@ -363,7 +361,7 @@ fn leaky_parameters(layout: LeakyLayout, ends: Ends<'_>, weights: [f64; 2], leak
     LeakyParameter::ALL.into_iter().flat_map(of_kind).collect()
 }
 
-/// Parameters by their kind, those of a kind numbered from 1.
+/// Names parameters by kind and number.
 fn numbered<'k>(kinds: impl Iterator<Item = (&'k str, [f64; 2])>) -> Vec<Parameter> {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     let named = kinds.map(|(kind, range)| {
@@ -377,12 +375,12 @@ fn numbered<'k>(kinds: impl Iterator<Item = (&'k str, [f64; 2])>) -> Vec<Paramet
     named.collect()
 }
 
-/// How many of a continuous-time network's parameters are searched for: all but the gains.
+/// Returns the number of searched parameters of a CTRNN: all except the gains.
 fn searched(layout: &CtrnnLayout) -> usize {
     layout.parameter_count() - layout.neurons()
 }
 
-/// All parameters of a continuous-time network: those that are searched for, and gains of 1.
+/// Returns all parameters of a CTRNN from the searched ones, with gains of 1.
 fn ctrnn_parameters(layout: &CtrnnLayout, searched: &[f32]) -> Vec<f32> {
     let mut searched = searched.iter().copied();
     let own = |kind| if kind == CtrnnParameter::Gain { 1.0 } else { searched.next().unwrap_or(0.0) };

@@ -1,12 +1,12 @@
-//! When a trial has succeeded.
+//! Conditions of success and failure.
 
 use farsa_lab::Error;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::Condition;
 use crate::parts::tally::Tally;
 
-/// A condition of success on a term by its number.
+/// A condition on a term, by number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
     pub(crate) term: usize,
@@ -15,23 +15,23 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// A condition that stands at a path of the document.
+    /// Reads the condition at a path.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a term that there is not, [`Error::Setting`] for a condition that asks nothing.
-    pub(crate) fn new(condition: &Condition, path: &str, names: &[String], places: &Places) -> Result<Self, Error> {
+    /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for a condition without limits.
+    pub(crate) fn new(condition: &Condition, path: &str, names: &[String], source: &Source) -> Result<Self, Error> {
         let Condition { term, above, below } = condition;
         let names_of = names.iter().map(String::as_str);
-        let place = places.of(&format!("{path}/term"));
+        let place = source.of(&format!("{path}/term"));
         let found = names.iter().position(|name| name == term);
         let term = found.ok_or_else(|| Error::unknown(&place, "term", term, names_of))?;
         if above.is_none() && below.is_none() {
-            return Err(places.wrong(path, "lacks `above` and `below`: one of them at least"));
+            return Err(source.wrong(path, "lacks `above` and `below`: one of them at least"));
         }
         Ok(Self { term, above: *above, below: *below })
     }
 
-    /// Whether it holds after the last step.
+    /// Returns true if the condition holds after the last step.
     pub(crate) fn holds(&self, terms: &[Tally]) -> bool {
         let value = terms[self.term].last;
         self.above.is_none_or(|above| value > above) && self.below.is_none_or(|below| value < below)

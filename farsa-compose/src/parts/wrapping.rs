@@ -1,4 +1,4 @@
-//! What is wrapped around sensors and motors alike.
+//! Wrappers of sensors and motors.
 
 use std::ops::Bound;
 
@@ -8,11 +8,11 @@ use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, S
 use farsa_lab::Error;
 use farsa_num::{Domain, Stream};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::Wrapper;
-use crate::parts::bounded::Room;
+use crate::parts::sizes::MemoryBudget;
 
-/// A sensor or motor within a wrapper.
+/// A sensor or motor in a wrapper.
 #[derive(Clone, Debug)]
 pub(crate) enum Wrapped<T> {
     Noisy(Noisy<Box<T>, Vec<f32>>),
@@ -24,29 +24,29 @@ pub(crate) enum Wrapped<T> {
     Stuck(Stuck<Box<T>, Vec<f32>>),
 }
 
-/// The values in whose place a wrapper itself lies.
+/// Size of a wrapper itself, in values.
 const ITSELF: usize = 32;
 
 impl<T: Channels> Wrapped<T> {
-    /// A part within the wrapper that stands at a path, which takes of the room.
+    /// Wraps a part as the wrapper at a path requires, within the memory budget.
     ///
     /// # Errors
-    /// [`Error::Setting`] for channels that there are not, for ends in the wrong order, and where there is no room.
+    /// [`Error::Setting`] for missing channels, for limits in the wrong order, and beyond the budget.
     pub(crate) fn new(
         inner: T,
         wrapper: &Wrapper,
-        room: &mut Room,
+        budget: &mut MemoryBudget,
         path: &str,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
         let steps = if let Wrapper::Delay { steps } = wrapper { *steps as usize } else { 0 };
-        room.take((1 + steps).saturating_mul(inner.channels()) + ITSELF, path, places)?;
-        Self::around(inner, wrapper).map_err(|error| places.wrong(path, error))
+        budget.take((1 + steps).saturating_mul(inner.channels()) + ITSELF, path, source)?;
+        Self::around(inner, wrapper).map_err(|error| source.wrong(path, error))
     }
 
     fn around(inner: T, wrapper: &Wrapper) -> Result<Self, ChannelError> {
         let inner = Box::new(inner);
-        // Another stream is given to it before every episode.
+        // Each episode replaces the stream.
         let stream = Stream::from_seed(0);
         let chosen = |channels: &Option<[u32; 2]>| {
             channels.map_or((Bound::Unbounded, Bound::Unbounded), |[first, last]| {
@@ -73,7 +73,7 @@ impl<T: Channels> Wrapped<T> {
     }
 }
 
-/// Calls a method of whatever is wrapped around.
+/// Calls a method of the wrapper of any kind.
 macro_rules! around {
     ($wrapped:expr, $part:ident => $call:expr) => {
         match $wrapped {
@@ -89,25 +89,26 @@ macro_rules! around {
 }
 pub(crate) use around;
 
-/// The domains of the noise of sensors and of motors.
+/// Domains of the noise of sensors and of motors.
 pub(crate) const NOISE: [Domain; 2] = [Domain::Sensor, Domain::Motor];
 
-/// Streams for the noise of an episode: one after the other on one stream, each with room for all that it may draw.
+/// Streams for the noise of an episode: consecutive sections of one stream, each long enough for all draws of a
+/// wrapper.
 pub(crate) struct NoiseStreams {
     stream: Stream,
     next: u64,
-    /// Words that a channel may draw.
+    /// Words per channel.
     words: u64,
 }
 
 impl NoiseStreams {
-    /// From the beginning of a stream, for episodes of so many steps.
+    /// Starts at the beginning of a stream, for episodes of this number of steps.
     pub(crate) fn new(stream: Stream, steps: u32) -> Self {
         // A normal number takes two words on average, and sometimes more.
         Self { stream, next: 0, words: 8 * u64::from(steps) }
     }
 
-    /// The stream of the next noise, of so many channels.
+    /// Returns the stream of the next noise, for the given number of channels.
     pub(crate) fn take(&mut self, channels: usize) -> Stream {
         let mut stream = self.stream;
         stream.seek(self.next);
@@ -116,7 +117,7 @@ impl NoiseStreams {
     }
 }
 
-/// Something whose noise is drawn from streams that it is given.
+/// A part whose noise takes its streams from outside.
 pub(crate) trait Reseed {
     fn reseed(&mut self, streams: &mut NoiseStreams);
 }

@@ -1,4 +1,4 @@
-//! What the channels of a robot with joints stand for.
+//! The quantities of the channels of a robot with joints.
 
 use farsa_body::actuators::Law;
 use farsa_body::ports::JointId;
@@ -8,12 +8,12 @@ use crate::document::{MotorKind, SensorKind};
 use crate::jointed::actuation;
 use crate::jointed::eyes::{of_blobs, of_image, of_offset};
 use crate::jointed::scene::Scene;
+use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::eye::seen;
-use crate::parts::meaning::Meaning;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The joint of a channel: of those that are named, or of all that fit.
+/// Returns the joint of a channel, from those named or from all of the kind.
 fn joint(names: &[String], channel: usize, scene: &Scene, fits: impl Fn(JointId) -> bool) -> Option<JointId> {
     let mut own = scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
     match names.get(channel) {
@@ -22,7 +22,7 @@ fn joint(names: &[String], channel: usize, scene: &Scene, fits: impl Fn(JointId)
     }
 }
 
-/// What a joint is called, the range of its positions, and their unit and that of its efforts.
+/// Returns the name of a joint, its range, and the units of its position, speed and effort.
 fn about(joint: Option<JointId>, scene: &Scene) -> (String, [f64; 2], [&'static str; 3]) {
     let name = joint.map_or_else(String::new, |joint| scene.joint_name(joint).to_owned());
     let segment = joint.and_then(|joint| scene.robot.segments.get(joint.index()));
@@ -31,53 +31,55 @@ fn about(joint: Option<JointId>, scene: &Scene) -> (String, [f64; 2], [&'static 
     (name, joint.map_or([0.0, 1.0], |joint| scene.range(joint)), units)
 }
 
-/// What a channel of a sensor reads.
-pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Meaning {
+/// Returns the quantity of a sensor channel.
+pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> ChannelQuantity {
     let first = || scene.robot.segments.first().map_or("", |segment| segment.name.as_str()).to_owned();
     let body = |name: &Option<String>| name.clone().unwrap_or_else(first);
     match kind {
         SensorKind::JointPosition { joints, from, to } => {
             let (name, [low, high], [unit, ..]) = about(joint(joints, channel, scene, |_| true), scene);
-            Meaning::new(format!("position of {name}"), unit, [from.unwrap_or(low), to.unwrap_or(high)])
+            ChannelQuantity::new(format!("position of {name}"), unit, [from.unwrap_or(low), to.unwrap_or(high)])
         }
         SensorKind::JointSpeed { joints } => {
             let (name, _, [_, unit, _]) = about(joint(joints, channel, scene, |_| true), scene);
-            Meaning::new(format!("speed of {name}"), unit, [0.0, 1.0])
+            ChannelQuantity::new(format!("speed of {name}"), unit, [0.0, 1.0])
         }
-        SensorKind::Touch { .. } => Meaning::new("whether something is touched", "1", [0.0, 1.0]),
-        SensorKind::ContactForce { .. } => Meaning::new("force", "N", [0.0, 1.0]),
+        SensorKind::Touch { .. } => ChannelQuantity::new("whether something is touched", "1", [0.0, 1.0]),
+        SensorKind::ContactForce { .. } => ChannelQuantity::new("force", "N", [0.0, 1.0]),
         SensorKind::TargetPosition { target, scale, body: own, .. } => {
             let one = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
             let way = format!("{} of the way from {} to {target}", AXES[channel % 3], body(own));
-            Meaning::new(way, "m", [0.0, one])
+            ChannelQuantity::new(way, "m", [0.0, one])
         }
         SensorKind::BodyPose { body: name } if channel < 3 => {
-            Meaning::new(format!("{} of {}", AXES[channel], body(name)), "m", [0.0, 1.0])
+            ChannelQuantity::new(format!("{} of {}", AXES[channel], body(name)), "m", [0.0, 1.0])
         }
         SensorKind::BodyPose { body: name } => {
             let part = ["x", "y", "z", "w"][(channel - 3) % 4];
-            Meaning::new(format!("{part} of the orientation of {}", body(name)), "1", [0.0, 1.0])
+            ChannelQuantity::new(format!("{part} of the orientation of {}", body(name)), "1", [0.0, 1.0])
         }
         SensorKind::BodyVelocity { body: name, .. } if channel < 3 => {
-            Meaning::new(format!("{} of the velocity of {}", AXES[channel], body(name)), "m/s", [0.0, 1.0])
+            ChannelQuantity::new(format!("{} of the velocity of {}", AXES[channel], body(name)), "m/s", [0.0, 1.0])
         }
         SensorKind::BodyVelocity { body: name, .. } => {
             let what = format!("{} of the angular velocity of {}", AXES[channel % 3], body(name));
-            Meaning::new(what, "rad/s", [0.0, 1.0])
+            ChannelQuantity::new(what, "rad/s", [0.0, 1.0])
         }
-        SensorKind::Height { body: name, .. } => Meaning::new(format!("height of {}", body(name)), "m", [0.0, 1.0]),
+        SensorKind::Height { body: name, .. } => {
+            ChannelQuantity::new(format!("height of {}", body(name)), "m", [0.0, 1.0])
+        }
         SensorKind::Camera(camera) => seen(camera, channel),
         SensorKind::CameraImage { eye } => of_image(eye, channel),
         SensorKind::ColorBlobs { colors, .. } => of_blobs(colors, channel),
         SensorKind::VisualOffset { of, from, .. } => of_offset([of, from], channel),
-        SensorKind::Constant { value } => Meaning::new(format!("always {value}"), "1", [0.0, 1.0]),
-        // Of robots on wheels.
-        _ => Meaning::new("nothing", "1", [0.0, 1.0]),
+        SensorKind::Constant { value } => ChannelQuantity::new(format!("always {value}"), "1", [0.0, 1.0]),
+        // Sensors of robots on wheels.
+        _ => ChannelQuantity::new("nothing", "1", [0.0, 1.0]),
     }
 }
 
-/// What a channel of a motor drives.
-pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> Meaning {
+/// Returns the quantity of a motor channel.
+pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> ChannelQuantity {
     let joint = |names: &[String], channel, given: bool, is: fn(&Law<f64>) -> bool| {
         let found = joint(names, channel, scene, |joint| given || actuation::has(scene, joint, is));
         (found, about(found, scene))
@@ -85,25 +87,25 @@ pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> Meaning
     match kind {
         MotorKind::JointVelocity { joints, largest, gain, .. } => {
             let (_, (name, _, [_, unit, _])) = joint(joints, channel, gain.is_some(), actuation::is_velocity);
-            Meaning::new(format!("speed of {name}"), unit, [-largest, *largest])
+            ChannelQuantity::new(format!("speed of {name}"), unit, [-largest, *largest])
         }
         MotorKind::JointTorque { joints, largest } => {
             let (found, (name, _, [.., unit])) = joint(joints, channel, largest.is_some(), actuation::is_torque);
             let own = found.and_then(|joint| actuation::limit(scene, joint));
             let largest = largest.or(own).unwrap_or(1.0);
-            Meaning::new(format!("torque of {name}"), unit, [-largest, largest])
+            ChannelQuantity::new(format!("torque of {name}"), unit, [-largest, largest])
         }
         MotorKind::Servo { joints, together, from, to, stiffness, .. } => {
             let (_, (name, [low, high], [unit, ..])) = joint(joints, channel, stiffness.is_some(), actuation::is_servo);
             let name = if *together { format!("{name} and all with it") } else { name };
-            Meaning::new(format!("position of {name}"), unit, [from.unwrap_or(low), to.unwrap_or(high)])
+            ChannelQuantity::new(format!("position of {name}"), unit, [from.unwrap_or(low), to.unwrap_or(high)])
         }
         MotorKind::Muscles { joints, tension, .. } => {
             let (_, (name, ..)) = joint(joints, channel / 2, tension.is_some(), actuation::is_muscles);
             let which = ["agonist", "antagonist"][channel % 2];
-            Meaning::new(format!("activation of the {which} of {name}"), "1", [0.0, 1.0])
+            ChannelQuantity::new(format!("activation of the {which} of {name}"), "1", [0.0, 1.0])
         }
-        // Of robots on wheels.
-        _ => Meaning::new("nothing", "1", [0.0, 1.0]),
+        // Motors of robots on wheels.
+        _ => ChannelQuantity::new("nothing", "1", [0.0, 1.0]),
     }
 }

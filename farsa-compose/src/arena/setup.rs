@@ -1,4 +1,4 @@
-//! Robots in an arena: all that the trials of an experiment share.
+//! The scene with the sensors, motors and terms of its robots.
 
 use farsa_body::ports::{BodyId, Channels, Motor as _, Sensor as _};
 use farsa_body::robots::MobileRobot;
@@ -12,37 +12,37 @@ use crate::arena::scene::{Scene, Thing};
 use crate::arena::sensing::{Sensing, sensor};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
-use crate::parts::bounded::{Room, bounded_parts};
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
-use crate::parts::wiring::Wiring;
+use crate::parts::network_spec::NetworkSpec;
+use crate::parts::sizes::{MemoryBudget, check_parts};
 use crate::parts::wrapping::{NoiseStreams, Reseed as _};
 
-/// The scene of an experiment with its robots, and what is measured of them.
+/// A scene with its robots and terms.
 #[derive(Clone, Debug)]
-pub(crate) struct Composition {
+pub(crate) struct Setup {
     pub(crate) scene: Scene,
-    /// The sensors of each robot, and its motors.
+    /// Sensors and motors of each robot.
     pub(crate) members: Vec<Member>,
-    /// The nest and the field around it, if there are any.
+    /// Nest and field, if any.
     pub(crate) foraging: Option<(BodyId, Field)>,
-    /// Whether things can be carried away during a trial.
+    /// True if things can move during a trial.
     pub(crate) moving: bool,
     pub(crate) starting: Starting,
-    /// What the terms measure.
+    /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
 }
 
-/// What a robot senses and does.
+/// Sensors and motors of a robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
     pub(crate) parts: farsa_body::robots::MobileParts,
     pub(crate) sensors: Vec<Sensing>,
     pub(crate) motors: Vec<Driving>,
-    /// The infrared sensors that a recording draws, with their first channel.
+    /// Infrared sensors in recordings, with their first channel.
     pub(crate) drawn: Vec<(usize, InfraredDrawing)>,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Member {
 type Spans = [(String, [usize; 2])];
 
 impl Member {
-    /// Reads all sensors, whose channels these are.
+    /// Reads all sensors into the channels of their spans.
     #[inline]
     pub(crate) fn sense<W: PlanarWorld>(&mut self, spans: &Spans, world: &W, x: &mut [f32]) {
         for (sensor, (_, [first, end])) in self.sensors.iter_mut().zip(spans) {
@@ -58,7 +58,7 @@ impl Member {
         }
     }
 
-    /// Drives all motors, whose channels these are.
+    /// Drives all motors by the channels of their spans.
     #[inline]
     pub(crate) fn drive<W: PlanarWorld>(&mut self, spans: &Spans, y: &[f32], world: &mut W) {
         for (motor, (_, [first, end])) in self.motors.iter_mut().zip(spans) {
@@ -66,7 +66,7 @@ impl Member {
         }
     }
 
-    /// Puts all motors to rest.
+    /// Stops all motors.
     pub(crate) fn rest<W: PlanarWorld>(&mut self, spans: &Spans, y: &mut [f32], world: &mut W) {
         for (motor, (_, [first, end])) in self.motors.iter_mut().zip(spans) {
             motor.rest(&mut y[*first..*end], world);
@@ -74,49 +74,57 @@ impl Member {
     }
 }
 
-impl Composition {
-    /// The parts of a document with their channels and terms; errors name the places where they stand.
+impl Setup {
+    /// Builds the parts of a document.
     ///
     /// # Errors
-    /// [`Error::Setting`] and [`Error::Unknown`] for what does not go together.
-    pub(crate) fn new(document: Document, places: &Places) -> Result<(Self, Agents), Error> {
-        let scene = Scene::new(&document, places)?;
+    /// [`Error::Setting`] and [`Error::Unknown`] for parts that do not fit together.
+    pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
+        let scene = Scene::new(&document, source)?;
         let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
-        bounded_parts(&document, scene.robots.len(), infrared, places)?;
-        let (mut files, mut room) = (Files::new(&document.files), Room::new());
+        check_parts(&document, scene.robots.len(), infrared, source)?;
+        let (mut files, mut budget) = (Files::new(&document.files), MemoryBudget::new(source.limits));
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {
             let (mut sensors, mut motors) = (Vec::new(), Vec::new());
             for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-                sensors.push(sensor(own, &scene, robot, &format!("/sensors/{index}"), &mut files, &mut room, places)?);
+                sensors.push(sensor(
+                    own,
+                    &scene,
+                    robot,
+                    &format!("/sensors/{index}"),
+                    &mut files,
+                    &mut budget,
+                    source,
+                )?);
             }
             for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-                motors.push(motor(own, &scene, robot, &format!("/motors/{index}"), &mut room, places)?);
+                motors.push(motor(own, &scene, robot, &format!("/motors/{index}"), &mut budget, source)?);
             }
             let drawn = drawn(&document, &scene.robots[robot], &sensors);
             members.push(Member { parts: scene.parts(robot), sensors, motors, drawn });
         }
-        alike(&members, &scene, &document, places)?;
+        alike(&members, &scene, &document, source)?;
         let channels = [
             members[0].sensors.iter().map(Channels::channels).collect(),
             members[0].motors.iter().map(Channels::channels).collect(),
         ];
-        let wiring = Wiring::new(&document, channels, places)?;
-        room.take(wiring.kept().saturating_mul(members.len()), "/network", places)?;
-        let term = |(number, reward)| Term::new(reward, number, &wiring.sensors, &scene, places);
+        let spec = NetworkSpec::new(&document, channels, source)?;
+        budget.take(spec.values().saturating_mul(members.len()), "/network", source)?;
+        let term = |(number, reward)| Term::new(reward, number, &spec.sensors, &scene, source);
         let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let ledger = Ledger::new(&document, &of_steps, &scene.groups, places)?;
-        let foraging = foraging(&document, &scene, &terms, places)?;
+        let ledger = Ledger::new(&document, &of_steps, &scene.groups, source)?;
+        let foraging = foraging(&document, &scene, &terms, source)?;
         let moving = document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
             || !scene.blocks.is_empty()
             || terms.iter().any(|term| term.is_about_robot(&scene));
-        let starting = Starting::new(&document, &scene, places)?;
-        let agents = Agents::new(document, wiring, ledger, scene.groups.clone());
+        let starting = Starting::new(&document, &scene, source)?;
+        let agents = Agents::new(document, spec, ledger, scene.groups.clone());
         Ok((Self { scene, members, foraging, moving, starting, terms }, agents))
     }
 
-    /// Gives all noise its streams for an episode.
+    /// Assigns the streams of an episode to all noise.
     pub(crate) fn reseed(members: &mut [Member], [sensor, motor]: [Stream; 2], steps: u32) {
         let mut streams = [NoiseStreams::new(sensor, steps), NoiseStreams::new(motor, steps)];
         for member in members {
@@ -126,8 +134,8 @@ impl Composition {
     }
 }
 
-/// Refuses sensors that have other channels on other robots: one network has to fit all.
-fn alike(members: &[Member], scene: &Scene, document: &Document, places: &Places) -> Result<(), Error> {
+/// Rejects sensors with other numbers of channels on other robots, because all robots have one network.
+fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source) -> Result<(), Error> {
     let enabled = document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled);
     for (place, (index, _)) in enabled.enumerate() {
         let first = members[0].sensors[place].channels();
@@ -136,22 +144,22 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, places: &Places
             let [one, two] = [0, robot].map(|robot| scene.groups.of(robot));
             let channels = members[robot].sensors[place].channels();
             let why = format!("has {first} channels on `{one}` and {channels} on `{two}`: one network has to fit both");
-            return Err(places.wrong(&format!("/sensors/{index}"), why));
+            return Err(source.wrong(&format!("/sensors/{index}"), why));
         }
     }
     Ok(())
 }
 
-/// The nest and the field of a document.
+/// Builds the nest and the field of a document.
 ///
 /// # Errors
-/// [`Error::Unknown`] for a nest that there is not, [`Error::Setting`] for one that is no disc, and for what asks for food or
-/// energy where there are none.
+/// [`Error::Unknown`] for an unknown nest, and [`Error::Setting`] for a nest that is no disc and for sensors, terms
+/// and endings that need the section `foraging`.
 fn foraging(
     document: &Document,
     scene: &Scene,
     terms: &[Term],
-    places: &Places,
+    source: &Source,
 ) -> Result<Option<(BodyId, Field)>, Error> {
     let Some(foraging) = &document.foraging else {
         let felt = |kind: &SensorKind| matches!(kind, SensorKind::Energy {} | SensorKind::Carried {});
@@ -159,21 +167,21 @@ fn foraging(
         let term = terms.iter().position(Term::of_foraging).map(|own| format!("/reward/{own}"));
         let ending = document.episode.ends.contains(&Ending::Death).then(|| "/episode/ends".into());
         return match sensor.or(term).or(ending) {
-            Some(path) => Err(places.wrong(&path, "needs the section `foraging`, which there is not")),
+            Some(path) => Err(source.wrong(&path, "needs the section `foraging`, which there is not")),
             None => Ok(None),
         };
     };
     let path = "/foraging/nest";
-    match scene.thing(&foraging.nest, path, places)? {
+    match scene.thing(&foraging.nest, path, source)? {
         Thing::Area { body, half: [radius, _], disc: true } => {
             let cells = foraging.cells as usize;
             Ok(Some((body, Field::new(scene.size, cells, foraging.cost, radius, scene.robots.len()))))
         }
-        _ => Err(places.wrong(path, format!("`{}` is no disc", foraging.nest))),
+        _ => Err(source.wrong(path, format!("`{}` is no disc", foraging.nest))),
     }
 }
 
-/// The infrared sensors of a robot that a recording draws, with the first channel of each.
+/// Returns the infrared sensors of a robot for recordings, with the first channel of each.
 fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Sensing]) -> Vec<(usize, InfraredDrawing)> {
     let mut first = 0;
     let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(sensors);

@@ -1,21 +1,21 @@
-//! What a channel stands for.
+//! The quantity of a channel, for exports.
 
 use crate::document::Wrapper;
 
-/// A quantity, its unit, its values that are 0 and 1, and whether it is in proportion between.
-pub(crate) struct Meaning {
+/// A quantity with its unit, the values at 0 and 1, and a flag for a linear scale between them.
+pub(crate) struct ChannelQuantity {
     pub(crate) quantity: String,
     pub(crate) unit: &'static str,
     pub(crate) ends: [f64; 2],
     pub(crate) linear: bool,
 }
 
-impl Meaning {
+impl ChannelQuantity {
     pub(crate) fn new(quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
         Self { quantity: quantity.into(), unit, ends, linear: true }
     }
 
-    /// The same with what changes its values on their way, in that order.
+    /// Appends the changes of wrappers, in this order.
     pub(crate) fn with_wrappers<'w>(self, wrappers: impl Iterator<Item = &'w Wrapper>) -> Self {
         match changes(wrappers) {
             words if words.is_empty() => self,
@@ -24,7 +24,7 @@ impl Meaning {
     }
 }
 
-/// What changes values on their way, in that order; empty if nothing does.
+/// Describes the changes of wrappers, in this order. Empty without any.
 pub(crate) fn changes<'w>(wrappers: impl Iterator<Item = &'w Wrapper>) -> String {
     wrappers.map(change).collect::<Vec<_>>().join(", then ")
 }

@@ -1,49 +1,49 @@
-//! A network that is wired by hand.
+//! Networks with wires set by hand.
 
 use std::sync::Arc;
 
 use farsa_lab::{Error, Parameter};
-use farsa_nn::Controller;
+use farsa_nn::{Ablatable, Controller, Lesion};
 use farsa_num::{Scalar, logistic};
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Activation, Wire};
 use crate::parts::ends::Ends;
 
-/// Wires that add inputs up: `y_o = f(b_o + sum w x)`, the sum wire by wire from 0, `f` the identity cut at 0 and 1 or the
-/// logistic function.
+/// A network of wires: `y_o = f(b_o + sum w x)`. The sum adds the wires in order, starting at 0. `f` is the identity
+/// clamped to 0 and 1, or the logistic function.
 #[derive(Clone, Debug)]
-pub(crate) struct Wired {
+pub(crate) struct HandWired {
     inputs: usize,
     outputs: usize,
-    /// The inputs of each wire, and its output.
+    /// Inputs and output of each wire.
     wires: Arc<[(Vec<usize>, usize)]>,
     activation: Activation,
-    /// The weights of the wires, then the biases.
+    /// Weights of the wires, then biases.
     parameters: Vec<f32>,
 }
 
-impl Wired {
-    /// The wires of a document between these ends.
+impl HandWired {
+    /// Builds the wires of a document.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an end that there is not, [`Error::Setting`] for another number of biases than of outputs.
+    /// [`Error::Unknown`] for an unknown end, [`Error::Setting`] for another number of biases than of outputs.
     pub(crate) fn new(
         wires: &[Wire],
         bias: &[f64],
         activation: Activation,
         ends: Ends<'_>,
-        places: &Places,
+        source: &Source,
     ) -> Result<Self, Error> {
         let Ends { inputs, outputs, .. } = ends;
         if bias.len() != outputs.len() {
             let why = format!("has {} values where the motors want {}", bias.len(), outputs.len());
-            return Err(places.wrong("/network/bias", why));
+            return Err(source.wrong("/network/bias", why));
         }
         let end = |name: &str, list: &[String], what, path: String| {
             let found = list.iter().position(|known| known == name);
             let names = list.iter().map(String::as_str);
-            found.ok_or_else(|| Error::unknown(&places.of(&path), what, name, names))
+            found.ok_or_else(|| Error::unknown(&source.of(&path), what, name, names))
         };
         let made = wires.iter().enumerate().map(|(number, wire)| {
             let path = format!("/network/wires/{number}");
@@ -62,13 +62,13 @@ impl Wired {
         })
     }
 
-    /// All parameters by their names, in their order.
+    /// Names all parameters.
     pub(crate) fn named(wires: &[Wire], names: &[String], outputs: &[String], range: [f64; 2]) -> Vec<Parameter> {
         let weights = wires.iter().zip(names).map(|(_, name)| Parameter::new(format!("weight of {name}"), range));
         weights.chain(outputs.iter().map(|output| Parameter::new(format!("bias of {output}"), range))).collect()
     }
 
-    /// Takes other parameters; false for another number of them.
+    /// Copies parameters. Returns false for another number of them and for NaN.
     pub(crate) fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
         let fits = parameters.len() == self.parameters.len() && parameters.iter().all(|x| x.is_finite());
         if fits {
@@ -81,7 +81,8 @@ impl Wired {
         &self.parameters
     }
 
-    /// The weights of one layer that does the same, input by input, and then the biases, if its outputs are logistic.
+    /// Returns the equivalent perceptron's parameters if the outputs are logistic: weights input by input, then
+    /// biases.
     pub(crate) fn as_layer(&self) -> Option<Vec<f32>> {
         if self.activation != Activation::Logistic {
             return None;
@@ -97,7 +98,7 @@ impl Wired {
     }
 }
 
-impl Controller for Wired {
+impl Controller for HandWired {
     fn inputs(&self) -> usize {
         self.inputs
     }
@@ -123,5 +124,16 @@ impl Controller for Wired {
                 Activation::Logistic => logistic(sum),
             };
         }
+    }
+}
+
+/// A hand-wired network has no neurons to hold.
+impl Ablatable for HandWired {
+    fn neurons(&self) -> usize {
+        0
+    }
+
+    fn step_ablated(&mut self, _: &[Lesion], x: &[f32], y: &mut [f32]) {
+        self.step(x, y);
     }
 }

@@ -1,4 +1,4 @@
-//! A robot with joints in its scene: all that the trials of an experiment share.
+//! The scene with the sensors, motors and terms of its robot.
 
 use farsa_body::ports::{BodyId, Channels as _, JointId, PairId};
 use farsa_body::robot::JointKind;
@@ -6,7 +6,7 @@ use farsa_lab::Error;
 use farsa_num::Stream;
 use farsa_physics::articulated::Options;
 
-use crate::check::places::Places;
+use crate::check::source::Source;
 use crate::document::{Document, Ending, Engine, SensorKind};
 use crate::jointed::driving::{Driving, motor};
 use crate::jointed::scene::{ROBOT, Scene};
@@ -14,64 +14,64 @@ use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
-use crate::parts::bounded::{Room, bounded_parts};
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
-use crate::parts::wiring::Wiring;
+use crate::parts::network_spec::NetworkSpec;
+use crate::parts::sizes::{MemoryBudget, check_parts};
 use crate::parts::wrapping::{NoiseStreams, Reseed as _};
 
-/// The scene of an experiment with its robot, and what is measured of it.
+/// A scene with its robot and terms.
 #[derive(Clone, Debug)]
-pub(crate) struct Composition {
+pub(crate) struct Setup {
     pub(crate) scene: Scene,
     pub(crate) sensors: Vec<Sensing>,
     pub(crate) motors: Vec<Driving>,
     pub(crate) starting: Starting,
-    /// What the terms measure.
+    /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
-    /// The pairs by which the robot runs into a thing.
+    /// Contact pairs between the robot and things.
     pub(crate) collisions: Vec<PairId>,
-    /// All joints, and the bodies that float: what shows whether the dynamics broke down.
+    /// All joints and floating bodies, whose speeds show a failure of the dynamics.
     pub(crate) joints: Vec<JointId>,
     pub(crate) floating: Vec<BodyId>,
 }
 
-impl Composition {
-    /// The parts of a document with their channels and terms; errors name the places where they stand.
+impl Setup {
+    /// Builds the parts of a document.
     ///
     /// # Errors
-    /// [`Error::Setting`] and [`Error::Unknown`] for what does not go together.
-    pub(crate) fn new(document: Document, places: &Places) -> Result<(Self, Agents), Error> {
-        refuse(&document, places)?;
-        let mut scene = Scene::new(&document, places)?;
-        let (mut sensors, mut motors, mut room) = (Vec::new(), Vec::new(), Room::new());
+    /// [`Error::Setting`] and [`Error::Unknown`] for parts that do not fit together.
+    pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
+        refuse(&document, source)?;
+        let mut scene = Scene::new(&document, source)?;
+        let (mut sensors, mut motors, mut budget) = (Vec::new(), Vec::new(), MemoryBudget::new(source.limits));
         for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-            sensors.push(sensor(own, &scene, &format!("/sensors/{index}"), &mut room, places)?);
+            sensors.push(sensor(own, &scene, &format!("/sensors/{index}"), &mut budget, source)?);
         }
         for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-            motors.push(motor(own, &mut scene, &format!("/motors/{index}"), &mut room, places)?);
+            motors.push(motor(own, &mut scene, &format!("/motors/{index}"), &mut budget, source)?);
         }
         let channels =
             [sensors.iter().map(Sensing::channels).collect(), motors.iter().map(Driving::channels).collect()];
-        let wiring = Wiring::new(&document, channels, places)?;
-        room.take(wiring.kept(), "/network", places)?;
+        let spec = NetworkSpec::new(&document, channels, source)?;
+        budget.take(spec.values(), "/network", source)?;
         let term = |(number, reward): (usize, &crate::document::Reward)| {
-            Term::new(&reward.kind, &format!("/reward/{number}"), &wiring.sensors, &scene, places)
+            Term::new(&reward.kind, &format!("/reward/{number}"), &spec.sensors, &scene, source)
         };
         let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
         let groups = Groups::new([(ROBOT.to_owned(), 1)], false);
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let ledger = Ledger::new(&document, &of_steps, &groups, places)?;
-        let starting = Starting::new(&document, &scene, places)?;
+        let ledger = Ledger::new(&document, &of_steps, &groups, source)?;
+        let starting = Starting::new(&document, &scene, source)?;
         let segments = scene.robot.segments.iter().enumerate();
         let floating = segments.filter(|(_, segment)| segment.joint.kind == JointKind::Floating);
         let floating = floating.map(|(number, _)| BodyId(number as u16)).collect();
         let (joints, collisions) = (scene.robot.joints().collect(), scene.collisions());
-        let agents = Agents::new(document, wiring, ledger, groups);
+        let agents = Agents::new(document, spec, ledger, groups);
         Ok((Self { scene, sensors, motors, starting, terms, collisions, joints, floating }, agents))
     }
 
-    /// Gives all noise its streams for an episode.
+    /// Assigns the streams of an episode to all noise.
     pub(crate) fn reseed(&mut self, [sensor, motor]: [Stream; 2], steps: u32) {
         let mut streams = [NoiseStreams::new(sensor, steps), NoiseStreams::new(motor, steps)];
         self.sensors.iter_mut().for_each(|sensor| sensor.reseed(&mut streams[0]));
@@ -79,7 +79,7 @@ impl Composition {
     }
 }
 
-/// How the world of a document is stepped.
+/// Returns the options of the world.
 pub(crate) fn options(document: &Document) -> Options {
     let world = &document.world;
     Options {
@@ -91,32 +91,32 @@ pub(crate) fn options(document: &Document) -> Options {
     }
 }
 
-/// Refuses what only robots on wheels have.
-fn refuse(document: &Document, places: &Places) -> Result<(), Error> {
+/// Rejects parts of robots on wheels.
+fn refuse(document: &Document, source: &Source) -> Result<(), Error> {
     let why = "is for robots on wheels; this one has joints";
     if document.world.engine == Engine::Arena {
         let why = "`arena` is for robots on wheels; this one has joints, for `articulated` and `rapier`";
-        return Err(places.wrong("/world/engine", why));
+        return Err(source.wrong("/world/engine", why));
     }
-    bounded_parts(document, 1, 0, places)?;
+    check_parts(document, 1, 0, source)?;
     for (index, sensor) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
         if document.world.engine == Engine::Rapier && matches!(sensor.kind, SensorKind::Camera(_)) {
             let why = "sees nothing in `rapier`; take the engine `articulated`";
-            return Err(places.wrong(&format!("/sensors/{index}"), why));
+            return Err(source.wrong(&format!("/sensors/{index}"), why));
         }
     }
     if !document.robots.is_empty() || document.team.coevolution {
-        return Err(places.wrong("/robots", "are for robots on wheels; of those with joints there is one"));
+        return Err(source.wrong("/robots", "are for robots on wheels; of those with joints there is one"));
     }
     if document.foraging.is_some() {
-        return Err(places.wrong("/foraging", why));
+        return Err(source.wrong("/foraging", why));
     }
     if let Some(index) = document.episode.ends.iter().position(|ending| *ending == Ending::Death) {
-        return Err(places.wrong(&format!("/episode/ends/{index}"), why));
+        return Err(source.wrong(&format!("/episode/ends/{index}"), why));
     }
     let robot = document.reward.iter().position(|reward| reward.robot.is_some_and(|robot| robot > 1));
     if let Some(index) = robot {
-        return Err(places.wrong(&format!("/reward/{index}/robot"), "there is one robot with joints"));
+        return Err(source.wrong(&format!("/reward/{index}/robot"), "there is one robot with joints"));
     }
     Ok(())
 }

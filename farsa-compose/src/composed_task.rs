@@ -1,4 +1,4 @@
-//! A composed experiment as it is evaluated, in any world.
+//! The task of an experiment from a file, in any world.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -7,49 +7,49 @@ use farsa_lab::{
     MotorExport, NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,
 };
 use farsa_models::MjcfOptions;
-use farsa_nn::Leak;
+use farsa_nn::{Controller as _, Leak};
 use farsa_view::{Channel, Schema};
 
 use crate::document::{MotorKind, SensorKind};
 use crate::parts::agents::Agents;
+use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::evonet::EvonetNetwork;
-use crate::parts::meaning::Meaning;
 use crate::parts::network::AnyNetwork;
 
-/// Agents in a world of some kind: what is to be known of them there.
-pub(crate) trait Embodied: Clone + Send + 'static {
-    /// The agents.
+/// Agents in a world of some kind.
+pub(crate) trait Body: Clone + Send + 'static {
+    /// Returns the agents.
     fn agents(&self) -> &Agents;
 
-    /// The same, to be changed.
+    /// Returns the agents.
     fn agents_mut(&mut self) -> &mut Agents;
 
-    /// The bodies of a recording.
+    /// Returns the bodies of a recording.
     fn bodies(&self) -> Schema;
 
-    /// The scalars of a recording before those of the terms.
-    fn places(&self) -> Vec<Channel>;
+    /// Returns the scalars of a recording, except those of terms.
+    fn scalars(&self) -> Vec<Channel>;
 
-    /// The robot as other programs may have it.
+    /// Returns the robot for exports.
     fn robot(&self) -> Robot;
 
-    /// What a MuJoCo model says beside the robot, where that is known.
+    /// Returns the options of a MuJoCo model, if any.
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         None
     }
 
-    /// What a channel of a robot's sensor reads.
-    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> Meaning;
+    /// Returns the quantity of a sensor channel.
+    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity;
 
-    /// What a channel of a robot's motor drives.
-    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> Meaning;
+    /// Returns the quantity of a motor channel.
+    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity;
 }
 
-/// An episode of a composed experiment.
+/// The task of an experiment over the episode of its world.
 #[derive(Clone, Debug)]
-pub(crate) struct Composed<E>(pub(crate) E);
+pub(crate) struct ComposedTask<E>(pub(crate) E);
 
-impl<W, E: Episode<W>> Episode<W> for Composed<E> {
+impl<W, E: Episode<W>> Episode<W> for ComposedTask<E> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.0.start(world, id);
     }
@@ -72,9 +72,9 @@ impl<W, E: Episode<W>> Episode<W> for Composed<E> {
     }
 }
 
-impl<E: Embodied> Task for Composed<E> {
+impl<E: Body> Task for ComposedTask<E> {
     fn parameters(&self) -> Vec<Parameter> {
-        self.0.agents().wiring.searched.parameters().to_vec()
+        self.0.agents().spec.searched.parameters().to_vec()
     }
     fn trials(&self) -> usize {
         self.0.agents().document.episode.trials as usize
@@ -87,12 +87,12 @@ impl<E: Embodied> Task for Composed<E> {
         if names.is_empty() { vec!["0".into()] } else { names }
     }
     fn observations(&self) -> usize {
-        self.0.agents().wiring.inputs.len()
+        self.0.agents().spec.inputs.len()
     }
     fn protocols(&self) -> Vec<Protocol> {
         self.0.agents().interventions.protocols()
     }
-    /// A network that is wired by hand has no neurons to hold, but inputs and links as every other.
+    /// Returns the anatomy. A network with wires set by hand has inputs and links, but no neurons.
     fn anatomy(&self) -> Option<Anatomy> {
         Some(self.0.agents().anatomy(&self.schema()))
     }
@@ -103,7 +103,7 @@ impl<E: Embodied> Task for Composed<E> {
         Some(self)
     }
     fn schema(&self) -> Schema {
-        self.0.agents().schema(self.0.bodies(), self.0.places())
+        self.0.agents().schema(self.0.bodies(), self.0.scalars())
     }
     fn description(&self) -> Description {
         self.0.agents().description()
@@ -113,8 +113,8 @@ impl<E: Embodied> Task for Composed<E> {
     }
 }
 
-impl<E: Embodied> Rollout for Composed<E> {
-    /// Gives robots their networks.
+impl<E: Body> Rollout for ComposedTask<E> {
+    /// Loads the networks of the robots.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         self.0.agents_mut().load(evaluation)
     }
@@ -127,7 +127,7 @@ impl<E: Embodied> Rollout for Composed<E> {
     }
 }
 
-impl<E: Embodied> Exports for Composed<E> {
+impl<E: Body> Exports for ComposedTask<E> {
     fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
         Some(self.0.robot())
     }
@@ -141,10 +141,10 @@ impl<E: Embodied> Exports for Composed<E> {
     }
 
     fn controller_of(&self, population: usize, parameters: &[f32]) -> Option<ControllerExport> {
-        let Agents { document, wiring, groups, .. } = self.0.agents();
+        let Agents { document, spec, groups, .. } = self.0.agents();
         let [robot, _] = *groups.ranges().get(population)?;
-        let mut network = wiring.network.clone();
-        if !network.load(wiring.searched.clone().all(parameters)?) {
+        let mut network = spec.network.clone();
+        if !network.load(spec.searched.clone().all(parameters)?) {
             return None;
         }
         let network = exported(&network, document.world.time_step)?;
@@ -153,49 +153,52 @@ impl<E: Embodied> Exports for Composed<E> {
     }
 }
 
-impl<E: Embodied> Composed<E> {
+impl<E: Body> ComposedTask<E> {
     fn sensors(&self, robot: usize) -> Vec<SensorExport> {
-        let Agents { document, wiring, .. } = self.0.agents();
-        let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&wiring.sensors);
+        let Agents { document, spec, .. } = self.0.agents();
+        let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&spec.sensors);
         let meanings = enabled.flat_map(|(sensor, (_, [first, end]))| {
             (0..end - first)
                 .map(|channel| self.0.sensed(&sensor.kind, channel, robot).with_wrappers(sensor.wrappers.iter()))
         });
-        let channel = |(name, Meaning { quantity, unit, ends: [zero, one], linear }): (&String, Meaning)| {
-            SensorExport { name: name.clone(), reads: SensorReading::Quantity { quantity, unit, zero, one, linear } }
-        };
-        wiring.inputs.iter().zip(meanings).map(channel).collect()
+        let channel =
+            |(name, ChannelQuantity { quantity, unit, ends: [zero, one], linear }): (&String, ChannelQuantity)| {
+                SensorExport {
+                    name: name.clone(),
+                    reads: SensorReading::Quantity { quantity, unit, zero, one, linear },
+                }
+            };
+        spec.inputs.iter().zip(meanings).map(channel).collect()
     }
 
     fn motors(&self, robot: usize) -> Vec<MotorExport> {
-        let Agents { document, wiring, .. } = self.0.agents();
-        let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&wiring.motors);
+        let Agents { document, spec, .. } = self.0.agents();
+        let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&spec.motors);
         let meanings = enabled.flat_map(|(motor, (_, [first, end]))| {
             (0..end - first)
                 .map(|channel| self.0.driven(&motor.kind, channel, robot).with_wrappers(motor.wrappers.iter().rev()))
         });
-        let channel = |(name, Meaning { quantity, unit, ends: [zero, one], .. }): (&String, Meaning)| MotorExport {
-            name: name.clone(),
-            drives: MotorDrive::Quantity { quantity, unit, zero, one },
-        };
-        wiring.outputs.iter().zip(meanings).map(channel).collect()
+        let channel =
+            |(name, ChannelQuantity { quantity, unit, ends: [zero, one], .. }): (&String, ChannelQuantity)| {
+                MotorExport { name: name.clone(), drives: MotorDrive::Quantity { quantity, unit, zero, one } }
+            };
+        spec.outputs.iter().zip(meanings).map(channel).collect()
     }
 }
 
-/// A network with its own parameters.
+/// Returns the export of a network.
 fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
     let parameters = network.own_parameters().to_vec();
+    let [inputs, outputs] = [network.inputs(), network.outputs()];
     Some(match network {
         AnyNetwork::Perceptron(layer, _) => {
-            let [inputs, outputs] = [farsa_nn::Controller::inputs(layer), farsa_nn::Controller::outputs(layer)];
             NetworkExport::Perceptron { inputs, outputs, slope: layer.slope(), parameters }
         }
         AnyNetwork::Leaky(leaky) => NetworkExport::leaky(&leaky.layout(), Leak::Filter, &parameters),
         AnyNetwork::Ctrnn(ctrnn) => {
             NetworkExport::Ctrnn { layout: ctrnn.layout(), time_step: time_step as f32, parameters }
         }
-        AnyNetwork::Wired(wired) => {
-            let [inputs, outputs] = [farsa_nn::Controller::inputs(wired), farsa_nn::Controller::outputs(wired)];
+        AnyNetwork::HandWired(wired) => {
             NetworkExport::Perceptron { inputs, outputs, slope: 1.0, parameters: wired.as_layer()? }
         }
         AnyNetwork::Block(block) | AnyNetwork::Evonet(EvonetNetwork { network: block, .. }) => {

@@ -1,18 +1,18 @@
-//! A point that a name means.
+//! A point of a body, or a marker.
 
 use farsa_body::sensors::Point;
 
 use crate::jointed::SpatialWorld;
 
-/// A point of a body, or a marker by its number.
+/// A point of a body, or the number of a marker.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Spot {
+pub(crate) enum NamedPoint {
     Body(Point),
     Marker(usize),
 }
 
-impl Spot {
-    /// Where it is [m]; `markers` are the places of the markers.
+impl NamedPoint {
+    /// Returns the position [m], given those of the markers.
     pub(crate) fn position<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         match self {
             Self::Body(point) => point.position(world).map(f64::from),

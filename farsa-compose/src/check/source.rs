@@ -1,0 +1,116 @@
+//! The text of an experiment: lines of its values, names of its parts, limits of its sizes.
+
+use std::collections::BTreeMap;
+
+use farsa_lab::Error;
+use serde_json::Value;
+
+use crate::check::schema::{Part, SCHEMA};
+use crate::check::settings::names;
+use crate::limits::Limits;
+
+/// The text of an experiment, for errors with file, line and key.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Source {
+    file: String,
+    /// Lines of values by their paths, such as `/sensors/0/range`.
+    lines: BTreeMap<String, usize>,
+    /// Parts from other files, by the beginning of their paths.
+    others: Vec<(String, Self)>,
+    pub(crate) limits: Limits,
+    pub(crate) names: Names,
+}
+
+/// Names of parts, which no setting changes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Names {
+    /// Name and description of each sensor.
+    pub(crate) sensors: Vec<(String, &'static str)>,
+    /// Name and description of each motor.
+    pub(crate) motors: Vec<(String, &'static str)>,
+    pub(crate) terms: Vec<String>,
+}
+
+impl Names {
+    /// Names the parts of a document.
+    pub(crate) fn new(document: &Value) -> Self {
+        let list = |key: &str| document[key].as_array().map_or(&[][..], Vec::as_slice);
+        let root = Part::root(&SCHEMA);
+        let described = |key: &str| {
+            let about =
+                |part: &Value| root.map_or("", |root| root.about(key, part["kind"].as_str().unwrap_or_default()));
+            names(list(key)).into_iter().zip(list(key).iter().map(about)).collect()
+        };
+        Self { sensors: described("sensors"), motors: described("motors"), terms: names(list("reward")) }
+    }
+}
+
+impl Source {
+    /// A file without lines yet.
+    pub(crate) fn new(file: &str) -> Self {
+        Self { file: file.into(), ..Self::default() }
+    }
+
+    pub(crate) fn put(&mut self, path: &str, line: usize) {
+        self.lines.insert(path.into(), line);
+    }
+
+    /// Takes the lines below `path` from those below `inner` in another file.
+    pub(crate) fn include(&mut self, path: &str, inner: &str, other: &Self) {
+        let lines = other.lines.iter();
+        let lines = lines.filter_map(|(key, line)| Some((format!("{path}{}", key.strip_prefix(inner)?), *line)));
+        let part = Self { lines: lines.collect(), ..Self::new(&other.file) };
+        self.others.push((path.into(), part));
+    }
+
+    /// Returns the place of a line, as messages name it.
+    pub(crate) fn of_line(&self, line: usize) -> String {
+        format!("{} line {line}", self.file)
+    }
+
+    /// Returns the place of a value, or of the part around it.
+    pub(crate) fn of(&self, path: &str) -> String {
+        let within = |own: &str| path.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        if let Some((_, other)) = self.others.iter().find(|(own, _)| within(own)) {
+            return other.of(path);
+        }
+        let mut path = path;
+        loop {
+            if let Some(&line) = self.lines.get(path) {
+                return self.of_line(line);
+            }
+            match path.rsplit_once('/') {
+                Some((above, _)) => path = above,
+                None => return self.file.clone(),
+            }
+        }
+    }
+
+    /// Returns the error of a value.
+    pub(crate) fn wrong(&self, path: &str, why: impl std::fmt::Display) -> Error {
+        Error::Setting { place: self.of(path), key: key(path), why: why.to_string() }
+    }
+}
+
+/// Returns a path as messages write it, with lists counted from 1: `sensors.1.range`.
+pub(crate) fn key(path: &str) -> String {
+    let parts = path.split('/').skip(1).map(|part| match part.parse::<usize>() {
+        Ok(index) => (index + 1).to_string(),
+        Err(_) => part.chars().take(60).collect(),
+    });
+    parts.collect::<Vec<_>>().join(".")
+}
+
+/// Offsets of the lines of a text.
+pub(crate) struct Lines(Vec<usize>);
+
+impl Lines {
+    pub(crate) fn new(text: &str) -> Self {
+        Self(std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect())
+    }
+
+    /// Returns the line of a byte, from 1.
+    pub(crate) fn of(&self, offset: usize) -> usize {
+        self.0.partition_point(|&start| start <= offset)
+    }
+}
