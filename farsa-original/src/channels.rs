@@ -1,4 +1,4 @@
-//! What sensors and motors have in common: names, channels, noise.
+//! Names, channels and noise of sensors and motors.
 
 use std::collections::BTreeSet;
 
@@ -8,22 +8,22 @@ use crate::ini::{Entry, Group, Ini};
 use crate::remarks::Remarks;
 use crate::written::{Written, name, number};
 
-/// The most sensors, and the most motors.
+/// Most sensors, and most motors.
 pub(super) const MOST_PARTS: usize = 100;
-/// How deep devices with noise may stand within each other.
+/// Most nested devices with noise.
 const MOST_WRAPPED: usize = 8;
 
-/// A sensor or a motor as it is written.
+/// A sensor or a motor of the experiment file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Part {
-    /// What it is called there, as a name here.
+    /// Its name in the configuration, as a valid name.
     pub(super) name: Option<String>,
     pub(super) kind: &'static str,
     /// Keys and values, as TOML.
     pub(super) options: Vec<(&'static str, String)>,
-    /// Wrappers, as TOML, in the order of the list here.
+    /// Wrappers, as TOML, in the order of the experiment file.
     pub(super) wrappers: Vec<String>,
-    /// How many channels it has.
+    /// Number of channels.
     pub(super) channels: u64,
 }
 
@@ -32,16 +32,16 @@ impl Part {
         Self { kind, channels, ..Self::default() }
     }
 
-    /// The same with an option.
+    /// Adds an option.
     pub(super) fn with(mut self, key: &'static str, value: impl std::fmt::Display) -> Self {
         self.options.push((key, value.to_string()));
         self
     }
 
-    /// Leaves a name out that another of the parts has already.
+    /// Removes a name that an earlier part has.
     pub(super) fn name_once(&mut self, names: &mut BTreeSet<String>) {
         if let Some(own) = self.name.take() {
-            // A name that is not given is the kind.
+            // A part without a name is called by its kind.
             if names.insert(own.clone()) {
                 self.name = Some(own);
                 return;
@@ -68,23 +68,23 @@ impl Part {
     }
 }
 
-/// A device of the original, with the noise that its groups ask for.
+/// A device of the configuration, with the noise of its groups.
 #[derive(Debug)]
 pub(super) struct Device<'i> {
     pub(super) group: &'i Group,
-    /// Its type, and the line that says so.
+    /// Type, and the line of the type.
     pub(super) kind: String,
     pub(super) entry: &'i Entry,
     pub(super) name: Option<String>,
-    /// From the device outwards: noise, and whether its values are cut where those of the device end.
+    /// Noise from the device outwards, with true for noise that is cut at the ends of the device's values.
     pub(super) noise: Vec<(String, bool)>,
 }
 
 impl<'i> Device<'i> {
-    /// Reads a group: `NoisyInput` and `NoisyOutput` are noise around the device in their group `within`.
+    /// Reads a group. `NoisyInput` and `NoisyOutput` add noise to the device in their group `within`.
     ///
     /// # Errors
-    /// [`Error::Usage`] for groups within groups within groups.
+    /// [`Error::Usage`] for too many nested groups.
     pub(super) fn from_group(
         file: &str,
         ini: &'i Ini,
@@ -114,15 +114,15 @@ impl<'i> Device<'i> {
         Err(Error::Usage(format!("{file} line {}: more than {MOST_WRAPPED} devices within each other", group.line)))
     }
 
-    /// The wrappers of its noise, in the order of values that come from it, cut at both ends.
+    /// Returns the noise of a sensor as wrappers, each cut at both ends.
     pub(super) fn noisy_values(&self, [low, high]: [f64; 2]) -> Vec<String> {
         let cut = saturate(low, high);
         self.noise.iter().flat_map(|(noise, _)| [noise.clone(), cut.clone()]).collect()
     }
 
-    /// The wrappers of its noise on values that go to it; its own noise is not cut.
+    /// Returns the noise of a motor as wrappers. The motor's own noise is not cut.
     pub(super) fn noisy_commands(&self) -> Vec<String> {
-        // The last of a motor's list is the first that a value meets.
+        // A motor applies the last wrapper of its list first.
         let cut = |(noise, wraps): &(String, bool)| {
             let mut both = if *wraps { vec![saturate(0.0, 1.0)] } else { Vec::new() };
             both.push(noise.clone());
@@ -136,13 +136,13 @@ fn saturate(low: f64, high: f64) -> String {
     format!("{{ kind = \"saturate\", low = {}, high = {} }}", number(low), number(high))
 }
 
-/// The wrapper of a group's noise, if it asks for some.
+/// Returns the wrapper of a group's noise, if any.
 fn read_noise(group: &Group, remarks: &mut Remarks) -> Option<String> {
     let kind = group.word("noiseType", "nonoise", remarks);
     let range = group.number("noiseRange", 0.0, 0.0..=1e6, remarks);
     match &*kind {
         "nonoise" => None,
-        // It goes half the range to both sides.
+        // The range is twice the amplitude.
         "uniform" => Some(format!("{{ kind = \"uniform-noise\", amplitude = {} }}", number(range / 2.0))),
         // The range is four standard deviations.
         "gaussian" => Some(format!("{{ kind = \"normal-noise\", deviation = {} }}", number(range / 4.0))),
@@ -155,7 +155,7 @@ fn read_noise(group: &Group, remarks: &mut Remarks) -> Option<String> {
     }
 }
 
-/// Which channels of a device are used: so many of the first, and the channels among them that are silenced.
+/// The used channels of a device: the first ones, and the silent channels among them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Selection {
     pub(super) first: u64,
@@ -163,7 +163,8 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// Reads `activeSensors`, a 0 or a 1 for each of `count` sensors, of which the original's first is number `turn` here.
+    /// Reads `activeSensors`, a 0 or a 1 for each of `count` sensors. The first is number `turn` in the experiment
+    /// file.
     pub(super) fn from_group(group: &Group, [count, turn]: [u64; 2], remarks: &mut Remarks) -> Self {
         let all = Self { first: count, silent: Vec::new() };
         let Some(entry) = group.text("activeSensors", remarks) else { return all };
@@ -192,7 +193,7 @@ impl Selection {
         Self { first: last as u64 + 1, silent }
     }
 
-    /// The wrappers that silence channels.
+    /// Returns the wrappers of silent channels.
     pub(super) fn lesions(&self) -> impl Iterator<Item = String> + '_ {
         self.silent.iter().map(|[from, to]| format!("{{ kind = \"lesion\", channels = [{from}, {to}] }}"))
     }

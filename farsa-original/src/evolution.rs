@@ -1,4 +1,4 @@
-//! The algorithm that searches.
+//! The evolutionary algorithm.
 
 use farsa_lab::Error;
 
@@ -6,27 +6,27 @@ use crate::ini::Group;
 use crate::remarks::Remarks;
 use crate::written::{Written, number};
 
-/// What is said of the search, and of the runs.
+/// The search and its runs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Evolution {
     generations: u64,
     search: Search,
-    /// The seed of the first run; 0 is any.
+    /// Seed of the first run. 0 is any seed.
     pub(super) seed: u64,
-    /// Runs with a seed each.
+    /// Runs, each with its own seed.
     pub(super) replications: u64,
 }
 
-/// How it searches.
+/// The algorithm.
 #[derive(Clone, Debug, PartialEq)]
 enum Search {
-    /// One parent and one mutant, with the rates of mutation at first and at last and what it falls by.
+    /// One parent and one mutant, with the first and the last mutation rate and the step between them.
     OnePlusOne { first: f64, step: f64, last: f64 },
-    /// The best of a population make copies that mutate at one rate.
+    /// Copies of the best individuals, mutated at one rate.
     Truncation { population: u64, parents: u64, rate: f64 },
 }
 
-/// Keys of the original for its xNES and for genomes of modules, of which its steady state and its generations use none.
+/// Keys of xNES and of modular genomes, which steady state and generational search do not use.
 const OF_OTHERS: [&str; 29] = [
     "mutationRange",
     "offspringMutRange",
@@ -59,14 +59,14 @@ const OF_OTHERS: [&str; 29] = [
     "targetRetentionRate",
 ];
 
-/// The most individuals that a strategy here takes.
+/// Most individuals of a strategy.
 const MOST_INDIVIDUALS: u64 = 1_000_000;
 
 impl Evolution {
     /// Reads the group of the genetic algorithm, `Evoga`.
     ///
     /// # Errors
-    /// [`Error::Usage`] for more individuals than there can be.
+    /// [`Error::Usage`] for too many individuals.
     pub(super) fn from_group(file: &str, group: &Group, remarks: &mut Remarks) -> Result<Self, Error> {
         let kind = group.kind(remarks);
         if let Some((name, entry)) = kind.filter(|(name, _)| name != "Evoga") {
@@ -83,7 +83,7 @@ impl Evolution {
             let most = MOST_INDIVIDUALS / 2;
             return Err(Error::Usage(format!("{file}: a population of {population} where {most} is the most")));
         }
-        // From 1 on it is a percentage.
+        // Values from 1 on are percentages.
         let share = |rate: f64| if rate >= 1.0 { rate / 100.0 } else { rate };
         let last = share(group.number("mutation_rate", 0.05, 0.0..=100.0, remarks));
         let kind = group.word("evolutionType", "steadyState", remarks);
@@ -132,7 +132,7 @@ impl Evolution {
 
 const SAVED: &str = "a run here saves all that it takes to go on, to rebuild any generation and to test its champion";
 
-/// The steady state: each individual makes one mutant, and the better half of all stays.
+/// Reads the steady state: each individual makes one mutant, and the better half of all survives.
 fn steady_state(group: &Group, population: u64, last: f64, remarks: &mut Remarks) -> Search {
     let first = group.number("initial_mutation", 0.5, 0.0..=1.0, remarks);
     let step = group.number("mutation_decay", 0.01, 0.0..=1.0, remarks);
@@ -160,11 +160,11 @@ fn steady_state(group: &Group, population: u64, last: f64, remarks: &mut Remarks
         let key = "averageIndividualFitnessOverGenerations";
         remarks.lost_or_default(group, entry(key), [key, "true"], why);
     }
-    // Its generation are the parents and a mutant of each.
+    // A generation consists of the parents and a mutant of each.
     Search::Truncation { population: 2 * population, parents: population, rate: last }
 }
 
-/// Generations: the best make so many copies each, all of them mutated, or all but those of the very best.
+/// Reads the generational search: the best make copies, all of them mutated except those of the elite.
 fn generational(group: &Group, [parents, offspring]: [u64; 2], rate: f64, remarks: &mut Remarks) -> Search {
     let elitism = group.flag("elitism", false, remarks);
     let entry = |key| group.find(key);

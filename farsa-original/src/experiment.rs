@@ -1,25 +1,25 @@
-//! The experiment: steps and trials, the arena, and what a plugin does with them.
+//! Steps, trials, arena and plugin.
 
 use crate::ini::Group;
 use crate::remarks::Remarks;
 use crate::written::{Written, number, numbers};
 
-/// What a configuration says beside robots, networks and the search.
+/// The keys of a configuration except robots, networks and the search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Experiment {
     pub(super) agents: u64,
     trials: u64,
     steps: u64,
     time_step: f64,
-    /// Of the arena or of what walls leave of it [m].
+    /// Size of the arena, or of the area within its walls [m].
     size: [f64; 2],
     task: Task,
 }
 
-/// What a robot is to do.
+/// The task of a robot.
 #[derive(Clone, Debug, PartialEq)]
 enum Task {
-    /// To find a cylinder and to stay near it: the experiment of \[FARSA2\], whose C++ code is known.
+    /// Finding a cylinder and staying near it, an experiment of \[FARSA2\] with published code.
     Discrimination {
         radius: f64,
         within: f64,
@@ -27,11 +27,11 @@ enum Task {
         robot_from_cylinder: f64,
         robot_from_walls: f64,
     },
-    /// What the C++ code of a plugin says.
+    /// The C++ code of a plugin.
     OfPlugin(String),
 }
 
-/// The most of a length [m].
+/// Largest length [m].
 const MOST: f64 = 1000.0;
 const PLUGIN: &str = "walls, objects, where things start, what ends a trial and what it earns are the plugin's C++ code; \
                       here are an empty arena with walls and a fitness of 0";
@@ -129,7 +129,7 @@ impl Experiment {
     }
 }
 
-/// Puts something anywhere, so far from walls and from what has been placed [m].
+/// Writes a placement anywhere, with these distances from walls and earlier things [m].
 fn place(out: &mut Written, what: &str, walls: f64, apart: Option<f64>) {
     out.table("[[start]]");
     out.word("place", what);
@@ -140,7 +140,7 @@ fn place(out: &mut Written, what: &str, walls: f64, apart: Option<f64>) {
     }
 }
 
-/// The size of the plane [m], and the radius of small cylinders [m].
+/// Size of the plane [m], and radius of small cylinders [m].
 fn read_arena(arena: &Group, remarks: &mut Remarks) -> ([f64; 2], f64) {
     if let Some((name, entry)) = arena.kind(remarks).filter(|(name, _)| name != "Arena") {
         remarks.lost(arena, entry, &format!("`{name}` is no `Arena`; what it shares with that is read"));
@@ -157,7 +157,7 @@ fn read_arena(arena: &Group, remarks: &mut Remarks) -> ([f64; 2], f64) {
     (size, radius)
 }
 
-/// The discrimination experiment of the original, and the size of its playground [m].
+/// Reads the discrimination experiment and the size of its playground [m].
 fn discrimination(group: &Group, radius: f64, remarks: &mut Remarks) -> (Task, [f64; 2]) {
     let mut length = |key, default| group.number(key, default, 0.0..=MOST, remarks);
     let task = Task::Discrimination {

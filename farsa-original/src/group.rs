@@ -1,4 +1,4 @@
-//! What a group says, asked for key by key.
+//! Typed access to the keys of a group.
 
 use std::ops::RangeInclusive;
 
@@ -6,12 +6,12 @@ use crate::ini::{Entry, Group};
 use crate::remarks::Remarks;
 
 impl Group {
-    /// The line of a key that has been read.
+    /// Returns the line of a key that has been read.
     pub(super) fn find(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().rfind(|entry| entry.key == key)
     }
 
-    /// What a key says, if it stands there; of several the last one, as of an editor that appends.
+    /// Returns the value of a key, if any. The last one counts, as for an editor that appends.
     pub(super) fn text(&self, key: &'static str, remarks: &mut Remarks) -> Option<&Entry> {
         remarks.ask(self, key);
         let mut found: Vec<&Entry> = self.entries.iter().filter(|entry| entry.key == key).collect();
@@ -23,19 +23,19 @@ impl Group {
         Some(last)
     }
 
-    /// The word of a key in small letters, or what it is by default.
+    /// Returns the lower-case word of a key, or a default.
     pub(super) fn word(&self, key: &'static str, default: &str, remarks: &mut Remarks) -> String {
         self.text(key, remarks).map_or_else(|| default.into(), |entry| entry.value.to_ascii_lowercase())
     }
 
-    /// The type of what the group describes, without the name of its library.
+    /// Returns the type of the group, without the name of its library.
     pub(super) fn kind(&self, remarks: &mut Remarks) -> Option<(String, &Entry)> {
         let entry = self.text("type", remarks)?;
         let name = entry.value.rsplit("::").next().unwrap_or_default();
         Some((name.into(), entry))
     }
 
-    /// Yes or no.
+    /// Returns a flag.
     pub(super) fn flag(&self, key: &'static str, default: bool, remarks: &mut Remarks) -> bool {
         let Some(entry) = self.text(key, remarks) else { return default };
         match &*entry.value.to_ascii_lowercase() {
@@ -48,7 +48,7 @@ impl Group {
         }
     }
 
-    /// A whole number within limits.
+    /// Returns a whole number within limits.
     pub(super) fn whole(
         &self,
         key: &'static str,
@@ -65,7 +65,7 @@ impl Group {
         })
     }
 
-    /// A number within limits.
+    /// Returns a number within limits.
     pub(super) fn number(
         &self,
         key: &'static str,
@@ -82,7 +82,7 @@ impl Group {
         })
     }
 
-    /// Keys whose values change nothing that comes out here.
+    /// Marks keys without effect.
     pub(super) fn idle(&self, keys: &[&'static str], why: &str, remarks: &mut Remarks) {
         for key in keys {
             if let Some(entry) = self.text(key, remarks) {
@@ -91,7 +91,7 @@ impl Group {
         }
     }
 
-    /// Keys that nothing here has a word for; with their default they say nothing.
+    /// Marks keys that cannot be converted. Their default values have no effect.
     pub(super) fn lost(&self, keys: &[(&'static str, &str)], why: &str, remarks: &mut Remarks) {
         for (key, default) in keys {
             if let Some(entry) = self.text(key, remarks) {

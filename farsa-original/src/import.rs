@@ -1,4 +1,4 @@
-//! A configuration of the original as an experiment file.
+//! The conversion of a whole configuration.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -17,16 +17,17 @@ use crate::sensor::sensor;
 use crate::written::Written;
 use farsa_compose::{ComposedExperiment, Limits};
 
-/// The most remarks of each sort that the file itself repeats.
+/// Most remarks of each sort in the experiment file.
 const MOST_REPEATED: usize = 200;
 
-/// Makes an experiment file of a configuration of the original FARSA, of its versions 1 and 2: of kinematic robots on wheels.
+/// Converts a configuration of the 2013 program FARSA, versions 1 and 2, into an experiment file. The robots are
+/// kinematic, on wheels.
 ///
-/// `file` is the name of the configuration, `name` that of the file to be written; the text of the latter begins with all that
-/// was lost, line by line. The file that comes out is right: it has been made into an experiment once.
+/// `file` is the name of the configuration and `name` that of the experiment file. The new text begins with a remark
+/// for each line that is lost. The function checks that the text is a valid experiment.
 ///
-/// Source: the format and the defaults of \[FARSA2\]. Of its plugins only the fitness, the walls and the starts of
-/// `KheperaDiscriminationExperiment` are known; of all others they are C++ code, and what comes out has a fitness of 0.
+/// Source: the format and the defaults of \[FARSA2\]. Among its plugins it converts fitness, walls and starts of
+/// `KheperaDiscriminationExperiment` only. All others are C++ code, and their experiments have a fitness of 0.
 ///
 /// ```
 /// use farsa_original::from_original;
@@ -51,10 +52,9 @@ const MOST_REPEATED: usize = 200;
 /// ```
 ///
 /// # Errors
-/// [`Error::Usage`] for a text that is no configuration, is longer than a megabyte or 5000 lines, has a group with a name of more than
-/// 200 bytes, no wheeled robot, or no sensor or motor that can be carried over;
-/// [`Error::Unknown`] for a robot that is none of the original's wheeled ones; and what is wrong with parts that do not go
-/// together.
+/// [`Error::Usage`] for a text that is not a configuration, and for one without a wheeled robot, sensor or motor that can be
+/// converted. Texts of more than a megabyte or 5000 lines, and group names of more than 200 bytes, are errors, too.
+/// [`Error::Unknown`] for a robot without wheels. The errors of an experiment file for parts that do not fit together.
 pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
     from_original_within(Limits::default(), file, name, text)
 }
@@ -99,7 +99,7 @@ pub fn from_original_within(limits: Limits, file: &str, name: &str, text: &str) 
     let none = Group { path: format!("{main}/GA"), line: 0, entries: Vec::new() };
     let search = ini.group(&format!("{main}/GA"));
     let search = Evolution::from_group(file, search.unwrap_or(&none), &mut remarks)?;
-    // Last: what it does not ask for is the plugin's.
+    // The last part, because all its other keys belong to the plugin.
     let experiment = Experiment::from_groups(group, world, arena, &mut remarks);
     remarks.finish(&ini);
     let Remarks { left, idle, more, .. } = remarks;
@@ -120,20 +120,20 @@ pub fn from_original_within(limits: Limits, file: &str, name: &str, text: &str) 
     Ok(ImportedFile { text, left, idle, more_left: more[0], more_idle: more[1] })
 }
 
-/// Whether an experiment can be made of a text.
+/// Checks that a text is a valid experiment.
 fn check(limits: Limits, name: &str, text: &str) -> Result<(), Error> {
     let made = ComposedExperiment::from_text_within(limits, name, text, farsa_lab::strategies())?;
     made.prepare("", &Settings::new(made.settings(""))?).map(drop)
 }
 
-/// Parts with channels in the order of the original.
+/// Parts whose channels have the order of the 2013 program.
 const SAME: [&str; 5] = ["infrared", "light", "ground-color", "wheel-speed", "wheels"];
 
 /// The sensors and motors of a robot.
 struct Parts {
     sensors: Vec<Part>,
     motors: Vec<Part>,
-    /// Whether inputs and outputs are those of the original, in its order.
+    /// True if inputs and outputs have the order of the 2013 program.
     same_channels: bool,
 }
 
@@ -186,7 +186,7 @@ impl Parts {
     }
 }
 
-/// What it is called; who wrote it and with which plugin are remarks.
+/// Returns the name. Author, plugin and other keys become remarks.
 fn read_general(group: &Group, remarks: &mut Remarks) -> String {
     let summary = group.text("name", remarks).map(|entry| entry.value.clone()).unwrap_or_default();
     let keys = ["author", "date", "version", "description", "pluginFile", "pluginPath", "logLevel", "batchFile"];
@@ -194,7 +194,7 @@ fn read_general(group: &Group, remarks: &mut Remarks) -> String {
     summary
 }
 
-/// Each line of a group as one that changes nothing.
+/// Marks all lines of a group as without effect.
 fn group_is_about(group: &Group, why: &str, remarks: &mut Remarks) {
     remarks.ask(group, "type");
     for entry in &group.entries {
@@ -202,7 +202,7 @@ fn group_is_about(group: &Group, why: &str, remarks: &mut Remarks) {
     }
 }
 
-/// Where it comes from, how to run it, and what was lost.
+/// Writes origin, command line and lost lines.
 fn write_head(
     out: &mut Written,
     [file, name]: [&str; 2],
@@ -210,7 +210,7 @@ fn write_head(
     same_genes: bool,
     [left, idle]: [(&[LeftOut], usize); 2],
 ) {
-    // Not where they were on the machine of the import.
+    // Only the names, because paths belong to the machine of the import.
     let [file, name] =
         [file, name].map(|path| Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path));
     out.comment(&format!("Made of {file}, a configuration of the original FARSA. Lengths are metres."));

@@ -1,33 +1,33 @@
-//! A text in the original's format of configurations.
+//! The INI format of the 2013 program.
 
 use std::collections::BTreeMap;
 
 use farsa_lab::Error;
 
-/// The most bytes of a text.
+/// Most bytes of a text.
 const MOST_BYTES: usize = 1_000_000;
-/// The most lines of a text: each takes more memory than its few letters.
+/// Most lines of a text, because a line takes more memory than its text.
 const MOST_LINES: usize = 5000;
-/// The most bytes of the name of a group with those that it is in: remarks repeat it.
+/// Most bytes of the name of a group with its parents, because remarks repeat it.
 const MOST_OF_A_PATH: usize = 200;
 
 /// Groups of keys with values.
 ///
-/// Source: the reader of \[FARSA2\]. A line that begins with `#` or `;` is a comment, `[A/B]` begins the group `B` within `A`,
-/// all other lines are `key = value`, with `\` before a sign that would mean something else. There are no lines that include
-/// another file. Deviations, so that files of FARSA 1 are read as well: white space around a line, a key and a value is
-/// dropped, the spaces around `=` may be left out, a `#` after a value begins a comment, and a key that stands twice does not
-/// end the reading.
+/// Source: the reader of \[FARSA2\]. A line that begins with `#` or `;` is a comment, `[A/B]` begins group `B` in
+/// group `A`, and all other lines are `key = value`. `\` escapes a character. There are no include lines.
+///
+/// Deviations, which files of FARSA 1 need: white space around a line, a key and a value is dropped, and the spaces
+/// around `=` are optional. A `#` after a value begins a comment. Duplicate keys are not an error.
 #[derive(Debug, Default)]
 pub(super) struct Ini {
     groups: Vec<Group>,
-    /// Where each group is, by its path in small letters.
+    /// Index of each group, by its path in lower case.
     places: BTreeMap<String, usize>,
-    /// Lines that belong to no group, and lines that are no `key = value`.
+    /// Lines outside groups, and lines that are not `key = value`.
     pub(super) stray: Vec<Stray>,
 }
 
-/// A line that says nothing.
+/// A line without meaning.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Stray {
     pub(super) line: usize,
@@ -35,12 +35,12 @@ pub(super) struct Stray {
     pub(super) why: &'static str,
 }
 
-/// A group: what one part of the original is told.
+/// A group of keys.
 #[derive(Debug)]
 pub(super) struct Group {
-    /// Its name with those of the groups that it is in: `Component/GA`.
+    /// Path of the group, such as `Component/GA`.
     pub(super) path: String,
-    /// Where it begins.
+    /// Its first line.
     pub(super) line: usize,
     pub(super) entries: Vec<Entry>,
 }
@@ -64,7 +64,7 @@ impl Ini {
         }
         let mut ini = Self::default();
         let mut group = None;
-        // An editor of another system may have left a mark of its encoding.
+        // Skips a byte order mark.
         for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
             let (line, text) = (index + 1, line.trim());
             if line > MOST_LINES {
@@ -102,7 +102,7 @@ impl Ini {
         Ok(ini)
     }
 
-    /// The place of a group, which is made where there is none.
+    /// Returns the index of a group, and adds it if it is new.
     fn index(&mut self, path: &str, line: usize) -> usize {
         let next = self.groups.len();
         let place = *self.places.entry(path.to_ascii_lowercase()).or_insert(next);
@@ -112,17 +112,17 @@ impl Ini {
         place
     }
 
-    /// All groups, in the order of the text.
+    /// Returns all groups, in the order of the text.
     pub(super) fn groups(&self) -> &[Group] {
         &self.groups
     }
 
-    /// A group by its path, which the original's versions write in letters of either case.
+    /// Returns a group by path. The versions of the program differ in upper and lower case.
     pub(super) fn group(&self, path: &str) -> Option<&Group> {
         self.groups.get(*self.places.get(&path.to_ascii_lowercase())?)
     }
 
-    /// The groups `NAME`, `NAME:0`, `NAME:1` and so on within a group, by their numbers.
+    /// Returns the groups `NAME`, `NAME:0`, `NAME:1` and so on in a group, by number.
     pub(super) fn numbered(&self, within: &str, name: &str) -> Vec<&Group> {
         let mut found: Vec<(Option<u64>, &Group)> = Vec::new();
         for group in &self.groups {
@@ -139,14 +139,15 @@ impl Ini {
     }
 }
 
-/// The text before a comment: a `#` that follows white space, as FARSA 1 has it, unless it begins the value, as colours do.
+/// Returns the text before a comment: a `#` after white space, as in FARSA 1, unless it begins the value, as in
+/// colors.
 fn without_comment(value: &str) -> &str {
     let value = value.trim();
     let comment = value.match_indices('#').find(|(at, _)| value[..*at].ends_with(char::is_whitespace));
     comment.map_or(value, |(at, _)| &value[..at])
 }
 
-/// A name or a value without the signs that protect others; no line ends within it.
+/// Removes escapes from a name or a value. Line breaks become spaces.
 fn unescaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut signs = text.chars();

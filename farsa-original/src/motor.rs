@@ -1,9 +1,9 @@
-//! The motors.
+//! Motors.
 
 use crate::channels::{Device, Part};
 use crate::remarks::Remarks;
 
-/// A motor here that is nearest to one of the original.
+/// Returns the nearest motor of FARSA.
 pub(super) fn motor(device: &Device<'_>, remarks: &mut Remarks) -> Option<Part> {
     let Device { group, entry, .. } = *device;
     group.idle(&["khepera", "epuck", "marxbot", "neuronsIterator"], "the robot has all motors", remarks);

@@ -4,10 +4,10 @@ use crate::ini::Group;
 use crate::remarks::Remarks;
 use crate::written::{Written, number, numbers};
 
-/// The most neurons of a network of the original.
+/// Most neurons of a network of the 2013 program.
 pub(super) const MOST_NEURONS: u64 = 1000;
 
-/// The original's network: a perceptron where it is one, else the same network with its flags.
+/// A perceptron if possible, else Evonet with the same flags.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Network {
     pub(super) hidden: u64,
@@ -15,13 +15,13 @@ pub(super) struct Network {
     /// Half the range of weights.
     range: f64,
     largest_bias: f64,
-    /// What is said of it, by the words here; all else is false.
+    /// Flags that are true, by their keys in the experiment file.
     flags: Vec<&'static str>,
-    /// Whether genotypes of the original mean the same here.
+    /// True if genotypes of the 2013 program mean the same network.
     pub(super) same_genes: bool,
 }
 
-/// Flags of the original and their words here.
+/// Flags of the configuration and of the experiment file.
 const FLAGS: [(&str, &str); 5] = [
     ("biasOnHiddenNeurons", "hidden_biases"),
     ("biasOnOutputNeurons", "output_biases"),
@@ -46,7 +46,7 @@ impl Network {
         let largest_bias = group.number("biasRange", 5.0, 0.0..=1e6, remarks);
         let mut flags = Vec::new();
         for (key, word) in FLAGS {
-            // Those of hidden neurons say nothing where there are none.
+            // Flags of hidden neurons have no effect without them.
             let idle = hidden == 0 && !["output_biases", "recurrent_outputs"].contains(&word);
             if group.flag(key, false, remarks) && !idle {
                 flags.push(word);
@@ -72,7 +72,7 @@ impl Network {
 
     pub(super) fn write(&self, out: &mut Written) {
         out.table("[network]");
-        // The smallest gene of the original is the largest weight.
+        // The smallest gene is the largest weight.
         let weights = numbers(&[self.range, -self.range]);
         if self.is_perceptron() {
             out.word("kind", "perceptron");
@@ -85,7 +85,7 @@ impl Network {
         if self.hidden > 0 {
             out.word("hidden_neurons", self.hidden_neurons);
         }
-        // Here there are biases unless something else is said.
+        // Biases are the default of the experiment file.
         for word in ["hidden_biases", "output_biases"] {
             out.set(word, self.flags.contains(&word));
         }
@@ -96,13 +96,13 @@ impl Network {
         out.set("largest_bias", number(self.largest_bias));
     }
 
-    /// Whether it is one layer with biases in the range of the weights.
+    /// Returns true for one layer with biases in the range of the weights.
     fn is_perceptron(&self) -> bool {
         self.hidden == 0 && self.flags == ["output_biases"] && self.largest_bias == self.range
     }
 }
 
-/// Whether neurons are of the second of two types.
+/// Returns true for the second of two types of neurons.
 fn neurons(group: &Group, [key, plain, leaky]: [&'static str; 3], remarks: &mut Remarks) -> bool {
     let Some(entry) = group.text(key, remarks) else { return false };
     match &*entry.value.to_ascii_lowercase() {

@@ -1,4 +1,4 @@
-//! What cannot be carried over, and why.
+//! Lines that cannot be converted, with reasons.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,27 +6,26 @@ use farsa_lab::{Error, LeftOut};
 
 use crate::ini::{Entry, Group, Ini};
 
-/// The most remarks of each sort; what is beyond them is counted. Each repeats the name of its group, which may be a hundred times as
-/// long as a line.
+/// Most remarks of each sort. Further ones are counted, because each repeats the name of its group.
 const MOST_REMARKS: usize = 400;
 
-/// Remarks on lines, collected while a configuration is read.
+/// Remarks on the lines of a configuration.
 #[derive(Debug, Default)]
 pub(super) struct Remarks {
-    /// What is other here than it was there.
+    /// Lines with another meaning in the experiment file.
     pub(super) left: Vec<LeftOut>,
-    /// What changes nothing that comes out.
+    /// Lines without effect.
     pub(super) idle: Vec<LeftOut>,
-    /// How many more there are of both.
+    /// Numbers of further remarks of both sorts.
     pub(super) more: [usize; 2],
-    /// Lines of which something has become, if only a remark.
+    /// Lines that have been converted or have a remark.
     taken: BTreeSet<usize>,
-    /// The keys that were asked for in each group, by the line where it begins.
+    /// Keys that have been read from each group, by the first line of the group.
     asked: BTreeMap<usize, Vec<&'static str>>,
 }
 
 impl Remarks {
-    /// Notes that a group is a part that is known, and a key of it.
+    /// Records that a key of a group has been read.
     pub(super) fn ask(&mut self, group: &Group, key: &'static str) {
         let asked = self.asked.entry(group.line).or_default();
         if !asked.contains(&key) {
@@ -34,29 +33,29 @@ impl Remarks {
         }
     }
 
-    /// Whether a key of a group has been asked for.
+    /// Returns true if a key of a group has been read.
     pub(super) fn is_asked(&self, group: &Group, key: &str) -> bool {
         self.asked.get(&group.line).is_some_and(|asked| asked.contains(&key))
     }
 
-    /// Notes that something has become of a line.
+    /// Records that a line has been converted.
     pub(super) fn take(&mut self, entry: &Entry) {
         self.taken.insert(entry.line);
     }
 
-    /// A line whose meaning is lost, or whose nearest meaning here is another.
+    /// Adds a line whose meaning is lost or different.
     pub(super) fn lost(&mut self, group: &Group, entry: &Entry, why: &str) {
         self.take(entry);
         self.leave(|| remark(group, entry, why));
     }
 
-    /// A line that changes nothing here.
+    /// Adds a line without effect.
     pub(super) fn idle(&mut self, group: &Group, entry: &Entry, why: &str) {
         self.take(entry);
         add(&mut self.idle, &mut self.more[1], || remark(group, entry, why));
     }
 
-    /// How many lines and defaults have another meaning here, or none.
+    /// Returns the number of lines and defaults with another meaning.
     pub(super) fn count_left(&self) -> usize {
         self.left.len() + self.more[0]
     }
@@ -65,13 +64,13 @@ impl Remarks {
         add(&mut self.left, &mut self.more[0], remark);
     }
 
-    /// What a group does not say, and what the original takes for it, which cannot be carried over either.
+    /// Adds a default of the 2013 program that cannot be converted.
     pub(super) fn unsaid(&mut self, group: &Group, key: &str, value: &str, why: &str) {
         let key = format!("{}/{key}", group.path);
         self.leave(|| LeftOut { line: None, key, value: value.into(), why: why.into() });
     }
 
-    /// A line whose meaning is lost, or the default that is taken where there is none.
+    /// Adds a line whose meaning is lost, or the default of a missing line.
     pub(super) fn lost_or_default(&mut self, group: &Group, entry: Option<&Entry>, [key, value]: [&str; 2], why: &str) {
         match entry {
             Some(entry) => self.lost(group, entry, why),
@@ -79,7 +78,7 @@ impl Remarks {
         }
     }
 
-    /// Remarks on every line that nobody has asked for; all in the order of lines.
+    /// Adds remarks on all unread lines, and sorts all by line.
     pub(super) fn finish(&mut self, ini: &Ini) {
         for group in ini.groups() {
             let (known, asked) =
@@ -103,7 +102,7 @@ impl Remarks {
     }
 }
 
-/// Takes up a remark where there is room.
+/// Adds a remark if there is capacity.
 fn add(list: &mut Vec<LeftOut>, more: &mut usize, remark: impl FnOnce() -> LeftOut) {
     if list.len() < MOST_REMARKS {
         list.push(remark());
@@ -112,7 +111,7 @@ fn add(list: &mut Vec<LeftOut>, more: &mut usize, remark: impl FnOnce() -> LeftO
     }
 }
 
-/// Why nothing comes of a line that nobody has asked for.
+/// Returns the reason for an unread line.
 fn unread(entry: &Entry, known: bool, asked: &[&'static str]) -> String {
     match known.then(|| nearest(&entry.key, asked)) {
         None => "its group is not carried over".into(),
@@ -123,7 +122,7 @@ fn unread(entry: &Entry, known: bool, asked: &[&'static str]) -> String {
     }
 }
 
-/// A remark on a whole line.
+/// Returns a remark on a whole line.
 fn of_line(line: usize, key: String, why: &str) -> LeftOut {
     LeftOut { line: Some(line), key, value: String::new(), why: why.into() }
 }
@@ -133,9 +132,9 @@ fn remark(group: &Group, entry: &Entry, why: &str) -> LeftOut {
     LeftOut { line: Some(entry.line), key, value: entry.value.clone(), why: why.into() }
 }
 
-/// The key that looks most like one that is not known, if it begins and ends much like it.
+/// Returns the nearest key if it begins and ends like an unread one.
 fn nearest(key: &str, known: &[&'static str]) -> Option<String> {
-    // Most keys are like none, and need not be compared letter by letter.
+    // Skips the edit distance for keys that are clearly different.
     if !known.iter().any(|known| is_like(key, known)) {
         return None;
     }
@@ -145,7 +144,7 @@ fn nearest(key: &str, known: &[&'static str]) -> Option<String> {
     }
 }
 
-/// Whether two keys begin and end alike: with three quarters of the longer one.
+/// Returns true if common beginning and end are at least three quarters of the longer key.
 fn is_like(key: &str, known: &str) -> bool {
     let letters = |text| str::chars(text).flat_map(char::to_lowercase);
     let alike = |(a, b): &(char, char)| a == b;

@@ -6,7 +6,7 @@ use crate::ini::Group;
 use crate::remarks::Remarks;
 use crate::written::Written;
 
-/// The original's wheeled robots.
+/// Wheeled robots of the 2013 program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RobotKind {
     Khepera,
@@ -15,7 +15,7 @@ pub(super) enum RobotKind {
 }
 
 impl RobotKind {
-    /// Its word here.
+    /// Returns the kind in the experiment file.
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Khepera => "khepera",
@@ -24,7 +24,7 @@ impl RobotKind {
         }
     }
 
-    /// How many infrared sensors it has.
+    /// Returns the number of infrared sensors.
     pub(super) fn infrared(self) -> u64 {
         match self {
             Self::Khepera | Self::EPuck => 8,
@@ -32,11 +32,11 @@ impl RobotKind {
         }
     }
 
-    /// The number here of the infrared sensor that is the first one there.
+    /// Returns the number of the infrared sensor that is the first one in the 2013 program.
     pub(super) fn first_infrared(self) -> u64 {
         match self {
             Self::Khepera | Self::EPuck => 0,
-            // The original's is at 97.5 degrees, number 6 here at 90.
+            // The program's first is at 97.5 degrees, and number 6 is at 90.
             Self::MarXbot => 6,
         }
     }
@@ -44,13 +44,13 @@ impl RobotKind {
     /// Reads the group of a robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Usage`] for one that is none of the wheeled robots.
+    /// [`Error::Unknown`] and [`Error::Usage`] for a robot without wheels.
     pub(super) fn from_group(file: &str, group: &Group, remarks: &mut Remarks) -> Result<Self, Error> {
         const KNOWN: [&str; 3] = ["Khepera", "Epuck", "MarXbot"];
         let Some((name, entry)) = group.kind(remarks) else {
             return Err(Error::Usage(format!("{file} line {}: [{}] has no `type`", group.line, group.path)));
         };
-        // Version 1 has each of them with and without the simulation of its body.
+        // Version 1 has each robot with and without dynamics.
         let robot = match name.strip_prefix("Phy").unwrap_or(&name) {
             "Khepera" => Self::Khepera,
             "Epuck" => Self::EPuck,

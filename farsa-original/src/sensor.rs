@@ -1,4 +1,4 @@
-//! The sensors.
+//! Sensors.
 
 use crate::channels::{Device, Part, Selection};
 use crate::ini::Group;
@@ -6,19 +6,19 @@ use crate::remarks::Remarks;
 use crate::robot::RobotKind;
 use crate::written::{number, numbers};
 
-/// Names of the resources by which devices of the original find each other.
+/// Names of resources that connect devices.
 const RESOURCES: [&str; 5] = ["khepera", "epuck", "marxbot", "neuronsIterator", "arena"];
-/// What is drawn.
+/// Keys of drawings.
 const DRAWN: [&str; 5] = ["drawCamera", "drawSensors", "drawRays", "drawRaysRange", "drawSensor"];
-/// How far a camera sees that sees without end [m].
+/// Range of a camera without limit [m].
 const ENDLESS: f64 = 1000.0;
 
-/// What one sensor makes of its group.
+/// A converted sensor.
 struct Made {
     part: Part,
-    /// Between what its values lie.
+    /// Least and greatest value.
     range: [f64; 2],
-    /// What happens to values before noise is added.
+    /// Wrapper before the noise.
     scale: Option<String>,
     selection: Selection,
 }
@@ -28,13 +28,13 @@ impl Made {
         Self { part, range: [0.0, 1.0], scale: None, selection: Selection::default() }
     }
 
-    /// 1 minus what it reads.
+    /// Inverts the values: 1 minus the reading.
     fn inverted(self) -> Self {
         Self { scale: Some("{ kind = \"scale\", gain = -1.0, offset = 1.0 }".into()), ..self }
     }
 }
 
-/// A sensor here that is nearest to one of the original.
+/// Returns the nearest sensor of FARSA.
 pub(super) fn sensor(device: &Device<'_>, robot: RobotKind, remarks: &mut Remarks) -> Option<Part> {
     let Device { group, entry, .. } = *device;
     group.idle(&RESOURCES, "the sensors of a robot know it", remarks);
@@ -61,7 +61,7 @@ pub(super) fn sensor(device: &Device<'_>, robot: RobotKind, remarks: &mut Remark
             let selection = Selection::from_group(group, [8, 0], remarks);
             Made { selection, ..Made::new(Part::new("light", robot.infrared())) }
         }
-        // It reads 1 above black.
+        // The reading is 1 above black.
         "KheperaGroundSensor" => Made::new(Part::new("ground-color", 1).with("first", 1)).inverted(),
         "EpuckGroundIRSensor" => Made::new(Part::new("ground-color", 3).with("first", 3)),
         "MarXbotGroundBottomIRSensor" => {
@@ -124,7 +124,7 @@ pub(super) fn sensor(device: &Device<'_>, robot: RobotKind, remarks: &mut Remark
     Some(Part { name: device.name.clone(), wrappers, ..part })
 }
 
-/// Infrared sensors around the hull.
+/// Converts infrared sensors.
 fn infrared(device: &Device<'_>, robot: RobotKind, model: &str, remarks: &mut Remarks) -> Made {
     let (count, turn) = (robot.infrared(), robot.first_infrared());
     if turn > 0 {
@@ -144,7 +144,7 @@ fn infrared(device: &Device<'_>, robot: RobotKind, model: &str, remarks: &mut Re
     Made { selection, ..Made::new(part) }
 }
 
-/// A camera with the three colours of the original, as far as they are asked for.
+/// Converts a camera with up to three colors.
 fn camera(device: &Device<'_>, remarks: &mut Remarks) -> Made {
     let Device { group, entry, .. } = *device;
     let why = "a channel of `camera` is the share of a sector in a colour, sector by sector; there it is a mean brightness, \
@@ -180,7 +180,7 @@ fn camera(device: &Device<'_>, remarks: &mut Remarks) -> Made {
     Made::new(part)
 }
 
-/// Laser range finders, of which the original's read 1 at the hull.
+/// Converts laser range finders, which read 1 at the hull.
 fn laser(group: &Group, beams: u64, view: f64, remarks: &mut Remarks) -> Made {
     let range = group.number("maxDistance", 1.0, 0.001..=1000.0, remarks);
     let part = Part::new("laser-distance", beams)

@@ -1,4 +1,4 @@
-//! The file that is written.
+//! The text of the experiment file.
 
 use std::fmt::Write as _;
 
@@ -9,12 +9,12 @@ use toml::Value;
 pub(super) struct Written(String);
 
 impl Written {
-    /// A line of a comment; empty lines stay empty.
+    /// Writes a comment. Empty lines stay empty.
     pub(super) fn comment(&mut self, line: &str) {
         self.line(format!("# {}", shown(line)).trim_end());
     }
 
-    /// An empty line.
+    /// Writes an empty line.
     pub(super) fn space(&mut self) {
         self.line("");
     }
@@ -25,22 +25,22 @@ impl Written {
         self.head(head);
     }
 
-    /// Begins a table under a comment.
+    /// Begins a table below a comment.
     pub(super) fn head(&mut self, head: &str) {
         self.line(head);
     }
 
-    /// A key with a number, or whatever else is written as TOML already.
+    /// Writes a key with a value that is already TOML.
     pub(super) fn set(&mut self, key: &str, value: impl std::fmt::Display) {
         self.line(&format!("{key} = {value}"));
     }
 
-    /// A key with a word or a sentence.
+    /// Writes a key with a text.
     pub(super) fn word(&mut self, key: &str, text: &str) {
         self.set(key, quoted(text));
     }
 
-    /// All of it.
+    /// Returns the text.
     pub(super) fn into_text(self) -> String {
         self.0
     }
@@ -51,23 +51,23 @@ impl Written {
     }
 }
 
-/// A number as TOML writes it: never without a point.
+/// Formats a number as TOML, always with a point.
 pub(super) fn number(value: f64) -> String {
     Value::Float(value).to_string()
 }
 
-/// Two or more numbers.
+/// Formats a list of numbers.
 pub(super) fn numbers(values: &[f64]) -> String {
     let all: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("[{}]", all.join(", "))
 }
 
-/// A text in quotes.
+/// Quotes a text.
 pub(super) fn quoted(text: &str) -> String {
     Value::String(shown(text)).to_string()
 }
 
-/// The beginning of a stranger's text, in one line that no sign can end or turn round.
+/// Truncates an untrusted text and removes control characters, so that it stays in its line.
 pub(super) fn shown(text: &str) -> String {
     const MOST: usize = 400;
     let tame = |c: char| {
@@ -82,7 +82,7 @@ pub(super) fn shown(text: &str) -> String {
     out
 }
 
-/// A name of the original as one of a part here: `Wheel speeds` is `wheel-speeds`; none where nothing is left of it.
+/// Converts a name, such as `Wheel speeds` into `wheel-speeds`. Returns `None` without any letter or digit.
 pub(super) fn name(text: &str) -> Option<String> {
     let mut out = String::new();
     for sign in text.chars().take(40) {

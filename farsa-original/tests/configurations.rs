@@ -1,4 +1,4 @@
-//! Configurations of the original FARSA become experiment files: golden texts, what each line comes to, and damaged ones.
+//! Conversion of configurations: golden texts, results of each line, damaged files.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ fn error(text: &str) -> String {
     }
 }
 
-/// The fitness of one trial for parameters of 0.3, and how many there are.
+/// Returns the number of parameters, and the fitness of one trial with parameters of 0.3.
 fn lived(text: &str) -> (usize, f64) {
     let made = ComposedExperiment::from_text("x.toml", text, farsa_lab::strategies()).expect("an experiment");
     let settings = Settings::new(made.settings("")).expect("settings");
@@ -60,7 +60,7 @@ fn the_discrimination_experiment_is_the_one_that_is_kept_as_a_file() {
     assert_eq!(keys, ["Component/GA/Experiment/AGENT/SENSOR:0/type"]);
 }
 
-/// A configuration whose groups have these lines beside those that all have.
+/// Returns a configuration with these lines added to its groups.
 fn with(group: &str, lines: &str) -> String {
     let parts = [
         ("GA", "type = Evoga"),
@@ -80,12 +80,12 @@ fn with(group: &str, lines: &str) -> String {
     text
 }
 
-/// The lines of what a configuration comes to, without its head.
+/// Returns the converted lines, without the head.
 fn body(text: &str) -> Vec<String> {
     imported(text).text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
 }
 
-/// Keys of what was lost and why, but for what the empty configuration loses.
+/// Returns keys and reasons of lost lines, except those of the empty configuration.
 fn lost(text: &str) -> Vec<String> {
     let without = imported(&with("none", "")).left;
     let new = |left: &farsa_lab::LeftOut| !without.iter().any(|old| (&old.key, &old.why) == (&left.key, &left.why));
@@ -95,10 +95,10 @@ fn lost(text: &str) -> Vec<String> {
 #[test]
 fn values_have_the_sense_that_they_had() {
     for (group, lines, expected) in [
-        // A rate from 1 on is a percentage.
+        // Rates from 1 on are percentages.
         ("GA", "mutation_rate = 3\nnreproducing = 4\nnoffspring = 1", "mutation_rate = 0.03"),
         ("GA", "mutation_rate = 0.3\nnreproducing = 4\nnoffspring = 1", "mutation_rate = 0.3"),
-        // The steady state has its mutants beside its parents.
+        // The steady state evaluates mutants and parents.
         ("GA", "nreproducing = 4\nnoffspring = 3", "population = 24"),
         ("GA", "nreproducing = 4\nnoffspring = 3", "parents = 12"),
         ("GA", "evolutionType = generational\nnreproducing = 4\nnoffspring = 3", "population = 12"),
@@ -106,7 +106,7 @@ fn values_have_the_sense_that_they_had() {
         ("GA", "evolutionType = generational\nnreproducing = 4\nnoffspring = 1", "parents = 4"),
         ("GA", "nreproducing = 1\nnoffspring = 1\ninitial_mutation = 0.4", "first_rate = 0.4"),
         ("GA", "nreproducing = 1\nnoffspring = 1\nmutation_decay = 0.02", "rate_step = 0.02"),
-        // The original's defaults.
+        // The defaults of the 2013 program.
         ("GA", "", "generations = 100"),
         ("GA", "", "population = 200"),
         ("Experiment", "", "steps = 1"),
@@ -128,7 +128,7 @@ fn values_have_the_sense_that_they_had() {
         ("NET", "nHiddens = 3\nbiasOnHiddenNeurons = true", "hidden_biases = true"),
         ("NET", "outputNeuronType = with_delta", "output_leaks = true"),
         ("NET", "recurrentOutputs = true", "recurrent_outputs = true"),
-        // Noise goes half its range to both sides, or is a quarter of it.
+        // Noise extends half its range to both sides, or has a quarter of it as deviation.
         (
             "Sensor:0",
             "noiseType = Uniform\nnoiseRange = 0.1",
@@ -174,7 +174,7 @@ fn lines_that_mean_something_else_here_are_named() {
         let lost = lost(&with(group, lines));
         assert!(lost.iter().any(|remark| remark.contains(why)), "{lines}: no {why}: {lost:#?}");
     }
-    // Of what the original takes where nothing is said.
+    // Defaults of missing keys.
     let defaults: Vec<String> = imported(&with("none", "")).left.iter().map(ToString::to_string).collect();
     for key in ["initial_mutation = 0.5", "mutation_decay = 0.01", "averageIndividualFitnessOverGenerations = true"] {
         let found = defaults.iter().any(|line| line.starts_with("by default: ") && line.contains(key));
@@ -244,7 +244,7 @@ fn large_texts_are_bounded() {
     }
 }
 
-/// Any configuration of parts that the original has, with values of all sorts.
+/// Draws a configuration with parts of the 2013 program and any values.
 fn configurations() -> impl Strategy<Value = String> {
     let robots = prop::sample::select(vec!["Khepera", "Epuck", "MarXbot"]);
     let sensors = prop::sample::select(vec![
@@ -330,7 +330,7 @@ proptest! {
             Ok(made) => {
                 let (genes, fitness) = lived(&made.text);
                 prop_assert!(genes > 0 && fitness.is_finite(), "{}", made.text);
-                // What is other here is named: values that cannot be are always, but a name may be any word.
+                // Remarks name all differences: always for invalid values, but a name may be any word.
                 let odd = text.lines().filter(|line| line.contains("= nan") && !line.starts_with("name")).count();
                 prop_assert!(made.left.iter().filter(|left| left.value == "nan").count() + made.idle.len() >= odd);
             }
