@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut genome = [0_u16; LAYOUT.parameter_count()];
     randomize(&mut genome, &mut Stream::new(seed, Domain::InitialGenome, 0, 0, 0));
 
-    // What the genes stand for: weights and biases in [-6, 6], leaks in [0, 1].
+    // Genes decode to weights and biases in [-6, 6] and leaks in [0, 1].
     let mut ranges = Vec::new();
     for kind in LeakyParameter::ALL {
         let (low, high) = if kind == LeakyParameter::Leak { (0.0, 1.0) } else { (-6.0, 6.0) };
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     decode(&genome, &ranges, &mut parameters)?;
     println!("{} parameters, {} bits, seed {seed}", parameters.len(), 16 * genome.len());
 
-    // Parameters and state stay ours; the network borrows the one and owns no heap.
+    // The network borrows its parameters and has no heap.
     let mut network = LeakyNetwork::new(LAYOUT, Leak::Filter, &parameters[..], [0.0; LAYOUT.state_len()])?;
     let mut x = [0.5; 29];
     let mut y = [0.0; 23];

@@ -14,7 +14,7 @@ use farsa::physics::articulated::{Model, Options, World};
 
 fn forearm(range: [f64; 2], muscles: MusclePair<f64>) -> Result<(Robot, Muscles), Box<dyn Error>> {
     let mut robot = Robot::new("forearm");
-    // Hangs down from the elbow, 1 m above the ground; turns about y.
+    // Hangs from the elbow, 1 m above the ground, and turns about y.
     let hinge = Joint::revolute("elbow", [0.0, 1.0, 0.0], Pose::at([0.0, 0.0, 1.0]), range)
         .with_armature(0.01)
         .with_damping(0.4);
@@ -25,7 +25,7 @@ fn forearm(range: [f64; 2], muscles: MusclePair<f64>) -> Result<(Robot, Muscles)
     Ok((robot, Muscles::new(pair)))
 }
 
-/// Moves any world that takes commands: a motor knows no more of it than that.
+/// Moves any world with the port `Actuated`.
 fn act<W: Actuated>(motor: &mut impl Motor<W>, activations: [f32; 2], world: &mut W) {
     motor.drive(&activations, world);
 }
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let muscles = MusclePair::thesis(300.0, 0.010, range);
     let (robot, mut motor) = forearm(range, muscles)?;
 
-    // Statics first: the torque that gravity asks for there, and the activations that give it.
+    // Statics first: the torque against gravity, and the activations that give it.
     let tree = KinematicTree::new(&robot)?;
     let torque = tree.gravity_torques(&tree.poses(&[goal]), [0.0, 0.0, -9.81])[0];
     let (activations, reached) = muscles.activations(goal, torque);

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let generations: u32 = std::env::args().nth(1).map_or(Ok(300), |text| text.parse())?;
     let ranges = [GeneRange::new(VARIABLES, -5.12, 5.12)?];
 
-    // The best 20 of 100 make five copies each, four of them mutated; and, for comparison, the same number of guesses.
+    // The best 20 of 100 make five copies each, four of them mutated. For comparison, the same number of random genomes.
     let fresh = || TruncationGa::new(GaConfig::new(VARIABLES), 1);
     let mut evolution = fresh()?;
     let mut record = Record::new(&mut evolution)?;

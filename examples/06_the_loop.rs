@@ -14,7 +14,7 @@ use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::{Model, Options, World};
 
-/// Joints of the hand that are sensed, beside the seven of the arm.
+/// Sensed joints of the hand, in addition to the seven of the arm.
 const HAND: [usize; 10] = [8, 9, 10, 13, 14, 17, 18, 21, 22, 16];
 
 /// The pairs of the scene that one of these colliders shares with the sphere or the table.
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Runs so many ticks of 10 ms and returns a fingerprint of every state; `tests/golden.rs` watches over its bits.
+/// Runs the given number of ticks of 10 ms and returns a fingerprint of all states, which `tests/golden.rs` guards.
 pub(crate) fn run(ticks: u32) -> Result<u64, Box<dyn Error>> {
     // Body and world.
     let arm = ArmAndHand::default();

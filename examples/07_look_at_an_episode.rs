@@ -1,4 +1,4 @@
-//! A loop of one's own, recorded: a page to look at it in a browser, and a picture of its end.
+//! Records a custom loop as a page for a browser and a picture of its end.
 //!
 //! `cargo run --example 07_look_at_an_episode [PAGE.html [PICTURE.svg]]`
 
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let robot = Tabletop::default().scene(&arm)?;
     let mut world = World::new(Model::<f32>::new(&robot, &Options::default())?);
 
-    // The arm hangs limp while the hand opens and closes; what is sensed are the index finger's joints, 1 straight.
+    // The arm hangs limp while the hand opens and closes. The sensors are the index finger's joints, 1 when straight.
     let index = ArmAndHand::joints().into_iter().skip(12).take(3).map(|joint| JointPosition::new(joint, -1.6, 0.0));
     let mut sensors = index.collect::<Result<Vec<_>, _>>()?;
     let groups = arm.servo_groups().into_iter().map(ServoGroup::<Vec<ServoRange>>::new);

@@ -9,7 +9,7 @@ use farsa::num::logistic;
 
 const LAYOUT: CtrnnLayout = CtrnnLayout::new(0, 2, 2);
 
-/// Each neuron excites itself; the first inhibits the second, which excites the first \[Beer1995\]. From j to i at 2 j + i.
+/// Each neuron excites itself. The first inhibits the second, and the second excites the first \[Beer1995\]. From j to i at 2 j + i.
 const WEIGHTS: [f32; 4] = [4.5, -1.0, 1.0, 4.5];
 /// The biases of the source.
 const BIASES: [f32; 2] = [-2.75, -1.75];
@@ -22,7 +22,7 @@ fn centre_crossing() -> [f32; 2] {
     [0, 1].map(|i| -0.5 * (WEIGHTS[i] + WEIGHTS[2 + i]))
 }
 
-/// The mean time between rises of a signal through 0, in its second half; `None` if it rises less than twice.
+/// Returns the mean time between rises of a signal through 0 in its second half, or `None` with fewer than two rises.
 fn period(signal: impl Iterator<Item = f64>, time_step: f64) -> Option<f64> {
     let (mut before, mut rises) = (0.0, Vec::new());
     for (step, value) in signal.enumerate() {

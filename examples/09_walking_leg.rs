@@ -10,19 +10,19 @@ use farsa::evo::{EvoError, Fitness, Statistics, Strategy};
 use farsa::nn::{Controller, Ctrnn, CtrnnLayout};
 use farsa::num::{atan2, sin_cos};
 
-/// Foot, push forwards, push backwards; no input.
+/// Foot, push forward, push backward, without inputs.
 const LAYOUT: CtrnnLayout = CtrnnLayout::new(0, 3, 3);
 const STEP: f64 = 0.1;
 const STEPS: u32 = 2500;
 
-/// A body on one leg, which stands or swings. \[Beer1999\]
+/// A body on one leg in stance or swing. \[Beer1999\]
 #[derive(Default)]
 struct Walker {
     place: f64,
     velocity: f64,
-    /// Where the foot stands and how far under the hip.
+    /// Position of the foot, also relative to the hip.
     foot: Option<[f64; 2]>,
-    /// Of the leg, from straight down towards the front \[rad\].
+    /// Angle of the leg, from straight down to the front \[rad\].
     angle: f64,
     turning: f64,
 }
@@ -34,7 +34,7 @@ impl Walker {
     /// A body farther ahead of its foot than this is held fast.
     const REACH: f64 = 20.0;
 
-    /// One step under outputs from 0 to 1; the foot is down from 1/2 on. What pushes the body turns a swinging leg back.
+    /// Steps with outputs from 0 to 1. The foot is down from 1/2 on. A backward push of the body turns a swinging leg back.
     fn step(&mut self, [foot, forwards, backwards]: [f64; 3]) {
         let force = Self::FORCE * (forwards - backwards);
         if foot > 0.5 {

@@ -1,4 +1,4 @@
-//! The iCub follows a ball with its head, by what its left eye sees; the images of both eyes stand beside the page's strips.
+//! The iCub follows a ball with its head by its left eye. The page shows the images of both eyes next to its strips.
 //!
 //! `cargo run --example 10_what_the_icub_sees [PAGE.html]`
 
@@ -35,7 +35,7 @@ fn add_table(robot: &mut Robot) -> BodyId {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut icub = Icub { actuated: vec![Chain::Neck], control: JointControl::Velocity, ..Icub::default() };
-    // The arms hang beside the table.
+    // The arms hang next to the table.
     for arm in [Chain::LeftArm, Chain::RightArm] {
         icub.posture.chain_mut(arm)[3] = icub.ranges(arm)[3][0];
     }

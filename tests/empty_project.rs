@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 mod readers;
 
-/// The crate, whether with its default features, the program, what it says.
+/// Crate, default features, program, output.
 const PROJECTS: [[&str; 4]; 11] = [
     ["num", "with", "num.rs", "[0.254, 0.538, 0.769]"],
     ["num", "without", "num.rs", "[0.254, 0.538, 0.769]"],
@@ -50,7 +50,7 @@ fn whoever_has_nothing_else_can_use_it() {
     for [name, features, file, says] in PROJECTS {
         let project = place.join(format!("{name}-{features}"));
         fs::create_dir_all(project.join("src")).unwrap();
-        // What physics needs to be told is in farsa-body.
+        // The descriptions for physics are in farsa-body.
         let crates: &[&str] = if [name, features] == ["physics", "with"] { &["physics", "body"] } else { &[name] };
         let dependency = |name: &&str| {
             let path = root().join(format!("farsa-{name}"));
@@ -68,7 +68,7 @@ fn whoever_has_nothing_else_can_use_it() {
             .args(["run", "--quiet", "--offline"])
             .current_dir(&project)
             .env("CARGO_TARGET_DIR", target)
-            // Nobody looks into them.
+            // Nothing reads them.
             .env("CARGO_PROFILE_DEV_DEBUG", "false")
             .stdin(Stdio::null())
             .output()

@@ -1,4 +1,4 @@
-//! The goldens of every crate once more, in one program with all crates and their features together.
+//! The goldens of every crate in one program, with all crates and features together.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 #[path = "../farsa-body/tests/golden.rs"]

@@ -1,11 +1,11 @@
-//! The bits of all crates together. A change here is a change of every recorded run: it stands in CHANGELOG.md as
-//! value-breaking.
+//! The bits of all crates together. A change here is a change of every recorded run: CHANGELOG.md lists it under
+//! *Values*.
 
 #[allow(dead_code)]
 #[path = "../examples/06_the_loop.rs"]
 mod the_loop;
 
-/// Of the first 300 states.
+/// Digest of the first 300 states.
 const DIGEST: u64 = 0x4237_c9cb_1840_cca7;
 
 #[test]

@@ -1,5 +1,5 @@
-//! The guides of `docs/guide` are what they say: their programs are those of `examples/guide`, what goes wrong is said so, and
-//! readers who follow them see what they show.
+//! The guides of `docs/guide`: their programs are those of `examples/guide`, their errors occur as printed, and their commands give the
+//! printed output.
 
 #![allow(clippy::unwrap_used)]
 
@@ -13,7 +13,7 @@ mod readers;
 
 const GUIDES: [&str; 4] = ["new-robot", "new-sensor", "new-fitness", "new-experiment"];
 
-/// Where the programs of a guide stand: the guide, the file that its reader writes, ours.
+/// The programs of the guides: guide, the reader's file, our file.
 const PROGRAMS: [[&str; 3]; 5] = [
     ["new-robot", "src/main.rs", "new_robot.rs"],
     ["new-robot", "src/bin/wheels.rs", "new_robot_wheels.rs"],
@@ -65,7 +65,7 @@ fn blocks(text: &str) -> Vec<Block> {
     found
 }
 
-/// What the reader of a guide writes, by file: the blocks of a file with an empty line between them.
+/// The files of a guide, each the sum of its blocks with empty lines between them.
 fn written(name: &str) -> BTreeMap<String, String> {
     let mut files: BTreeMap<String, String> = BTreeMap::new();
     for block in blocks(&guide(name)) {
@@ -177,7 +177,7 @@ fn the_cluster_guide_and_its_scripts_are_there() {
 }
 
 mod mistakes {
-    //! What the guides say of mistakes, by making them.
+    //! The mistakes of the guides, made one by one.
 
     use super::guide;
     use farsa::body::Pose;
@@ -307,23 +307,23 @@ mod mistakes {
     }
 }
 
-/// Whether a line or a text is as expected, where `...` stands for anything.
+/// Compares a line or a text with an expectation, in which `...` matches anything.
 fn matches(expected: &str, found: &str) -> bool {
     let Some((before, after)) = expected.split_once("...") else { return expected == found };
     let Some(rest) = found.strip_prefix(before) else { return false };
     (0..=rest.len()).filter(|at| rest.is_char_boundary(*at)).any(|at| matches(after, &rest[at..]))
 }
 
-/// How what a guide's reader has written is built.
+/// Builds the reader's project.
 #[derive(Clone, Copy, PartialEq)]
 enum Builder {
-    /// Cargo, in a project of the reader's own; only checked, where [`readers::whole`] says so.
+    /// Cargo in the reader's project, or only a check, by [`readers::whole`].
     Reader,
     /// The workspace: its examples are the same programs, built already.
     Workspace,
 }
 
-/// What stands for cargo where the programs are built already; `farsa` is another crate's program.
+/// Replaces cargo for programs that are already built. `farsa` is another crate's program.
 const CARGO: &str = r#"
 cargo() {
     local program=$FARSA_main verb=$1 name
@@ -366,7 +366,7 @@ fn target() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target directory").to_path_buf()
 }
 
-/// Runs a block of commands in a folder as the reader would; what it says, and whether it went well.
+/// Runs a block of commands in a folder and returns its output and success.
 fn run(name: &str, commands: &str, folder: &Path, place: &Path, builder: Builder) -> (String, bool) {
     let mut bash = Command::new("bash");
     let mut script = String::from("exec 2>&1\n");
@@ -395,15 +395,15 @@ fn run(name: &str, commands: &str, folder: &Path, place: &Path, builder: Builder
     (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
 }
 
-/// Follows a guide in an empty folder: writes its files, runs its commands, compares what they say and draw.
+/// Follows a guide in an empty folder: writes its files, runs its commands, compares output and pictures.
 fn follow(name: &str, builder: Builder) {
     let kind = if builder == Builder::Reader { "reader" } else { "workspace" };
     // Outside the target directory, which most often is within the workspace: there `cargo new` would enter the project into it.
     let place = std::env::temp_dir().join(format!("farsa-guide-{kind}-{}", std::process::id())).join(name);
     fs::create_dir_all(&place).expect("an empty folder");
-    // The reader has FARSA beside the project.
+    // The reader has FARSA next to the project.
     let here = |text: &str| text.replace("../farsa", &root().display().to_string());
-    // A file grows as the guide goes on: with a second program `cargo run` alone would not know which.
+    // With a second program `cargo run` alone would be ambiguous.
     let mut files: BTreeMap<String, String> = BTreeMap::new();
     let mut project: PathBuf = place.clone();
     let mut said = None;

@@ -1,20 +1,19 @@
-//! How the files of each crate import each other: no circle joins files of different folders, and the circles within a folder are
-//! those named here.
+//! The imports between the files of each crate form no circle between folders, and within a folder only the listed ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Circles within a folder that are known, by the names of their files.
+/// Permitted circles within a folder, by the names of their files.
 const KNOWN: &[&[&str]] = &[];
 
-/// A file of a crate: its module path, the names that it imports as module paths, and what it hands on.
+/// A file of a crate: its module path, the names that it imports as module paths, and its re-exports.
 #[derive(Default)]
 struct Source {
     file: PathBuf,
     /// Paths from the crate's root.
     uses: Vec<Vec<String>>,
-    /// The last segment or alias of every re-export, with the path that it stands for; `*` for all of a module.
+    /// The last segment or alias of every re-export, with its path. `*` is a whole module.
     exports: Vec<(String, Vec<String>)>,
 }
 
@@ -48,7 +47,7 @@ fn code(text: &str) -> String {
     lines.join("\n")
 }
 
-/// The leaves of a `use` tree as paths, each with the name that it is known by.
+/// The leaves of a `use` tree as paths, each with its local name.
 fn leaves(tree: &str, prefix: &[String], found: &mut Vec<(String, Vec<String>)>) {
     let tree = tree.trim();
     if let Some(open) = tree.find('{') {
@@ -80,7 +79,7 @@ fn leaves(tree: &str, prefix: &[String], found: &mut Vec<(String, Vec<String>)>)
     found.push((known, path));
 }
 
-/// A path as written in a module, from the crate's root; `None` if it leads out of the crate.
+/// A path as written in a module, from the crate's root, or `None` outside the crate.
 fn from_root(path: &[String], module: &[String], children: &BTreeSet<String>) -> Option<Vec<String>> {
     let mut path = path.to_vec();
     match path.first()?.as_str() {
@@ -157,7 +156,7 @@ fn modules(src: &Path) -> BTreeMap<Vec<String>, Source> {
     found
 }
 
-/// The module whose file defines what a path names; re-exports are followed.
+/// The module that defines a path, through re-exports.
 fn defined_in(path: &[String], modules: &BTreeMap<Vec<String>, Source>, depth: usize) -> Option<Vec<String>> {
     let length = (0..=path.len()).rev().find(|length| modules.contains_key(&path[..*length]))?;
     let (module, rest) = path.split_at(length);
@@ -201,7 +200,7 @@ fn of_crate(src: &Path) -> Vec<(bool, Vec<String>)> {
     let mut arrows: BTreeMap<Vec<String>, BTreeSet<Vec<String>>> = BTreeMap::new();
     for (module, source) in &modules {
         let to = source.uses.iter().filter_map(|path| defined_in(path, &modules, 0));
-        // The root and the folders' tables of contents stand for what they hand on.
+        // The root and the folders' `mod.rs` represent their re-exports.
         let to = to.filter(|to| to != module && !to.is_empty());
         arrows.insert(module.clone(), to.collect());
     }

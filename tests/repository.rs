@@ -1,4 +1,4 @@
-//! What holds for the repository as a whole: sources are named, machines are not, and CI does what the README says.
+//! Rules of the whole repository: named sources, no machine names, and the commands of README in CI.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -182,7 +182,7 @@ fn lock_files_of_what_is_no_member_know_what_our_crates_need() {
     assert!(checked > 30, "only {checked} dependencies");
 }
 
-/// What is compiled, with its features, of what a crate of the workspace or all of them need.
+/// The compiled crates and features for a crate of the workspace, or for all.
 fn features(which: &[&str]) -> BTreeSet<String> {
     let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} [{f}]"];
     let output = Command::new(env!("CARGO")).args(tree).args(which).current_dir(root()).output().expect("cargo");
@@ -232,7 +232,7 @@ fn every_fuzz_target_has_seeds_a_row_and_a_result() {
     }
 }
 
-/// The name of the function that begins in a line of Rust or JavaScript; a method of a class has no word before its name.
+/// The name of the function that begins in a line of Rust or JavaScript. A method of a class has no keyword.
 fn function_of(line: &str) -> Option<&str> {
     let head = line.trim_start();
     let head = head.strip_prefix("pub(crate) ").or(head.strip_prefix("pub(super) ")).unwrap_or(head);
@@ -246,8 +246,8 @@ fn function_of(line: &str) -> Option<&str> {
     (known && (named || method) && name.chars().all(|c| c.is_alphanumeric() || c == '_')).then_some(name)
 }
 
-/// The functions of a source, each with its first line and how many lines it has. The code is formatted, so a body ends where
-/// a brace stands below the function's beginning.
+/// The functions of a source, each with its first line and how many lines it has. The code is formatted, so a body ends at
+/// a brace below the function's first column.
 fn functions(text: &str) -> Vec<(&str, usize, usize)> {
     let lines: Vec<&str> = text.lines().collect();
     let indent = |line: &str| line.len() - line.trim_start().len();

@@ -16,12 +16,12 @@ use farsa::physics::{arena, articulated};
 use crate::heap;
 
 const STEPS: usize = 2000;
-/// Steps between two changes of what motors are told.
+/// Steps between two changes of the motor commands.
 const HELD: usize = 20;
 /// Wheeled robots in one arena, four columns of them.
 const ROBOTS: u16 = 20;
 
-/// Exit codes: something cannot be made or nothing happens; steps allocate.
+/// Exit codes: a construction failed or nothing moved, and a step allocated.
 const FAILED: i32 = 17;
 const ALLOCATED: i32 = 18;
 
@@ -29,7 +29,7 @@ fn made<T, E>(result: Result<T, E>) -> Result<T, i32> {
     result.map_err(|_| FAILED)
 }
 
-/// That as many steps take no byte of the heap, and that at least one of them says that something happened.
+/// Checks that `STEPS` steps allocate nothing and that at least one reports motion.
 fn allocates_nothing(mut step: impl FnMut(usize) -> bool) -> Result<(), i32> {
     let (before, mut happened) = (heap::used(), false);
     for t in 0..STEPS {
@@ -41,9 +41,9 @@ fn allocates_nothing(mut step: impl FnMut(usize) -> bool) -> Result<(), i32> {
     if happened { Ok(()) } else { Err(FAILED) }
 }
 
-/// The arm with its hand, table and sphere; an arena of Kheperas; networks; with the feature, both worlds in lanes.
+/// Checks the arm with table and sphere, an arena of Kheperas, networks, and both worlds in lanes with their feature.
 pub fn steps_take_none() -> Result<(), i32> {
-    // Else it would say nothing that none is seen.
+    // Shows that the counter works.
     let before = heap::used();
     if core::hint::black_box(vec![0_u8; 100]).len() > heap::used() - before {
         return Err(FAILED);

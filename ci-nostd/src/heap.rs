@@ -15,7 +15,7 @@ struct Heap {
 #[global_allocator]
 static HEAP: Heap = Heap { block: UnsafeCell::new([0; SIZE]), used: AtomicUsize::new(0) };
 
-/// How many bytes were handed out.
+/// Allocated bytes.
 pub fn used() -> usize {
     HEAP.used.load(Ordering::Relaxed)
 }

@@ -1,7 +1,7 @@
-//! Links FARSA's libraries into a program without std, calls into each of them, and tells by its exit code what failed.
+//! Links FARSA's libraries into a program without std, calls into each of them, and returns the failure as its exit code.
 //!
-//! If any crate of the graph linked std, its panic handler would clash with ours; if any needed a heap without the
-//! feature `alloc`, the allocator would be missing. Either way this does not build.
+//! A crate that links std brings a second panic handler. A crate that needs a heap without the feature `alloc` misses the allocator.
+//! This program does not build in either case.
 //!
 //! `unsafe` is confined to this program: it has no std to start it, so it exports the C library's entry point, and with
 //! `alloc` it brings an allocator.
@@ -30,7 +30,7 @@ use farsa::nn::{Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork,
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
 
-// The C library's start-up code calls `main`; the linker gets the library from here.
+// The C library's start-up code calls `main`, and the linker gets the library from here.
 // SAFETY: the block declares nothing.
 #[link(name = "c")]
 unsafe extern "C" {}
@@ -40,8 +40,8 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-// The toolchain's `core` and `alloc` for this host are compiled to unwind and name these two; a program that aborts never
-// calls them. std would bring its own, a second clash.
+// The toolchain's `core` and `alloc` for this host are compiled to unwind and name these two functions. A program that aborts never
+// calls them.
 // SAFETY: the names belong to std, which is not here.
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}

@@ -1,4 +1,4 @@
-//! What the adapter costs over calling rapier directly, on the same bodies with the same motion to the last bit.
+//! The cost of the adapter compared with direct calls of rapier, on the same bodies with bit-equal motion.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -32,7 +32,7 @@ fn commands() -> Vec<[[f32; 2]; 27]> {
         .collect()
 }
 
-/// What has to be told rapier before a step: spring and damping of every joint, the torque on the sphere.
+/// Inputs of a step of rapier: spring and damping of every joint, the torque on the sphere.
 struct Told {
     springs: [[f32; 3]; 27],
     torque: Vector,

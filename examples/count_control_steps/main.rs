@@ -1,7 +1,7 @@
 //! A fixed amount of work for counting instructions: `./ci callgrind` runs each case and counts within `measured`.
 //!
 //! `cargo run --release --example count_control_steps CASE`: free, grasp, free8, grasp8, aba7, aba27, network, muscles, trial,
-//! recorded; adapter and direct, or rapier, which times both.
+//! recorded, adapter and direct, or rapier, which times both.
 
 mod adapter;
 #[path = "../../benches/scene/mod.rs"]
@@ -17,7 +17,7 @@ use farsa_lab::{EpisodeId, Evaluation, Evaluator as _, Genotype, Task as _};
 use farsa_view::Recording;
 use scene::{Aba, Lanes, Loop};
 
-/// Repetitions of every case; counts are divided by it.
+/// Repetitions of every case. Counts are divided by it.
 const TIMES: usize = 100;
 
 /// The function whose instructions are counted, with what it calls.

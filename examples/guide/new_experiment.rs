@@ -1,4 +1,4 @@
-//! An experiment of one's own: a Khepera learns to find a lamp.
+//! A custom experiment: a Khepera learns to find a lamp.
 
 use farsa::body::motors::WheelVelocity;
 use farsa::body::ports::BodyId;

@@ -37,7 +37,7 @@ impl Experiment for Judges {
     }
 }
 
-/// A number among the notes of a trial, by name; NaN, so that no trial counts, if there is none of that name.
+/// Returns a note of a trial by name. A missing note is NaN, which marks the trial as failed.
 fn noted(outcome: &Outcome, name: &str) -> f64 {
     let note = outcome.notes.iter().find(|(other, _)| *other == name);
     if let Some((_, Note::Number(x))) = note { *x } else { f64::NAN }

@@ -1,4 +1,4 @@
-//! An arm of one's own kicks a ball: described, checked, moved, looked at, exported.
+//! A custom arm kicks a ball: described, checked, moved, drawn, exported.
 
 use std::error::Error;
 use std::fs;
@@ -33,7 +33,7 @@ fn arm() -> Result<Robot, RobotError> {
     let hand = MassProperties::sphere(0.2, 0.04).placed(&Pose::at([0.0, 0.0, -lower]));
     let forearm = robot.add_segment(Segment::new("forearm", Some(upper_arm), elbow, link(0.4, lower).with(&hand)));
 
-    // What can be seen and touched. Shapes have no mass: that is the segments'.
+    // Visible and touchable shapes. They have no mass, the segments have.
     let bone =
         |name, body, length: f64| Collider::capsule_between(name, Some(body), [0.0; 3], [0.0, 0.0, -length], thick);
     robot.add_collider(bone("upper arm", upper_arm, upper));

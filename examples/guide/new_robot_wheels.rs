@@ -1,4 +1,4 @@
-//! A wheeled robot of one's own finds its way out of a corner.
+//! A custom wheeled robot finds its way out of a corner.
 
 use std::error::Error;
 use std::fs;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut bumps = 0;
     for tick in 1..=600_u32 {
         sensors.read(&world, &mut x);
-        // Each side slows the other side's wheel; what is right ahead turns it to the left.
+        // Each side slows the other side's wheel. An obstacle straight ahead turns the robot to the left.
         y = [0.9 - x[4] - x[3] - 1.5 * x[2], 0.9 - x[0] - x[1]];
         wheels.drive(&y, &mut world);
         world.step(); // 50 ms

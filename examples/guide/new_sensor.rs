@@ -1,4 +1,4 @@
-//! A sensor and a motor of one's own: a robot goes round an obstacle to a goal whose bearing it knows.
+//! A custom sensor and motor: a robot steers around an obstacle to a goal by its bearing.
 
 use std::error::Error;
 
@@ -11,7 +11,7 @@ use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, Cylinder, World};
 use farsa::physics::articulated;
 
-/// Where the second body is as seen from the first: the direction to it in that body's x and y, of length 1; two channels.
+/// The direction from the first body to the second in the first one's x and y, of length 1, in two channels.
 struct Bearing<B>(B, B);
 
 impl<B> Channels for Bearing<B> {
@@ -28,7 +28,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Bearing<B> {
     }
 }
 
-/// Steers two wheels, left and right, one of which turns at this speed [rad/s]: 0 is right, 1/2 straight on, 1 left; one channel.
+/// Steers two wheels, left and right, with one channel: 0 is right, 1/2 straight, 1 left. The faster wheel turns at this speed [rad/s].
 struct Steer<A>([A; 2], f32);
 
 impl<A> Channels for Steer<A> {
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (parts, goal) = (arena.parts(0), arena.cylinder(0));
     let start = World::new(&arena)?;
 
-    // What every sensor and every motor promises, in whatever world has the port.
+    // The promises of every sensor and motor, in any world with the port.
     check_sensor(&mut Bearing(parts.body, goal), &start)?;
     check_motor(&mut Steer(parts.motors, 5.0), || start.clone())?;
     let scene = Tabletop::default().scene(&ArmAndHand::default())?;

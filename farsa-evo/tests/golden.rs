@@ -1,4 +1,4 @@
-//! The bits themselves. A change here is a change of every recorded run: it stands in CHANGELOG.md as value-breaking.
+//! The bits themselves. A change here is a change of every recorded run: CHANGELOG.md lists it under *Values*.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_evo::coevolution::Coevolution;

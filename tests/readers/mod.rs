@@ -1,10 +1,10 @@
-//! How the projects of readers are built here.
+//! Builds of the readers' projects.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Whether they are built and run as their readers would, each with its own profile: `./ci long`. Else the compiler only checks them,
-/// with the crates and features that they ask for; what they do is tested on the same programs among the workspace's examples.
+/// Returns true in `./ci long`, which builds and runs them with their own profiles. Otherwise the compiler only checks them, and the
+/// examples of the workspace test the same programs.
 pub(crate) fn whole() -> bool {
     std::env::var_os("FARSA_LONG").is_some()
 }
