@@ -35,7 +35,6 @@ use crate::store::failures::Failures;
 use crate::store::lineage::{HEADER, Lineage};
 use crate::store::log::{Log, header};
 use crate::store::manifest::Manifest;
-use crate::store::toml_tokens::toml_tokens;
 use crate::strategy::search::{Genome, Search};
 use crate::sweep::SweepFile;
 
@@ -63,11 +62,6 @@ impl CommandLineReader {
 /// What is wrong with it.
 pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<String, Error> {
     Plan::from_file(laboratory, &ConfigFile::parse("config.toml", text)?)?.to_toml()
-}
-
-/// The tokens of a text, as they are counted before it is read as TOML.
-pub fn count_toml_tokens(text: &str) -> usize {
-    toml_tokens(text)
 }
 
 /// Reads the file of a sweep.

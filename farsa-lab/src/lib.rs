@@ -49,7 +49,7 @@ pub use ranks::{Alone, Ranks};
 pub use run::{
     BestOfRun, ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, Laboratory, LeftOut, ReadExperiment, Template,
 };
-pub use store::{VALUES_VERSION, limit_toml_tokens, read_text_file};
+pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
     Diagnostics, DiagnosticsChart, Learning, OnePlusOne, Search, SimpleStrategy, StrategyDefinition, StrategyStart,
     Truncation, strategies,

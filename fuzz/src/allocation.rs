@@ -84,7 +84,7 @@ pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
     bounded_by(input, || 0, read)
 }
 
-/// The same of a reader of TOML, whose tokens are limited in number ([`farsa_lab::limit_toml_tokens`]).
+/// Runs a reader of TOML, whose tree takes memory for each token.
 ///
 /// # Panics
 /// When it takes more than that, 128 bytes for each token and 1200 for one that can begin a table.

@@ -1,6 +1,6 @@
 //! Reads and checks a text value by value.
 
-use farsa_lab::{Error, limit_toml_tokens};
+use farsa_lab::Error;
 use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -17,10 +17,9 @@ const MOST_ERRORS: usize = 20;
 /// Reads the values of a text that match a schema, with their places.
 ///
 /// # Errors
-/// [`Error::Usage`] for invalid TOML and too many tokens, [`Error::Unknown`] with the nearest key or word,
+/// [`Error::Usage`] for invalid TOML, [`Error::Unknown`] with the nearest key or word,
 /// [`Error::Setting`] for invalid values. Each has file, line and key. [`Error::Several`] for more than one, by line.
 pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Source), Error> {
-    limit_toml_tokens(file, text)?;
     let lines = Lines::new(text);
     let mut source = Source::new(file);
     let table = DeTable::parse(text).map_err(|error| {

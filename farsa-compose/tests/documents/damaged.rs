@@ -190,16 +190,8 @@ fn parts_that_do_not_go_together_are_refused() {
 
 #[test]
 fn files_of_more_than_anybody_writes_are_refused() {
-    let most = 200_000;
-    let read = "at most 200000 are read of TOML";
-    // Each name of a table takes 1.1 kB.
-    let tables = format!("{RIGHT}[a{}]\n", ".a".repeat(most / 2));
-    assert!(error(&tables).starts_with("look.toml: has 200"));
-    assert!(error(&tables).ends_with(read));
-    // A scene is a file of its own.
-    let scene = format!("files = {{ 's.toml' = '{}' }}\n{RIGHT}", "1,".repeat(most / 2 + 1));
-    let scene = scene.replacen("[world]", "[world]\nscene = 's.toml'", 1);
-    assert_eq!(error(&scene), format!("s.toml: has 200002 names, values, signs and gaps; {read}"));
+    let nested = format!("{RIGHT}[a{}]\n", ".a".repeat(100_000));
+    assert!(error(&nested).ends_with("recursion limit"), "{}", error(&nested));
     // Each is checked as an experiment of its own.
     let conditions =
         |count| (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect::<Vec<_>>().concat();

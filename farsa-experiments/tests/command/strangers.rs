@@ -78,14 +78,14 @@ fn files_without_an_end() {
     refused(&here, &["run", "--config", "keys.toml"], 2, "keys.toml line 2: unknown key `k0`");
     fs::File::create(here.join("large")).and_then(|file| file.set_len(1 << 40)).expect("a file with a hole");
     let most = |bytes: u32| format!("large: has more than {bytes} bytes, the most that is read of it");
-    refused(&here, &["run", "--config", "large"], 2, &most(16_000_000));
+    refused(&here, &["run", "--config", "large"], 2, &most(4_000_000));
     refused(&here, &["evaluate", "discrimination", "--genes-file", "large"], 1, &most(256_000_000));
     refused(&here, &["import", "--experiment", "discrimination", "large", "--out", "i"], 1, &most(256_000_000));
     let tables = ["--set", "robot.infrared=sampled", "--set", "robot.infrared_tables=."];
     fs::rename(here.join("large"), here.join("wall.sam")).expect("another name");
     refused(&here, &[&["run", "discrimination"], tables.as_slice()].concat(), 1, "wall.sam: has more than 256000000");
     if cfg!(unix) {
-        refused(&here, &["run", "--config", "/dev/zero"], 2, "/dev/zero: has more than 16000000 bytes");
+        refused(&here, &["run", "--config", "/dev/zero"], 2, "/dev/zero: has more than 4000000 bytes");
         refused(&here, &["run", "--config", "/dev/null"], 2, "names an experiment");
     }
 }

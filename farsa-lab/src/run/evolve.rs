@@ -1,6 +1,5 @@
-//! Evolution from the first or any later generation on, with everything kept that is needed to go on.
+//! The loop over the generations of a run, with a checkpoint from time to time.
 
-use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -8,40 +7,36 @@ use farsa_evo::RecordWriter;
 
 use crate::error::Error;
 use crate::figures::log_curves::LogCurves;
-use crate::run::begin::{champions, lineage, search_state};
+use crate::run::begin::search_state;
 use crate::run::catch_panic::catch_panic;
 use crate::run::collection::CollectionTable;
 use crate::run::coordinator::{barrier, coordinate, facts, run_command};
-use crate::run::diagnostics::DiagnosticsTable;
 use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::Progress;
-use crate::run::record_file::{RunRecord, RunRecordWriter};
+use crate::run::record_file::RunRecord;
 use crate::run::records::{Champions, Checkpoint, evolved};
+use crate::run::recover::{RunFiles, recover};
 use crate::run::search_state::{GenerationResult, SearchState};
 use crate::run::summary::{Summary, Winner};
 use crate::store::append_log::Mark;
-use crate::store::bounded::read_regular_text;
 use crate::store::directory::Directory;
-use crate::store::failures::{FailedEvaluation, Failures};
+use crate::store::failures::FailedEvaluation;
 use crate::store::identity::Identity;
 use crate::store::lineage::{Lineage, rows};
 use crate::store::lock::Lock;
-use crate::store::log::{Line, Log};
+use crate::store::log::Line;
 use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
-use crate::store::temporary_file;
 
-/// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
+/// The time between two checkpoints. After every short generation a checkpoint would cost more than the generation.
 const UNSAVED: Duration = Duration::from_secs(1);
-/// Bytes of the largest configuration that is compared with what is written.
-const MAX_CONFIG_BYTES: u64 = 16 << 20;
 
-/// Evolves the run in a directory up to its last generation and says what came of it.
+/// Evolves the run in a directory up to its last generation and returns a summary.
 ///
 /// # Errors
-/// [`Error::Interrupted`] after `stop` became true; all finished generations are then kept.
+/// [`Error::Interrupted`] after `stop` became true. All finished generations are saved.
 pub(crate) fn continue_run(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -51,12 +46,12 @@ pub(crate) fn continue_run(
     quiet: bool,
 ) -> Result<Summary, Error> {
     evolved(directory)?;
-    // The lock comes before anything is read that another process might be writing.
+    // Another process may write the files until the lock is held.
     let lock = Lock::of_run(directory.path())?;
     continue_locked(&lock, plan, directory, pool, stop, program, quiet)
 }
 
-/// The same with a run whose lock is held already.
+/// Evolves a run whose lock is already held.
 ///
 /// # Errors
 /// As [`continue_run`].
@@ -81,14 +76,14 @@ pub(crate) fn continue_locked(
     let individuals =
         |generations: u32| u64::from(generations).saturating_mul(run.search_state.search.individuals() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
-    if let Some(kept) = &run.kept {
+    if let Some(kept) = &run.files.changed_log {
         let (log, kept) = (directory.log(), kept.display());
         progress
             .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
     }
     coordinate(&mut pool, command, facts, |pool| {
         let ended = run.evolve(last, pool, stop, &progress);
-        if let Some(total) = run.told_of_failures() {
+        if let Some(total) = run.failures_note() {
             progress.note(&total);
         }
         ended
@@ -100,36 +95,29 @@ pub(crate) fn continue_locked(
 /// A run in progress.
 struct Run<'d> {
     directory: &'d Directory,
-    /// What the user calls this program.
+    /// The name of this program.
     program: &'d str,
     title: String,
-    /// Of the populations.
+    /// Names of the populations.
     names: Vec<String>,
     identity: Identity,
     search_state: SearchState,
     record: RecordWriter,
-    record_file: RunRecordWriter,
-    log: Log,
-    /// What `fitness.svg` shows of it.
+    files: RunFiles,
+    /// The curves of `fitness.svg`.
     curves: LogCurves,
-    /// Where the log that somebody had changed is kept.
-    kept: Option<PathBuf>,
-    /// None for a strategy whose individuals have no parents.
-    lineage: Option<Lineage>,
-    failures: Failures,
-    /// Evaluations that failed in this process, and the first of them.
+    /// Number of evaluations that failed in this process, and the first of them.
     failed: (u64, Option<FailedEvaluation>),
-    diagnostics: DiagnosticsTable,
-    /// None for a strategy that keeps nothing beyond a generation.
+    /// `None` for a strategy without an archive or front.
     collection: Option<CollectionTable>,
     manifest: Manifest,
-    /// The champions, once a generation is finished in this process; where they are the best of all generations, from the start.
+    /// The champions, from the first generation of this process. If they are the best of all generations, from the start.
     champions: Option<Champions>,
     started: Instant,
 }
 
 impl<'d> Run<'d> {
-    /// Takes up the run in a directory where its checkpoint left it. Nothing is written before all that can be refused is read.
+    /// Resumes the run in a directory from its checkpoint. Everything that can be refused is read before anything is written.
     fn resume(
         plan: &Plan<'_>,
         directory: &'d Directory,
@@ -139,63 +127,42 @@ impl<'d> Run<'d> {
     ) -> Result<Self, Error> {
         let mut run_record = RunRecord::read(plan, directory, &checkpoint)?;
         let search_state = search_state(plan, directory, &checkpoint, &run_record, pool.genotype())?;
+        let search = &search_state.search;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
-        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), search_state.search.generation()));
-        let text = plan.to_toml()?;
-        temporary_file::sweep(directory.path());
-        if read_regular_text(&directory.config(), MAX_CONFIG_BYTES).ok().as_ref() != Some(&text) {
-            replace(&directory.config(), text.as_bytes())?;
-        }
-        let record_file = run_record.writer(directory)?;
-        let collection = CollectionTable::new(&search_state.search, pool.evaluator());
-        let lineage = lineage(plan, directory, &checkpoint, &run_record.record, &search_state.search)?;
-        let mut champions = champions(plan, directory, &checkpoint, &run_record)?;
-        if let Some(champions) = &champions {
-            champions.write(&directory.champion())?;
-        }
-        if !run_record.keeps_champion {
-            champions = None;
-        } else if champions.is_none() && run_record.champion().is_some() {
-            champions = Some(Champions::read(plan, directory)?);
-        }
-        let RunRecord { lines, diagnostics, record, .. } = run_record;
-        let (log, kept) = Log::resume(&directory.log(), &lines, record.populations())?;
-        let curves = LogCurves::from_lines(&lines, record.populations());
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), search.generation()));
+        let files = recover(plan, directory, &checkpoint, &mut run_record, search)?;
+        let best_ever = run_record.keeps_champion && run_record.champion().is_some();
+        let champions = if best_ever { Some(Champions::read(plan, directory)?) } else { None };
         Ok(Self {
             directory,
             program,
             title: plan.name(),
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
+            collection: CollectionTable::new(search, pool.evaluator()),
+            curves: LogCurves::from_lines(&run_record.lines, run_record.record.populations()),
+            record: run_record.record.writer(),
             search_state,
-            record: record.writer(),
-            record_file,
-            log,
-            curves,
-            kept,
-            lineage,
-            failures: Failures::resume(&directory.failures(), checkpoint.failures)?,
+            files,
             failed: (0, None),
-            diagnostics: DiagnosticsTable::resume(plan.definition().diagnostics(), directory, &diagnostics)?,
-            collection,
             manifest,
             champions,
             started: Instant::now(),
         })
     }
 
-    /// Evolves up to a generation, and keeps everything from time to time and at the end.
+    /// Evolves up to a generation and saves from time to time and at the end.
     fn evolve(&mut self, last: u32, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Error> {
         let mut saved = Instant::now();
         let mut ended = Ok(());
         while self.search_state.search.generation() < last {
             let generation = self.search_state.search.generation();
-            if let Err(full) = self.record_file.check_space() {
+            if let Err(full) = self.files.record.check_space() {
                 let why = format!("{full}; the run ends after {generation} generations, which are kept");
                 ended = Err(Error::Other(why));
                 break;
             }
-            // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
+            // Panics of trials are caught in the pool. A panic here is one of the strategy, whose state is then lost.
             let result = catch_panic(|| barrier(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
             match result.map_err(|why| Error::Panicked { generation, why })? {
                 Ok(()) => {}
@@ -215,7 +182,7 @@ impl<'d> Run<'d> {
         ended
     }
 
-    /// Evaluates all individuals of a generation and makes the next.
+    /// Evaluates a generation and appends it to all files.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
         let generation = self.search_state.search.generation();
         let GenerationResult { fitness, failed, statistics, each, best, normalisation, .. } =
@@ -224,34 +191,33 @@ impl<'d> Run<'d> {
             })?;
         let search = &self.search_state.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.record_file.append(&self.record, &line, search, self.search_state.observed.as_ref())?;
-        self.log.append(&line)?;
+        self.files.record.append(&self.record, &line, search, self.search_state.observed.as_ref())?;
+        self.files.log.append(&line)?;
         self.curves.push(&line);
-        self.failures.append(&failed, self.program)?;
-        self.diagnostics.append(search)?;
-        if let Some(lineage) = &mut self.lineage {
+        self.files.failures.append(&failed, self.program)?;
+        self.files.diagnostics.append(search)?;
+        if let Some(lineage) = &mut self.files.lineage {
             lineage.append(&rows(search))?;
         }
-        let found = Champions { identity: self.identity.clone(), generation, best, normalisation };
+        let latest = Champions { identity: self.identity.clone(), generation, best, normalisation };
         let keeps = search.keeps_champion();
         self.champions = Some(match self.champions.take() {
-            Some(known) if keeps && found.fitness() <= known.fitness() => known,
-            _ => found,
+            Some(best) if keeps && latest.fitness() <= best.fitness() => best,
+            _ => latest,
         });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
             session.evaluations += fitness.len() as u64;
         }
         let each: Vec<_> = self.names.iter().map(String::as_str).zip(&each).collect();
-        // Of a single population there is nothing but the whole.
-        let whole = [("", &statistics)];
-        progress.generation(generation, if each.is_empty() { &whole } else { &each });
-        self.tell_of(failed, progress);
+        let total = [("", &statistics)];
+        progress.generation(generation, if each.is_empty() { &total } else { &each });
+        self.report_failures(failed, progress);
         Ok(())
     }
 
-    /// Tells the user of the first evaluation that failed, and counts the others.
-    fn tell_of(&mut self, failed: Vec<FailedEvaluation>, progress: &Progress) {
+    /// Prints the first evaluation that failed and counts the others.
+    fn report_failures(&mut self, failed: Vec<FailedEvaluation>, progress: &Progress) {
         self.failed.0 += failed.len() as u64;
         if let (None, Some(first)) = (&self.failed.1, failed.into_iter().next()) {
             let FailedEvaluation { generation, individual, why, .. } = &first;
@@ -261,23 +227,23 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// How many evaluations failed, if any did.
-    fn told_of_failures(&self) -> Option<String> {
+    /// A line with the number of failed evaluations, if there are any.
+    fn failures_note(&self) -> Option<String> {
         let (count, path) = (self.failed.0, self.directory.failures());
         (count > 0).then(|| format!("{count} evaluations failed: {}", path.display()))
     }
 
-    /// Keeps everything; the checkpoint, which speaks of the others, comes after what it speaks of.
+    /// Saves everything. The checkpoint has marks of the other files, so it is written after them.
     fn save(&mut self) -> Result<(), Error> {
         let (directory, identity) = (self.directory, &self.identity);
-        self.log.sync()?;
-        let record = self.record_file.sync()?;
-        let lineage = self.lineage.as_mut().map_or(Ok(Mark::default()), Lineage::sync)?;
-        let failures = self.failures.sync()?;
+        self.files.log.sync()?;
+        let record = self.files.record.sync()?;
+        let lineage = self.files.lineage.as_mut().map_or(Ok(Mark::default()), Lineage::sync)?;
+        let failures = self.files.failures.sync()?;
         if let Some(champions) = &self.champions {
             champions.write(&directory.champion())?;
         }
-        self.diagnostics.save(&self.title)?;
+        self.files.diagnostics.save(&self.title)?;
         if let Some(collection) = &self.collection {
             collection.write(&self.search_state.search, directory, &self.title)?;
         }
@@ -330,8 +296,9 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
     use std::fs;
+    use std::path::PathBuf;
 
-    /// Earns its first gene; panics in one trial, if asked to, and fails where the gene is odd.
+    /// Its fitness is the first gene. It fails for odd genes and can panic in one trial.
     #[derive(Clone, Copy)]
     struct Toy {
         version: u32,
@@ -454,7 +421,7 @@ mod tests {
             continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
         assert_eq!(stopped.exit_code(), 130);
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
-        // Nobody is best yet.
+        // No champion exists yet.
         assert!(
             test::test(&plan, &directory, None, 1, 1, 1, Wanted::ONE, true)
                 .unwrap_err()

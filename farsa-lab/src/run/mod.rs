@@ -48,6 +48,9 @@ pub(crate) mod queue;
 pub(crate) mod record_file;
 /// The checksummed files of a run: checkpoint, champions and imported genotypes.
 pub(crate) mod records;
+/// Makes the files of a run agree with its checkpoint.
+#[cfg(feature = "command")]
+mod recover;
 /// `farsa run --replications`: one plan under consecutive seeds.
 #[cfg(feature = "command")]
 pub(crate) mod replications;

@@ -2,7 +2,7 @@
 
 /// Files that grow at their end.
 pub(crate) mod append_log;
-/// Reads with a limit on bytes and on waiting time.
+/// Reads with a limit on bytes.
 pub(crate) mod bounded;
 /// Files with a kind, a format version, a length and a checksum.
 pub(crate) mod checksummed;
@@ -24,9 +24,6 @@ pub(crate) mod manifest;
 pub(crate) mod replace;
 /// Locked temporary files and directories.
 pub(crate) mod temporary_file;
-/// The limit on the number of TOML tokens.
-pub(crate) mod toml_tokens;
 
 pub use bounded::read_text_file;
 pub use identity::VALUES_VERSION;
-pub use toml_tokens::limit_toml_tokens;

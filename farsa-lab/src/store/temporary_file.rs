@@ -1,13 +1,11 @@
-//! Files and directories before they have their names, and what processes that died have left of them.
+//! Temporary files and directories, renamed to their final names once they are complete.
 //!
-//! A draft lies beside what it becomes, so that a rename brings it there at once. Its name cannot be foreseen, it is made
-//! exclusively, and no link is followed: what lies in a stranger's directory under any name is never written to. Whoever makes a
-//! draft holds a lock on it, which the system releases when the process ends, however it ends; a draft that can be locked is
-//! nobody's any more.
+//! A temporary file is in the directory of its final name, so that the rename is atomic. Its name is random, it is created
+//! exclusively, and no link is followed. Its process holds a lock on it. The system releases the lock when the process ends, so a
+//! temporary file that can be locked is abandoned.
 
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
-use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -15,16 +13,16 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 
 use crate::store::lock::{self, RUN_LOCK};
 
-/// What the names of drafts end with.
+/// The end of all temporary names.
 const SUFFIX: &str = ".new";
-/// Letters before it, which no one can foresee.
+/// Number of random letters and digits in a temporary name.
 const RANDOM: usize = 12;
-/// Bytes of the final name that a draft's name begins with: 255 are allowed.
+/// Bytes of the final name that are repeated in the temporary one. File systems allow 255 in all.
 const MAX_NAME_BYTES: usize = 200;
-/// How often a draft is made again when somebody has swept it before it was locked.
+/// Number of tries when another process sweeps a temporary file before it is locked.
 const ATTEMPTS: usize = 20;
 
-/// The directory that a path lies in.
+/// Returns the directory of a path.
 pub(crate) fn parent(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -32,38 +30,35 @@ pub(crate) fn parent(path: &Path) -> &Path {
     }
 }
 
-/// What the names of all drafts of a file or directory begin with.
-fn prefix(path: &Path) -> OsString {
+/// Returns the start of the temporary names of a file or directory.
+fn prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let end = (0..=name.len().min(MAX_NAME_BYTES)).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
-    OsString::from(format!(".{}.", &name[..end]))
+    format!(".{}.", &name[..end])
 }
 
-fn builder<T>(path: &Path, mode: u32, make: impl Fn(&Builder<'_, '_>, &Path) -> io::Result<T>) -> io::Result<T> {
-    let mut prefix = prefix(path);
-    // The keys of this hash are the system's random numbers.
-    let random = RandomState::new().build_hasher().finish();
-    prefix.push(format!("{:0RANDOM$x}", random >> (64 - 4 * RANDOM)));
+fn create<T>(path: &Path, mode: u32, make: impl Fn(&Builder<'_, '_>, &Path) -> io::Result<T>) -> io::Result<T> {
+    let prefix = OsString::from(prefix(path));
     let mut builder = Builder::new();
-    builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(0);
-    // As if it had been made under its final name: the user's mask takes away what others may not do.
+    builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+    // The mode of a file created under its final name. The user's mask applies to it.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
     let _ = mode;
-    make(&builder, parent(path)).map_err(plain)
+    make(&builder, parent(path)).map_err(without_temporary_name)
 }
 
-/// The system's own error, without the name that nobody knows.
-fn plain(error: io::Error) -> io::Error {
+/// The system's error, without the temporary name that `tempfile` adds.
+fn without_temporary_name(error: io::Error) -> io::Error {
     match error.get_ref().and_then(|inner| inner.source()) {
         Some(inner) => io::Error::new(error.kind(), inner.to_string()),
         None => error,
     }
 }
 
-/// Whether the lock on a draft that was just made is ours, and the draft still there.
-fn held(file: &File, path: &Path) -> bool {
-    // A file system without locks has nobody who sweeps, either.
+/// Locks a file that was just created. The result is `false` if another process has locked or removed it.
+fn locked(file: &File, path: &Path) -> bool {
+    // On a file system without locks no process sweeps.
     !matches!(file.try_lock(), Err(TryLockError::WouldBlock)) && fs::symlink_metadata(path).is_ok()
 }
 
@@ -71,31 +66,25 @@ fn swept() -> io::Error {
     io::Error::other("another process removes what this one makes")
 }
 
-/// Makes an empty file beside `path`, which is removed unless it is persisted.
+/// Creates an empty file next to `path`, which is removed unless it is persisted.
 pub(crate) fn file(path: &Path) -> io::Result<NamedTempFile> {
     for _ in 0..ATTEMPTS {
-        let draft = match builder(path, 0o666, |builder, folder| builder.tempfile_in(folder)) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            draft => draft?,
-        };
-        if held(draft.as_file(), draft.path()) {
-            return Ok(draft);
+        let file = create(path, 0o666, |builder, folder| builder.tempfile_in(folder))?;
+        if locked(file.as_file(), file.path()) {
+            return Ok(file);
         }
     }
     Err(swept())
 }
 
-/// Makes an empty directory beside `path`, which is removed with all that is in it unless it is kept, and the file in it that
-/// locks it.
+/// Creates an empty directory next to `path`, and the locked file in it. The directory is removed with its content unless it is
+/// kept.
 pub(crate) fn directory(path: &Path) -> io::Result<(TempDir, File)> {
     for _ in 0..ATTEMPTS {
-        let draft = match builder(path, 0o777, |builder, folder| builder.tempdir_in(folder)) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            draft => draft?,
-        };
-        let place = draft.path().join(RUN_LOCK);
-        match lock::open(&place) {
-            Ok(file) if held(&file, &place) => return Ok((draft, file)),
+        let directory = create(path, 0o777, |builder, folder| builder.tempdir_in(folder))?;
+        let lock = directory.path().join(RUN_LOCK);
+        match lock::open(&lock) {
+            Ok(file) if locked(&file, &lock) => return Ok((directory, file)),
             Ok(_) => {}
             // An empty directory without a lock may have been swept.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -105,68 +94,60 @@ pub(crate) fn directory(path: &Path) -> io::Result<(TempDir, File)> {
     Err(swept())
 }
 
-/// Removes the drafts in a run's directory that processes have left which ended before their time.
-pub(crate) fn sweep(folder: &Path) {
-    for (path, name) in entries(folder) {
-        // Earlier versions had one name for the draft of a file.
-        let earlier =
-            ["champion.bin", "checkpoint.bin", "fitness.svg", "manifest.json", "config.toml", "test.csv", "test.json"]
-                .iter()
-                .any(|of| name == format!(".{of}{SUFFIX}"));
-        if earlier || is_draft(&name, ".") {
-            remove_file(&path);
+/// Removes the abandoned temporary files in a run directory.
+pub(crate) fn sweep_run(folder: &Path) {
+    sweep(folder, ".");
+}
+
+/// Removes the abandoned temporary files of one file or directory.
+pub(crate) fn sweep_of(path: &Path) {
+    sweep(parent(path), &prefix(path));
+}
+
+/// Removes the abandoned temporary files in a folder whose names start with `prefix`.
+fn sweep(folder: &Path, prefix: &str) {
+    for (path, _) in entries(folder).filter(|(_, name)| is_temporary(name, prefix)) {
+        // No result depends on a file that cannot be removed. The next sweep tries again.
+        match fs::symlink_metadata(&path) {
+            Ok(metadata) if metadata.is_dir() => remove_directory(&path),
+            _ => {
+                if let Some(_lock) = abandoned(&path) {
+                    let _ = fs::remove_file(&path);
+                }
+            }
         }
     }
 }
 
-/// Removes the drafts of one file or directory that processes have left which ended before their time.
-pub(crate) fn sweep_of(path: &Path) {
-    let prefix = prefix(path).to_string_lossy().into_owned();
-    for (path, _) in entries(parent(path)).filter(|(_, name)| is_draft(name, &prefix)) {
-        remove_file(&path);
-        remove_directory(&path);
-    }
-}
-
 fn entries(folder: &Path) -> impl Iterator<Item = (PathBuf, String)> {
-    // What cannot be read is swept another time: nothing depends on it.
     let entries = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
     entries.filter_map(|entry| Some((entry.path(), entry.file_name().into_string().ok()?)))
 }
 
-/// Whether this is a name that [`builder`] gives: the prefix, the rest of a final name, and random letters.
-fn is_draft(name: &str, prefix: &str) -> bool {
+/// Whether a name has the form that [`create`] gives: the prefix, the rest of a final name, and random letters.
+fn is_temporary(name: &str, prefix: &str) -> bool {
     let Some((start, random)) = name.strip_suffix(SUFFIX).and_then(|rest| rest.rsplit_once('.')) else { return false };
-    let whole = start.len() + 1 >= prefix.len() && name.starts_with(prefix) && start.len() > 1;
-    whole && random.len() == RANDOM && random.bytes().all(|letter| letter.is_ascii_hexdigit())
+    let complete = start.len() + 1 >= prefix.len() && name.starts_with(prefix) && start.len() > 1;
+    complete && random.len() == RANDOM && random.bytes().all(|letter| letter.is_ascii_alphanumeric())
 }
 
-/// Opens a regular file that nobody holds a lock on.
+/// Opens and locks a regular file that no process has locked.
 fn abandoned(path: &Path) -> Option<File> {
     let regular = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file());
     let file = if regular { File::open(path).ok()? } else { return None };
     file.try_lock().is_ok().then_some(file)
 }
 
-fn remove_file(path: &Path) {
-    if let Some(_lock) = abandoned(path) {
-        let _ = fs::remove_file(path);
-    }
-}
-
 fn remove_directory(path: &Path) {
-    if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_dir()) {
-        return;
-    }
     match abandoned(&path.join(RUN_LOCK)) {
         Some(_lock) => {
-            // The lock last: without it nobody would know whose the rest is if this process is killed meanwhile.
-            for (other, _) in entries(path).filter(|(_, name)| name != RUN_LOCK) {
-                drop(fs::remove_file(&other).or_else(|_| fs::remove_dir_all(&other)));
+            // The lock comes last: without it a later sweep could not claim the rest after a kill.
+            for (entry, _) in entries(path).filter(|(_, name)| name != RUN_LOCK) {
+                drop(fs::remove_file(&entry).or_else(|_| fs::remove_dir_all(&entry)));
             }
             drop(fs::remove_dir_all(path));
         }
-        // Without a lock nothing else is in it; if there is, it is not ours.
+        // Without a lock only an empty directory is ours.
         None => drop(fs::remove_dir(path)),
     }
 }
@@ -183,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn only_abandoned_drafts_are_swept() {
+    fn only_abandoned_files_are_swept() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let mut alive = file(&at("champion.bin")).unwrap();
@@ -202,12 +183,13 @@ mod tests {
         fs::write(&victim, "precious").unwrap();
         #[cfg(unix)]
         std::os::unix::fs::symlink(&victim, at(".link.0123456789ab.new")).unwrap();
-        sweep(folder.path());
+        sweep_run(folder.path());
         assert!(!dead.exists() && alive.path().exists());
         let mut left = vec![
             "..0123456789ab.new",
             ".a.0123456789ab.new~",
             ".champion.bin.abc.new",
+            ".champion.bin.new",
             ".notes.new",
             "champion.bin",
             "victim",
@@ -224,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn drafts_of_directories_are_swept_once_their_makers_are_gone() {
+    fn directories_are_swept_once_their_processes_have_ended() {
         let folder = tempfile::tempdir().unwrap();
         let run = folder.path().join("run");
         let (alive, _lock) = directory(&run).unwrap();
@@ -244,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn any_name_has_a_draft_and_none_is_foreseen() {
+    fn any_name_has_random_temporary_names() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["x".repeat(255), "é".repeat(127), "a".into()] {
             let path = folder.path().join(name);
