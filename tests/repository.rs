@@ -213,7 +213,7 @@ fn a_library_that_evaluates_or_draws_has_no_command_line() {
 #[test]
 fn every_fuzz_target_has_seeds_a_row_and_a_result() {
     let (manifest, table, results) =
-        (read("fuzz/Cargo.toml"), read("quality/README.md"), read("docs/results/campaign.md"));
+        (read("fuzz/Cargo.toml"), read("quality/README.md"), read("quality/campaign.md"));
     let rows: String = table.lines().filter(|line| line.starts_with("| `")).collect();
     let mut targets = vec!["page".to_owned()];
     for entry in fs::read_dir(root().join("fuzz/fuzz_targets")).expect("a folder") {
@@ -228,7 +228,7 @@ fn every_fuzz_target_has_seeds_a_row_and_a_result() {
         assert!(seeds.is_ok_and(|seeds| seeds > 0), "{name} has no seeds");
         let quoted = format!("`{name}`");
         assert!(rows.contains(&quoted), "quality/README.md does not list {name}");
-        assert!(results.contains(&quoted), "docs/results/campaign.md does not say how often {name} was run");
+        assert!(results.contains(&quoted), "quality/campaign.md does not say how often {name} was run");
     }
 }
 

@@ -1,4 +1,4 @@
-//! An experiment whose trials fail at a rate, in all ways in which a trial can: `tests/campaign` runs it for hours.
+//! An experiment whose trials fail at a rate, in all ways in which a trial can: `quality/campaign` runs it for hours.
 
 use std::process::ExitCode;
 
