@@ -12,7 +12,9 @@ use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, Beac
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
 use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
-use farsa_lab::{BestOfRun, EpisodeId, Error, Evaluation, Evaluator, Genotype, Note, Outcome, OwnedNetwork};
+use farsa_lab::{
+    EpisodeId, Error, Evaluation, Evaluator, Genotype, Laboratory, Note, Outcome, OwnedNetwork, RunDirectory,
+};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 
@@ -70,13 +72,14 @@ fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
     format!("| {} |", cells.join(" | "))
 }
 
-fn team(best: &mut BestOfRun) -> Result<(), Error> {
-    let BestOfRun { condition, settings, parameters, evaluator, .. } = best;
+fn team(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
+    let (condition, settings) = (run.condition(), run.settings());
+    let mut evaluator = run.evaluator()?;
     let genotype = genotype(evaluator.as_ref());
     let mut evaluate = |parameters: &[f32], id| evaluator.evaluate(Evaluation::new(parameters, id), None);
     let evolved: Vec<Outcome> = ids().map(|id| evaluate(&parameters[0], id)).collect();
     let random: Vec<Outcome> = ids().map(|id| evaluate(&random(&genotype, id, 0), id)).collect();
-    let by_hand: Vec<Outcome> = if best.experiment == "foraging" {
+    let by_hand: Vec<Outcome> = if run.experiment() == "foraging" {
         let config = ForagingConfig::for_condition(condition).read(settings)?;
         let mut world = config.world()?;
         let robots = vec![HomingForager::new(&config); config.team.robots];
@@ -133,13 +136,13 @@ impl Controller for Mind {
 
 const WHO: [&str; 3] = ["evolved", "hand-written", "random genomes"];
 
-fn pair(best: &BestOfRun) -> Result<(), Error> {
-    let config = PredatorPreyConfig::default().read(&best.settings)?;
-    let genotype = genotype(best.evaluator.as_ref());
+fn pair(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
+    let config = PredatorPreyConfig::default().read(run.settings())?;
+    let genotype = genotype(run.evaluator()?.as_ref());
     let mut world = config.world()?;
     let mind = |who: usize, robot: usize, id: EpisodeId| {
         Ok::<Mind, Error>(match (who, robot) {
-            (0, robot) => Mind::Network(config.network(&best.parameters[robot])?),
+            (0, robot) => Mind::Network(config.network(&parameters[robot])?),
             (1, 0) => Mind::ByHand(Chaser::predator(&config)),
             (1, _) => Mind::ByHand(Chaser::prey(&config)),
             (_, robot) => Mind::Network(config.network(&random(&genotype, id, robot as u32))?),
@@ -187,10 +190,13 @@ fn pair(best: &BestOfRun) -> Result<(), Error> {
 }
 
 fn compare(directory: &Path) -> Result<(), Error> {
-    let mut best = BestOfRun::read(directory, &[&Foraging, &Aggregation, &PredatorPrey])?;
-    let BestOfRun { experiment, condition, seed, generation, .. } = &best;
+    let laboratory = Laboratory::new(&[&Foraging, &Aggregation, &PredatorPrey]);
+    let run = RunDirectory::open(directory, &laboratory)?;
+    let champion = run.champion()?;
+    let (experiment, condition, seed, generation) =
+        (run.experiment(), run.condition(), run.seed(), champion.generation);
     println!("\n{experiment} {condition}, run of seed {seed}, best of generation {generation}:\n");
-    if best.parameters.len() > 1 { pair(&best) } else { team(&mut best) }
+    if champion.parameters.len() > 1 { pair(&run, &champion.parameters) } else { team(&run, &champion.parameters) }
 }
 
 fn main() -> ExitCode {

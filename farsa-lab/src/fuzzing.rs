@@ -27,7 +27,7 @@ use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::record_file::RunRecord;
-use crate::run::records::{Champions, Checkpoint, imported, write_imported};
+use crate::run::records::Checkpoint;
 use crate::store::append_log::Mark;
 use crate::store::checksummed;
 use crate::store::directory::Directory;
@@ -260,33 +260,6 @@ impl<'l> RunReader<'l> {
         }
         search.rebuild(&told.record, generation).map_err(damaged)?;
         self.go_on(&mut search).map_err(damaged)
-    }
-
-    /// Reads `champion.bin` of a directory, and writes it there again.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn champions(&self, path: &Path) -> Result<(), Error> {
-        let directory = Directory::at(path.into());
-        let champions = Champions::read(&self.plan, &directory)?;
-        champions.write(&directory.champion())?;
-        let again = Champions::read_checked(&self.plan, &directory, self.evaluator.as_ref())?;
-        for best in &again.best {
-            if best.genes.decode(&self.genotype).is_none() {
-                return Err(Error::damaged(&directory.champion(), "its genome is no individual"));
-            }
-        }
-        Ok(())
-    }
-
-    /// Reads `genotypes.bin` of a directory, and writes it there again.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn genotypes(&self, path: &Path) -> Result<(), Error> {
-        let directory = Directory::at(path.into());
-        let (identity, genomes, populations) = imported(&self.plan, &directory)?;
-        write_imported(&directory.genotypes(), identity, genomes, populations)
     }
 
     /// Takes up the logs of a directory where a run without a generation left them: what is in `fitness.csv`, `lineage.csv` and

@@ -18,6 +18,7 @@ mod figures;
 pub mod fuzzing;
 #[cfg(feature = "command")]
 mod json;
+mod limits;
 mod live;
 #[cfg(feature = "command")]
 mod merge;
@@ -25,6 +26,7 @@ mod ranks;
 #[cfg(feature = "command")]
 mod report;
 mod run;
+mod run_directory;
 mod store;
 mod strategy;
 #[cfg(feature = "command")]
@@ -33,6 +35,8 @@ mod sweep;
 #[cfg(feature = "command")]
 pub use command::cli;
 pub use error::Error;
+#[cfg(feature = "command")]
+pub use evaluation::TestTrial;
 pub use evaluation::read_genotypes;
 pub use experiment::{
     ActuatorExport, Anatomy, Batch, Behaviour, Bodies, Case, CaseId, ChannelGroup, Controlled, ControllerExport,
@@ -46,9 +50,8 @@ pub use experiment::{
 };
 pub use live::LiveSession;
 pub use ranks::{Alone, Ranks};
-pub use run::{
-    BestOfRun, ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, Laboratory, LeftOut, ReadExperiment, Template,
-};
+pub use run::{ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, Laboratory, LeftOut, ReadExperiment, Template};
+pub use run_directory::{GenerationRecord, LogRow, RunChampion, RunDirectory};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
     Diagnostics, DiagnosticsChart, Learning, OnePlusOne, Search, SimpleStrategy, StrategyDefinition, StrategyStart,

@@ -8,7 +8,7 @@ mod experiment;
 mod models;
 /// How the fuzzer changes texts.
 mod mutation;
-/// Readers of runs by each strategy.
+/// Readers and directories of runs by each strategy.
 mod runs;
 /// Directories in memory.
 mod scratch;
@@ -19,6 +19,6 @@ pub use allocation::{bounded, bounded_toml};
 pub use experiment::{TUNE, laboratory, limits};
 pub use models::same_model;
 pub use mutation::mutated;
-pub use runs::{configurations, selected, with_run};
+pub use runs::{configurations, selected, with_directory, with_run};
 pub use scratch::Scratch;
 pub use seal::{sealed_controller, sealed_file, sealed_head};

@@ -1,11 +1,15 @@
-//! Readers of runs by each strategy.
+//! Readers and directories of runs by each strategy.
+
+use std::fs;
 
 use farsa_lab::fuzzing::RunReader;
-use farsa_lab::strategies;
+use farsa_lab::{RunDirectory, strategies};
 
 thread_local! {
     /// Of all strategies alone, in the order in which they are listed; then of those that have opponents.
     static READERS: Vec<RunReader<'static>> = readers();
+    /// Directories of runs in the same order.
+    static DIRECTORIES: Vec<RunDirectory<'static>> = directories();
 }
 
 fn readers() -> Vec<RunReader<'static>> {
@@ -14,6 +18,17 @@ fn readers() -> Vec<RunReader<'static>> {
         RunReader::new(&laboratory, &text).unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     configurations().into_iter().map(read).collect()
+}
+
+fn directories() -> Vec<RunDirectory<'static>> {
+    let laboratory = crate::laboratory();
+    let open = |(name, text): (String, String)| {
+        let path = std::env::temp_dir().join(format!("farsa-fuzz-{}-{name}", std::process::id()));
+        fs::create_dir_all(&path).expect("a directory");
+        fs::write(path.join("config.toml"), text).expect("a configuration");
+        RunDirectory::open(&path, &laboratory).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    configurations().into_iter().map(open).collect()
 }
 
 /// The configurations of the readers, each with a name.
@@ -30,6 +45,11 @@ pub fn configurations() -> Vec<(String, String)> {
 /// Calls `read` with the reader of runs of a strategy, which a byte of the input selects.
 pub fn with_run<T>(byte: u8, read: impl FnOnce(&RunReader<'static>) -> T) -> T {
     READERS.with(|readers| read(&readers[usize::from(byte) % readers.len()]))
+}
+
+/// Calls `read` with the directory of a run, selected like the reader of [`with_run`].
+pub fn with_directory<T>(byte: u8, read: impl FnOnce(&RunDirectory<'static>) -> T) -> T {
+    DIRECTORIES.with(|directories| read(&directories[usize::from(byte) % directories.len()]))
 }
 
 fn configuration(condition: &str, strategy: &str) -> String {

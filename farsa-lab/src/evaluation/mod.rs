@@ -43,3 +43,5 @@ pub(crate) mod test_table;
 pub(crate) mod trials;
 
 pub use genotypes::read_genotypes;
+#[cfg(feature = "command")]
+pub use test_table::TestTrial;

@@ -26,6 +26,19 @@ pub(crate) struct TrialResult {
     pub(crate) others: Vec<(f64, bool)>,
 }
 
+/// A trial of the test of a champion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestTrial {
+    /// The number of the trial in the experiment.
+    pub trial: u32,
+    /// Number of steps.
+    pub steps: u32,
+    /// Whether the trial succeeded.
+    pub success: bool,
+    /// The fitness of the trial, NaN after a failure.
+    pub fitness: f64,
+}
+
 /// The trials of a test as text, the head first; every line is as long as the head.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Table {
@@ -124,6 +137,16 @@ impl Table {
             Self { lines: std::iter::once(head.clone()).chain(lines).collect() }
         };
         lines.chunks(trials.max(1)).map(part).collect()
+    }
+
+    /// The trials, without terms and notes.
+    pub(crate) fn trials(&self) -> Vec<TestTrial> {
+        let trial = |line: &Vec<String>| {
+            let [_, trial, steps, success, fitness] = [0, 1, 2, 3, 4].map(|column| line[column].as_str());
+            let (trial, steps) = (trial.parse().ok()?, steps.parse().ok()?);
+            Some(TestTrial { trial, steps, success: success.parse().ok()?, fitness: fitness.parse().ok()? })
+        };
+        self.lines.iter().skip(1).filter_map(trial).collect()
     }
 
     /// The lines, the head first.

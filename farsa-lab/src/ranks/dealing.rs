@@ -1,4 +1,4 @@
-//! Blocks of evaluations between rank 0 and the others: asked for when none is in reserve, given at once.
+//! Blocks of evaluations between rank 0 and the workers.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -7,24 +7,23 @@ use crate::error::Error;
 use crate::ranks::numbers::{AssignedBlocks, Numbers};
 use crate::ranks::port::Ranks;
 
-/// A rank wants a block: how many evaluations it takes at once. The answer is the first number of the block and the one after it;
-/// an empty block is the last.
+/// A request for a block, with the number of evaluations that the rank runs at once. The answer is the first number of the block
+/// and the number after its last. An empty block is the last.
 const WANTED: u64 = 1;
-/// A rank wants no more in this generation, because it was told to stop or has an error. There is no answer.
+/// The end of a rank's requests in this generation, after a stop or an error. There is no answer.
 const ENOUGH: u64 = 2;
 
-/// The shortest and the longest pause between two looks for messages.
+/// The shortest and the longest pause between two checks for messages.
 const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(4)];
-/// How often a rank that has blocks looks whether its round cannot be finished.
+/// The interval at which a rank with blocks checks whether its round has to end.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// A pause that grows with the time that was waited already: quick answers come soon, long waits cost nothing.
+/// Returns a pause that grows with the time waited. Quick answers arrive soon, and long waits cost little.
 pub(crate) fn pause(since: Instant) -> Duration {
     (since.elapsed() / 8).clamp(PAUSES[0], PAUSES[1])
 }
 
-/// Rank 0 gives blocks to the others until all have had enough. Once `ended` says that the round cannot be finished, here or on
-/// another rank, nothing more is given.
+/// Assigns blocks to the workers until none requests more. After `ended` returns true, no more blocks are assigned.
 pub(crate) fn give(ranks: &dyn Ranks, numbers: &Numbers, ended: &dyn Fn() -> bool) -> Result<(), Error> {
     let mut others = ranks.size() - 1;
     let mut latest = Instant::now();
@@ -51,8 +50,7 @@ pub(crate) fn give(ranks: &dyn Ranks, numbers: &Numbers, ended: &dyn Fn() -> boo
     Ok(())
 }
 
-/// Another rank takes blocks of at most `most` evaluations until rank 0 has no more, or `ended` says that the round cannot be
-/// finished.
+/// Requests blocks of at most `most` evaluations until rank 0 has no more, or `ended` returns true.
 pub(crate) fn take(
     ranks: &dyn Ranks,
     given: &AssignedBlocks,

@@ -1,7 +1,8 @@
-//! What all ranks tell each other, in an order that none can leave.
+//! The messages of all ranks, in a fixed order.
 //!
-//! Between the order that begins a run and the status that ends it, ranks meet twice in each generation: with a status before it,
-//! and with the outcomes of their trials in it. Who has an error says so at the next meeting, so nobody waits for one who has left.
+//! A run begins with a command and ends with a status. In each generation all ranks synchronize twice: they exchange a status
+//! before it and the outcomes of their trials in it. A rank with an error reports it at the next synchronization point, so no
+//! rank waits for one that has ended.
 
 use std::cell::Cell;
 use std::fs;
@@ -14,49 +15,49 @@ use crate::ranks::facts::{self, Facts};
 use crate::ranks::port::{Alone, Ranks};
 use crate::ranks::wire::{Outcomes, from_bytes, to_bytes};
 
-/// Ranks, and where they will meet next.
+/// Ranks and their next synchronization point.
 pub(crate) struct Exchange<'r> {
     ranks: &'r dyn Ranks,
     next: Cell<SyncPoint>,
-    /// A fingerprint of what this rank evaluates, to be compared when outcomes are exchanged.
+    /// A fingerprint of the evaluations of this rank, compared when outcomes are exchanged.
     fingerprint: Cell<Option<u64>>,
-    /// Whether nothing was compared yet in this run.
+    /// Whether no fingerprint was compared yet in this run.
     fresh: Cell<bool>,
 }
 
-/// Where ranks meet next.
+/// A synchronization point of all ranks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SyncPoint {
-    /// They wait for an order of rank 0.
+    /// The workers wait for a command of rank 0.
     WorkerCommand,
     Status,
     Outcomes,
 }
 
-/// How a rank is.
+/// The status of a rank.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Status {
-    /// It wants to go on.
+    /// The rank is ready for another generation.
     GoOn,
-    /// The user or the system has asked it to stop.
+    /// The user or the system has asked the rank to stop.
     Stop,
-    /// The run is over, says rank 0.
+    /// The run is over. Only rank 0 sends this status.
     Over,
-    /// It has an error: the exit code and the message.
+    /// An error, with the exit code and the message.
     Failed(u8, String),
 }
 
 impl Status {
-    /// That of a rank on which something went wrong.
+    /// Returns the status of a rank with an error.
     pub(crate) fn failed(error: &Error) -> Self {
         Self::Failed(error.exit_code(), error.to_string())
     }
 }
 
-/// What rank 0 wants of the others.
+/// A command of rank 0.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum WorkerCommand {
-    /// A run from where its files say that it is.
+    /// Continues a run from its checkpoint.
     Run {
         /// The run's directory, for messages.
         directory: String,
@@ -67,11 +68,11 @@ pub(crate) enum WorkerCommand {
         /// The content of `record.bin`, up to the checkpoint.
         record: Vec<u8>,
     },
-    /// To end with this exit code.
+    /// Ends with this exit code.
     End(u8),
 }
 
-/// The outcomes of a rank, or why there are too few.
+/// The outcomes of a rank, or the reason for missing ones.
 #[derive(Serialize, Deserialize)]
 struct Report {
     status: Status,
@@ -79,7 +80,7 @@ struct Report {
     outcomes: Outcomes,
 }
 
-/// Outcomes with their numbers, in any order; none for an evaluation that was left out.
+/// Outcomes with their numbers, in any order. `None` is an evaluation that was left out.
 pub(crate) type Numbered = (usize, Option<Outcome>);
 
 impl Default for Exchange<'_> {
@@ -89,7 +90,7 @@ impl Default for Exchange<'_> {
 }
 
 impl<'r> Exchange<'r> {
-    /// Ranks that have not begun anything.
+    /// Creates the exchange of ranks before their first command.
     pub(crate) fn new(ranks: &'r dyn Ranks) -> Self {
         Self { ranks, next: Cell::new(SyncPoint::WorkerCommand), fingerprint: Cell::new(None), fresh: Cell::new(true) }
     }
@@ -98,17 +99,17 @@ impl<'r> Exchange<'r> {
         self.ranks
     }
 
-    /// Whether there is nobody to exchange anything with.
+    /// Whether there is only one rank.
     pub(crate) fn is_alone(&self) -> bool {
         self.ranks.size() == 1
     }
 
-    /// Whether this rank does what rank 0 says.
+    /// Whether this rank is a worker.
     pub(crate) fn is_follower(&self) -> bool {
         self.ranks.rank() > 0
     }
 
-    /// Where the others are expected next.
+    /// Returns the next synchronization point.
     pub(crate) fn next(&self) -> SyncPoint {
         self.next.get()
     }
@@ -118,10 +119,10 @@ impl<'r> Exchange<'r> {
         all.iter().enumerate().map(|(rank, bytes)| from_bytes(rank, bytes)).collect()
     }
 
-    /// How many ranks share the processors of this one, itself included: those of its machine that may run on the same ones.
+    /// Returns the number of ranks that share the processors of this one, itself included.
     ///
     /// # Errors
-    /// Those of the ranks' messages.
+    /// The errors of the ranks' messages.
     pub(crate) fn sharing(&self) -> Result<usize, Error> {
         if self.is_alone() {
             return Ok(1);
@@ -133,10 +134,10 @@ impl<'r> Exchange<'r> {
         Ok(self.gather(&own)?.into_iter().filter(|other| *other == own).count())
     }
 
-    /// Says whether a command can begin here, and with which facts.
+    /// Reports whether a command can begin on this rank, and with which facts.
     ///
     /// # Errors
-    /// [`Error::Rank`] for the first rank that cannot, or has other facts than rank 0; on the rank itself its own error.
+    /// [`Error::Rank`] for the first rank that cannot begin or has other facts than rank 0. On that rank its own error.
     pub(crate) fn begin(&self, own: Result<Facts, Error>) -> Result<(), Error> {
         if self.is_alone() {
             return own.map(drop);
@@ -155,7 +156,7 @@ impl<'r> Exchange<'r> {
         Ok(())
     }
 
-    /// Gives everybody the order of rank 0.
+    /// Sends the command of rank 0 to all ranks.
     pub(crate) fn command(&self, own: Option<&WorkerCommand>) -> Result<WorkerCommand, Error> {
         let bytes = own.map(to_bytes).transpose()?.unwrap_or_default();
         let all = self.ranks.all_gather(&bytes)?;
@@ -169,10 +170,11 @@ impl<'r> Exchange<'r> {
         Ok(order)
     }
 
-    /// Says how this rank is, and returns how all are: all want to go on, one wants to stop, or rank 0 says that the run is over.
+    /// Reports the status of this rank and returns that of all: `Over` if rank 0 reports it, else `Stop` if any rank does, else
+    /// `GoOn`.
     ///
     /// # Errors
-    /// [`Error::Rank`] for the first rank that failed. Then, and unless all go on, everybody waits for an order.
+    /// [`Error::Rank`] for the first rank that failed. Unless all ranks continue, the next synchronization point is a command.
     pub(crate) fn status(&self, own: &Status) -> Result<Status, Error> {
         self.next.set(SyncPoint::WorkerCommand);
         let all = self.gather(own)?;
@@ -185,18 +187,17 @@ impl<'r> Exchange<'r> {
         Ok(found)
     }
 
-    /// In the first generation of a run and in every so many, has a fingerprint compared with those of the others when outcomes are
-    /// exchanged.
+    /// Sets a fingerprint to compare at the next exchange of outcomes, in the first generation of a run and in every `each`th.
     pub(crate) fn compare_first_and_every(&self, generation: u32, each: u32, fingerprint: impl FnOnce() -> u64) {
         if self.fresh.take() || generation.is_multiple_of(each) {
             self.fingerprint.set(Some(fingerprint()));
         }
     }
 
-    /// Gives everybody the outcomes of all; none when one rank was told to stop.
+    /// Exchanges the outcomes of all ranks. The result is `None` if a rank was stopped.
     ///
     /// # Errors
-    /// [`Error::Rank`] for the first rank that failed or evaluated something else than rank 0; on the rank itself its own error.
+    /// [`Error::Rank`] for the first rank that failed or evaluated other individuals than rank 0. On that rank its own error.
     pub(crate) fn outcomes(
         &self,
         own: Result<Vec<Numbered>, Error>,
@@ -231,10 +232,10 @@ impl<'r> Exchange<'r> {
         Ok(Some(numbered))
     }
 
-    /// Says that this rank has no outcomes, and why.
+    /// Reports that this rank has no outcomes, with the reason.
     ///
     /// # Errors
-    /// Those of the ranks' messages.
+    /// The errors of the ranks' messages.
     pub(crate) fn no_outcomes(&self, status: &Status) -> Result<(), Error> {
         self.next.set(SyncPoint::Status);
         let report =
@@ -243,7 +244,7 @@ impl<'r> Exchange<'r> {
     }
 }
 
-/// The error of the first rank that has one.
+/// Returns the error of the first rank that has one.
 fn first_failed(all: &[Status]) -> Result<(), Error> {
     let failed = all.iter().enumerate().find_map(|(rank, status)| match status {
         Status::Failed(code, why) => Some(Error::Rank { rank, code: *code, why: why.clone() }),

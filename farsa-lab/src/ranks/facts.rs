@@ -1,12 +1,12 @@
-//! What must be the same on all ranks, compared by name.
+//! Values that must be equal on all ranks, compared by name.
 
 use crate::error::Error;
 use crate::store::identity::Identity;
 
-/// Names and values in an order of their own.
+/// Names and values, in a fixed order.
 pub(crate) type Facts = Vec<(String, String)>;
 
-/// What a run is: the program's version and all that its results depend on.
+/// Returns the facts of a run: the program's version and everything that the results depend on.
 pub(crate) fn of_run(identity: &Identity, strategy: &str, generations: u32) -> Facts {
     let Identity { experiment, condition, seed, values_version, experiment_version, settings } = identity;
     let fixed = [
@@ -23,7 +23,7 @@ pub(crate) fn of_run(identity: &Identity, strategy: &str, generations: u32) -> F
     fixed.chain(settings.iter().map(|(name, value)| (name.clone(), value.to_string()))).collect()
 }
 
-/// Refuses the first rank whose facts differ from those of rank 0, with what differs.
+/// Refuses the first rank whose facts differ from those of rank 0, with the difference.
 ///
 /// # Errors
 /// [`Error::Rank`] with exit code 2.

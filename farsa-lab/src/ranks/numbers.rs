@@ -1,44 +1,44 @@
-//! Which evaluations a rank does: all that are left, or the blocks that rank 0 gives it.
+//! The evaluations of a rank: all that are left, or the blocks assigned by rank 0.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The numbers of evaluations, each drawn once by one of the threads of all ranks.
+/// The numbers of evaluations. Each number is drawn once by one thread of all ranks.
 pub(crate) enum Numbers {
-    /// From 0 to a count: in one process, and on rank 0, where blocks of them are given away.
+    /// From 0 to a count, in a single process and on rank 0, which assigns blocks of them.
     Counted { count: usize, drawn: AtomicUsize },
-    /// Those of the blocks that rank 0 has given.
+    /// The numbers of assigned blocks.
     Assigned(AssignedBlocks),
 }
 
-/// Two blocks, and who waits for them.
+/// Two assigned blocks, with the threads that wait for them.
 #[derive(Default)]
 pub(crate) struct AssignedBlocks {
     blocks: Mutex<Blocks>,
-    /// A block has come, or none will.
+    /// Signals a new block, or that there is no other.
     filled: Condvar,
-    /// There is room for a block.
+    /// Signals space for a block.
     wanted: Condvar,
 }
 
-/// The block that is drawn from, and one in reserve: while an answer is awaited nobody has to wait for it.
+/// The current block and one in reserve, so that threads work while the next block is requested.
 #[derive(Default)]
 struct Blocks {
     left: Range<usize>,
     reserve: Range<usize>,
-    /// Whether no other will come.
+    /// Whether this is the last block.
     last: bool,
 }
 
 impl Numbers {
-    /// All numbers below a count.
+    /// Returns all numbers below a count.
     pub(crate) fn counted(count: usize) -> Self {
         Self::Counted { count, drawn: AtomicUsize::new(0) }
     }
 
-    /// The next number, waiting for it if it must; none when nothing is left.
+    /// Draws the next number and waits for it if necessary. The result is `None` when no number is left.
     pub(crate) fn draw(&self) -> Option<usize> {
         match self {
             Self::Counted { count, drawn } => {
@@ -48,8 +48,8 @@ impl Numbers {
         }
     }
 
-    /// A block of at most `wanted` numbers to give away, empty when nothing is left. Towards the end blocks become smaller, so
-    /// that `ranks` of them finish at about the same time.
+    /// Takes a block of at most `wanted` numbers to assign, empty when no number is left. Blocks become smaller towards the end,
+    /// so that `ranks` ranks finish at about the same time.
     pub(crate) fn block(&self, wanted: usize, ranks: usize) -> Range<usize> {
         let Self::Counted { count, drawn } = self else { return 0..0 };
         let left = count.saturating_sub(drawn.load(Ordering::Relaxed));
@@ -58,7 +58,7 @@ impl Numbers {
         first..(first + size).min(*count)
     }
 
-    /// Nobody draws another number.
+    /// Ends the drawing of numbers.
     pub(crate) fn close(&self) {
         match self {
             Self::Counted { count, drawn } => drawn.store(*count, Ordering::Relaxed),
@@ -74,7 +74,7 @@ impl Numbers {
 
 impl AssignedBlocks {
     fn lock(&self) -> MutexGuard<'_, Blocks> {
-        // Blocks are whole at any time.
+        // Blocks are consistent at any time, so a poisoned lock is valid.
         self.blocks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -95,7 +95,7 @@ impl AssignedBlocks {
         }
     }
 
-    /// Waits until there is room for a block, for a time at most, and says whether there is.
+    /// Waits for space for a block, up to a time limit, and returns whether there is space.
     pub(crate) fn wants(&self, longest: Duration) -> bool {
         let blocks = self.lock();
         if blocks.reserve.is_empty() {
@@ -105,7 +105,7 @@ impl AssignedBlocks {
         waited.0.reserve.is_empty()
     }
 
-    /// Takes a block for which there is room; an empty one is the last.
+    /// Adds a block. An empty block is the last.
     pub(crate) fn fill(&self, next: Range<usize>) {
         let mut blocks = self.lock();
         blocks.last |= next.is_empty();
@@ -163,7 +163,7 @@ mod tests {
         let given = AssignedBlocks::default();
         assert!(given.wants(Duration::ZERO));
         given.fill(4..7);
-        // Another one in reserve.
+        // One more block is in reserve.
         assert!(given.wants(Duration::ZERO));
         given.fill(8..9);
         assert!(!given.wants(Duration::ZERO));

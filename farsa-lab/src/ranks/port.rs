@@ -1,39 +1,39 @@
-//! What is asked of a library that passes messages, and one process.
+//! The interface to a message-passing library, and its implementation for one process.
 
 use crate::error::Error;
 
 /// Processes that run one command together, each with a number.
 ///
 /// [`all_gather`](Self::all_gather) and [`split`](Self::split) are collective: every rank calls them in the same order. Two small
-/// messages from one rank to another arrive in their order, and none is under way when a collective call begins. All calls come
-/// from one thread.
+/// messages between the same ranks arrive in order, and none is in transit when a collective call begins. All calls come from one
+/// thread.
 pub trait Ranks {
-    /// The number of this process, from 0.
+    /// Returns the number of this process, from 0.
     fn rank(&self) -> usize;
 
-    /// How many processes there are, at least one.
+    /// Returns the number of processes, at least one.
     fn size(&self) -> usize;
 
-    /// Gives every rank the bytes of all, in the order of their numbers. It waits for the slowest rank without keeping a
-    /// processor busy.
+    /// Sends the bytes of every rank to all ranks, in the order of their numbers. The call waits for the slowest rank without
+    /// occupying a processor.
     ///
     /// # Errors
-    /// [`Error::Other`] when a rank is lost, unless that ends this process as well.
+    /// [`Error::Other`] when a rank is lost, unless this process ends as well.
     fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, Error>;
 
-    /// Sends a small message to another rank, without waiting until it is received.
+    /// Sends a small message to another rank and returns at once.
     ///
     /// # Errors
     /// As [`all_gather`](Self::all_gather).
     fn send(&self, to: usize, message: [u64; 2]) -> Result<(), Error>;
 
-    /// The next small message and who sent it, if one has come.
+    /// Returns the next small message with its sender, if one has arrived.
     ///
     /// # Errors
     /// As [`all_gather`](Self::all_gather).
     fn receive(&self) -> Result<Option<(usize, [u64; 2])>, Error>;
 
-    /// The ranks that name the same group as this one, numbered from 0 in the order that they have here.
+    /// Returns the ranks with the same group number, numbered from 0 in their order.
     ///
     /// # Errors
     /// As [`all_gather`](Self::all_gather).

@@ -8,16 +8,16 @@ use std::time::Duration;
 use crate::error::Error;
 use crate::ranks::port::Ranks;
 
-/// Longer than any test waits: who is not answered by then never would be.
+/// Longer than any test waits.
 const LOST: Duration = Duration::from_secs(60);
 
 type Message = (usize, [u64; 2]);
 
 #[derive(Default)]
 struct State {
-    /// What ranks have said in the collective call that is under way, and how many.
+    /// The messages of the current collective call, by rank.
     said: BTreeMap<usize, Vec<u8>>,
-    /// The results of the latest, and how many collective calls there were.
+    /// The results of the last collective call, and the number of calls.
     heard: Arc<Vec<Vec<u8>>>,
     calls: usize,
     messages: Vec<VecDeque<Message>>,
@@ -25,7 +25,7 @@ struct State {
     lost: bool,
 }
 
-/// What the ranks of a test share.
+/// The state shared by the ranks of a test.
 struct Hub {
     size: usize,
     state: Mutex<State>,
@@ -38,7 +38,7 @@ pub(crate) struct ThreadRank {
     rank: usize,
 }
 
-/// Runs `work` on so many ranks and returns what each returns.
+/// Runs `work` on the given number of ranks and returns all results.
 pub(crate) fn on_ranks<T: Send>(size: usize, work: impl Fn(&dyn Ranks) -> T + Sync) -> Vec<T> {
     let hub = Hub::new(size);
     thread::scope(|scope| {

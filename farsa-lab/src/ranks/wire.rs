@@ -1,4 +1,4 @@
-//! The bytes of what ranks tell each other.
+//! The bytes of messages between ranks.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -10,18 +10,18 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::experiment::outcome::{Failure, Note, Outcome};
 
-/// What is written for others.
+/// Encodes a message.
 pub(crate) fn to_bytes(content: &impl Serialize) -> Result<Vec<u8>, Error> {
     postcard::to_stdvec(content).map_err(|error| Error::Other(format!("a message between ranks: {error}")))
 }
 
-/// What another rank wrote.
+/// Decodes a message of another rank.
 pub(crate) fn from_bytes<T: DeserializeOwned>(rank: usize, bytes: &[u8]) -> Result<T, Error> {
     let why = |error| Error::Rank { rank, code: 1, why: format!("said what this program cannot read: {error}") };
     postcard::from_bytes(bytes).map_err(why)
 }
 
-/// The outcomes of a rank, each with its number; names of notes stand once.
+/// The outcomes of a rank with their numbers. Each name of a note is stored once.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Outcomes {
     names: Vec<String>,
@@ -34,7 +34,7 @@ struct WireOutcome {
     steps: u32,
     success: bool,
     notes: Vec<(u16, WireNote)>,
-    /// The state of what was observed.
+    /// The state of the observation statistics.
     observed: Option<Vec<u8>>,
     failure: Option<WireFailure>,
 }
@@ -52,7 +52,7 @@ enum WireFailure {
 }
 
 impl Outcomes {
-    /// Outcomes as they are sent.
+    /// Encodes outcomes.
     pub(crate) fn from_numbered(numbered: &[(usize, Option<Outcome>)]) -> Self {
         let mut names: Vec<&'static str> = Vec::new();
         let mut place = |name: &'static str| {
@@ -77,7 +77,7 @@ impl Outcomes {
         Self { names: names.into_iter().map(str::to_owned).collect(), all }
     }
 
-    /// The outcomes, bit for bit; none if a note has a name that was not sent, or observations are none.
+    /// Decodes the outcomes, bit for bit. The result is `None` if a note has an unknown name, or if observations are invalid.
     pub(crate) fn into_numbered(self) -> Option<Vec<(usize, Option<Outcome>)>> {
         let names: Vec<&'static str> = self.names.iter().map(|name| lasting(name)).collect();
         let outcome = |wired: WireOutcome| {
@@ -118,7 +118,7 @@ fn wired_note(note: &Note) -> WireNote {
     }
 }
 
-/// A name that lasts as long as the process: an experiment has a few names of notes, and each is kept once.
+/// Returns a name with a static lifetime. An experiment has few names of notes, and each is stored once.
 fn lasting(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -156,7 +156,7 @@ mod tests {
         ];
         let bytes = to_bytes(&Outcomes::from_numbered(&all)).unwrap();
         let again = from_bytes::<Outcomes>(1, &bytes).unwrap().into_numbered().unwrap();
-        // NaN is no number that equals itself: its bits are compared.
+        // NaN does not equal itself, so the bits are compared.
         assert_eq!(format!("{again:?}"), format!("{all:?}"));
         let bits = |all: &[(usize, Option<Outcome>)]| -> Vec<u64> {
             all.iter().flat_map(|(_, outcome)| outcome.iter().flat_map(|o| &o.terms)).map(|x| x.to_bits()).collect()

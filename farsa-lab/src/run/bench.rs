@@ -1,4 +1,4 @@
-//! `farsa bench`: how fast trials run here, and how long a whole study would take.
+//! `farsa bench`: measures trials per second and estimates the duration of a study.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -22,25 +22,25 @@ use crate::strategy::opponents::{Hall, Meeting};
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
-/// Cores of the larger machine that is spoken of.
+/// Cores of the larger machine in the estimate.
 const MANY: usize = 64;
 
-/// The genomes that are evaluated.
+/// The evaluated genomes.
 pub(crate) struct Sample {
     /// The parameters of each individual.
     parameters: Vec<Vec<f32>>,
-    /// Those of their opponents, in the order of the evaluations.
+    /// The parameters of their opponents, in the order of the evaluations.
     opponents: Vec<Vec<f32>>,
     populations: usize,
-    /// Seed and generation that their trials are drawn from; later rounds count on from it.
+    /// Seed and generation of their trials. Later rounds increase the generation.
     seed: u64,
     generation: u32,
-    /// The run they are from, if they are not random.
+    /// The run of the genomes, if they are not random.
     run: Option<String>,
 }
 
 impl Sample {
-    /// The first generation of a run of this plan.
+    /// Takes the first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
         let strategy = plan.strategy()?;
         let populations = strategy.populations();
@@ -48,9 +48,9 @@ impl Sample {
         Self::new(plan, parameters, populations, &Hall::default(), 0, 0)
     }
 
-    /// The last generation that a run has finished, or its first one.
+    /// Takes the last finished generation of a run, or its first.
     ///
-    /// A run of other values serves as well: its genomes are evaluated, not replayed.
+    /// The values of the run may be those of another version, because its genomes are evaluated and not replayed.
     pub(crate) fn from_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         let (_, history, path) = history(plan, directory)?;
         let finished = history.finished();
@@ -74,7 +74,7 @@ impl Sample {
         Ok(Self { run, ..sample })
     }
 
-    /// Several populations are evaluated against the champions that there are, and against each other.
+    /// Several populations are evaluated against the available champions and against each other.
     fn new(
         plan: &Plan<'_>,
         parameters: Option<Vec<Vec<f32>>>,
@@ -94,17 +94,17 @@ impl Sample {
     }
 }
 
-/// What was measured, and what follows from it.
+/// The measurement and the estimate.
 #[derive(Debug, Serialize)]
 pub(crate) struct Bench {
     experiment: String,
     condition: String,
-    /// The run that the genomes are from; random ones if there is none.
+    /// The run of the genomes, `None` for random ones.
     run: Option<String>,
     /// The generation of the genomes.
     generation: u32,
     genomes: usize,
-    /// Generations that were finished.
+    /// Finished generations.
     rounds: u32,
     trials: u64,
     steps: u64,
@@ -114,41 +114,41 @@ pub(crate) struct Bench {
     lanes: LanesInfo,
     machine: Machine,
     cores: usize,
-    /// The part of their time that the threads had a core and something to do, where the system tells.
+    /// The share of time in which the threads had a core and work, where the system reports it.
     busy: Option<f64>,
     steps_per_second: f64,
-    /// By the cores that the threads can have had.
+    /// The rate for each core that the threads can have had.
     steps_per_second_and_core: f64,
     trials_per_second_and_core: f64,
     study: Study,
-    /// With as many cores as the measurement had.
+    /// The estimate with as many cores as in the measurement.
     generations_per_hour: f64,
     predictions: Vec<Prediction>,
 }
 
-/// What a study consists of.
+/// The size of a study.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Study {
     replications: u64,
     generations: u64,
     population: u64,
     trials: u64,
-    /// The most that a trial has, or what trials took here if the experiment does not say.
+    /// The largest number of steps of a trial, or the measured mean if the experiment has none.
     steps: f64,
     control_steps: f64,
 }
 
-/// How long the study would take.
+/// The estimated duration of the study.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Prediction {
     cores: usize,
     seconds: f64,
 }
 
-/// Evaluates whole generations, as a run does, until some seconds are over; a first one that takes longer is cut short.
+/// Evaluates complete generations, as a run does, for some seconds. A first generation that takes longer is cut.
 ///
 /// # Errors
-/// [`Error::Panicked`], and [`Error::Other`] if nothing was evaluated.
+/// [`Error::Panicked`], and [`Error::Other`] if no trial was evaluated.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
     let Sample { parameters, seed, generation, run, .. } = sample;
     let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
@@ -214,7 +214,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
 }
 
 impl Study {
-    /// The study of a plan; `mean` is the mean number of steps of a trial.
+    /// Returns the study of a plan. `mean` is the mean number of steps of a trial.
     fn new(plan: &Plan<'_>, pool: &Pool, population: usize, mean: f64) -> Result<Self, Error> {
         let most = pool.evaluator().description().steps;
         let study = Self {
@@ -235,7 +235,7 @@ impl Study {
 }
 
 impl Bench {
-    /// The same as a table for reading.
+    /// Formats the measurement as a table.
     pub(crate) fn text(&self) -> String {
         let Self { experiment, condition, genomes, generation, rounds, trials, steps, seconds, threads, .. } = self;
         let mut text = String::new();
@@ -295,7 +295,7 @@ impl Bench {
     }
 }
 
-/// A positive number to three figures or the whole part of it.
+/// Formats a positive number to three figures, or its integer part.
 fn significant(x: f64) -> String {
     match x {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -305,22 +305,22 @@ fn significant(x: f64) -> String {
     }
 }
 
-/// A time \[s\] in the unit that suits it.
+/// Formats a time \[s\] in a suitable unit.
 fn readable(seconds: f64) -> String {
     let units = [("days", 86400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0)];
     let (unit, size) = units.into_iter().find(|(_, size)| seconds >= 2.0 * size).unwrap_or(units[3]);
     format!("{} {unit}", significant(seconds / size))
 }
 
-/// Processor time that the process has used so far \[s\], threads that have ended included, where Linux tells.
+/// Returns the processor time of the process \[s\], with ended threads, on Linux.
 fn processor_seconds() -> Option<f64> {
-    // The kernel's interface counts in hundredths of a second whatever its own clock does.
+    // The kernel's interface counts in hundredths of a second.
     ticks(&fs::read_to_string("/proc/self/stat").ok()?).map(|ticks| ticks as f64 / 100.0)
 }
 
-/// Ticks spent in the program and in the system for it; fields 14 and 15 of what Linux tells of a process.
+/// Ticks in user and system mode, fields 14 and 15 of Linux's process statistics.
 fn ticks(stat: &str) -> Option<u64> {
-    // The program's name, the second field, may hold anything but is in parentheses.
+    // The program's name, the second field, is in parentheses and may contain anything.
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);
     Some(fields.next()?.parse::<u64>().ok()? + fields.next()?.parse::<u64>().ok()?)
 }
@@ -338,7 +338,7 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
-    /// Trials of 7 steps of at most 10; those of individual 1 break down in their first trial.
+    /// Trials of 7 steps of at most 10. Those of individual 1 fail in their first trial.
     struct Toy {
         most: usize,
     }
@@ -393,12 +393,12 @@ mod tests {
     #[test]
     fn what_is_counted_is_what_was_lived() {
         for threads in [1, 3] {
-            // On a machine with other work a round may take longer than expected.
+            // On a busy machine a round may take longer than expected.
             let patience = [0.05, 1.0, 60.0].map(|seconds| move || benched(&Toy { most: 10 }, threads, seconds));
             let found = patience.iter().map(|bench| bench()).find(|found| found.rounds > 0).unwrap();
             let rounds = u64::from(found.rounds);
             assert!(found.seconds >= 0.05, "{found:?}");
-            // Another thread may have begun the other trials of the one that fails.
+            // Another thread may have begun the other trials of the failed individual.
             assert!((58 * rounds..=60 * rounds).contains(&found.trials), "{found:?}");
             assert_eq!(found.steps, 7 * 57 * rounds);
             let had = threads.min(found.cores) as f64;
@@ -419,7 +419,7 @@ mod tests {
     fn a_first_generation_that_takes_too_long_is_cut_short() {
         let found = benched(&Toy { most: 0 }, 1, 0.001);
         assert!(found.rounds == 0 && (1..58).contains(&found.trials), "{found:?}");
-        // Without a word of the experiment, trials are as long as they were here.
+        // Without a limit of the experiment, trials are as long as measured.
         assert_eq!(found.study.steps, found.steps as f64 / found.trials as f64);
     }
 

@@ -14,44 +14,44 @@ use crate::strategy::settings::STRATEGY;
 
 /// Bytes of the largest configuration. It may contain the definition of an experiment with embedded files.
 pub(crate) const MAX_BYTES: u64 = 4_000_000;
-/// More than any experiment has settings: among as many keys one is unknown.
+/// A number of keys above that of the settings of any experiment.
 const MAX_KEYS: usize = 10_000;
-/// The most values of a list that a [`Found`] gives.
+/// The largest number of values of a list that a [`FileKey`] returns.
 const MAX_LISTED: usize = 10_000;
-/// The keys that are no settings.
+/// The keys that are not settings.
 const RESERVED: [&str; 4] = ["experiment", "definition", "condition", "seed"];
 
-/// A value and where in a file it stands.
+/// A value with its place in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry<T> {
     pub(crate) value: T,
     pub(crate) place: String,
 }
 
-/// What a configuration file says, before an experiment has seen it.
+/// The content of a configuration file, before it is applied to an experiment.
 #[derive(Debug, Clone)]
 pub(crate) struct ConfigFile {
     pub(crate) name: String,
     pub(crate) experiment: Option<Entry<String>>,
-    /// The text that describes the experiment, where a file does.
+    /// The text that describes the experiment, if it comes from a file.
     pub(crate) definition: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
-    /// `name` in the section `strategy`.
+    /// The value of `name` in the section `strategy`.
     pub(crate) strategy: Option<Entry<String>>,
     pub(crate) seed: Option<Entry<u64>>,
-    /// Keys and values in their order; an empty section is a key without a value.
+    /// Keys and values in their order. An empty section is a key without a value.
     pub(crate) entries: Vec<(String, Entry<Option<Value>>)>,
-    /// The place of the first key beyond those that are taken.
+    /// The place of the first key above the limit.
     pub(crate) beyond: Option<String>,
 }
 
 impl ConfigFile {
-    /// Reads a file that the user names.
+    /// Reads a file named by the user.
     ///
     /// # Errors
     /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        // What is wrong with it is wrong with what was asked for.
+        // A damaged file named by the user is a usage error.
         let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
             error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
             other => other,
@@ -67,19 +67,19 @@ impl ConfigFile {
         Self::parse(&path.display().to_string(), &bounded::read_regular_text(path, MAX_BYTES)?)
     }
 
-    /// Reads a text; errors name it.
+    /// Parses a text, named `name` in errors.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
         Self::parse_beside(name, text, &mut |_| Ok(false))
     }
 
-    /// Reads a text of which some keys are no configuration: those for which `take` answers yes.
+    /// Parses a text with some keys that are not a configuration: those for which `take` returns true.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read) and of `take`.
+    /// The errors of [`read`](Self::read) and of `take`.
     pub(crate) fn parse_beside(
         name: &str,
         text: &str,
-        take: &mut dyn FnMut(&Found<'_>) -> Result<bool, Error>,
+        take: &mut dyn FnMut(&FileKey<'_>) -> Result<bool, Error>,
     ) -> Result<Self, Error> {
         let lines = Lines::new(text);
         let place = |offset: usize| format!("{} line {}", OneLine(name), lines.line(offset));
@@ -87,7 +87,7 @@ impl ConfigFile {
             let span = error.span();
             let offset = span.as_ref().map_or_else(|| deepest(text), |span| Some(span.start));
             let at = offset.map_or_else(|| OneLine(name).to_string(), place);
-            // It does not say of which key.
+            // The message does not name the key.
             let about_key = ["duplicate key", "cannot extend"].iter().any(|start| error.message().starts_with(start));
             let key = span.and_then(|span| text.get(span)).filter(|key| about_key && !key.is_empty());
             let key = key.map_or_else(String::new, |key| format!(" {}", Quoted(key)));
@@ -95,7 +95,7 @@ impl ConfigFile {
         })?;
         let mut keys = Keys::default();
         keys.collect(table.get_ref(), None);
-        // The table has them in the order of the alphabet.
+        // The table is in alphabetical order.
         keys.found.sort_unstable_by_key(|key| key.offset);
         let mut seen = BTreeSet::new();
         let mut file = Self {
@@ -115,7 +115,7 @@ impl ConfigFile {
                 continue;
             }
             let (key, at) = (keys.path(found), place(found.offset));
-            if take(&Found { key: &key, place: &at, value: found.value, places: &place })? {
+            if take(&FileKey { key: &key, place: &at, value: found.value, places: &place })? {
                 continue;
             }
             let Some(value) = found.value else {
@@ -132,10 +132,10 @@ impl ConfigFile {
         Ok(file)
     }
 
-    /// Adds a value of a key that has none yet.
+    /// Adds a value of a new key.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a name or seed of another kind.
+    /// [`Error::Setting`] for a name or seed of another type.
     pub(crate) fn put(&mut self, key: &str, value: Value, place: &str) -> Result<(), Error> {
         let wrong = |why: &str| Error::Setting { place: place.into(), key: key.into(), why: why.into() };
         let place = place.to_owned();
@@ -155,26 +155,26 @@ impl ConfigFile {
     }
 }
 
-/// A key as it stands in a file, for who knows more of it than a configuration does.
-pub(crate) struct Found<'t> {
-    /// With the names of the tables that it is in.
+/// A key of a file, for readers of more keys than those of a configuration.
+pub(crate) struct FileKey<'t> {
+    /// The key with the names of its tables.
     pub(crate) key: &'t str,
     pub(crate) place: &'t str,
-    /// None for an empty table.
+    /// `None` for an empty table.
     pub(crate) value: Option<&'t Spanned<DeValue<'t>>>,
-    /// The place of a byte of the file.
+    /// Returns the place of a byte of the file.
     places: &'t dyn Fn(usize) -> String,
 }
 
-impl Found<'_> {
+impl FileKey<'_> {
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.value.map(Spanned::get_ref), Some(DeValue::Array(_)))
     }
 
-    /// The values of a list, each with its place.
+    /// Returns the values of a list with their places.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what is no list, and for what is in it and can be no setting's value.
+    /// [`Error::Setting`] for a value that is not a list, or for an element that cannot be the value of a setting.
     pub(crate) fn list(&self) -> Result<Vec<Entry<Value>>, Error> {
         let wrong = |place: String, why: &str| Error::Setting { place, key: self.key.into(), why: why.into() };
         let Some(DeValue::Array(items)) = self.value.map(Spanned::get_ref) else {
@@ -190,19 +190,19 @@ impl Found<'_> {
         values.collect()
     }
 
-    /// The value alone.
+    /// Returns the value.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what can be no setting's value.
+    /// [`Error::Setting`] for a value that no setting can have.
     pub(crate) fn value(&self) -> Result<Value, Error> {
         let value = self.value.map_or(Err("is an empty table"), plain);
         value.map_err(|why| Error::Setting { place: self.place.into(), key: self.key.into(), why: why.into() })
     }
 }
 
-/// Where the line begins that has a key of too many parts, of which toml does not say where it stands.
+/// Returns the start of the line with a key of too many parts. The error of toml has no position for it.
 fn deepest(text: &str) -> Option<usize> {
-    // As many parts as toml refuses.
+    // The limit of toml.
     let many = |line: &str| line.matches('.').count() >= 79;
     let refused = |line: &str| DeTable::parse_recoverable(line).1.iter().any(|error| error.span().is_none());
     let mut start = 0;
@@ -213,7 +213,7 @@ fn deepest(text: &str) -> Option<usize> {
     })
 }
 
-/// Where the lines of a text begin.
+/// The starts of the lines of a text.
 struct Lines(Vec<usize>);
 
 impl Lines {
@@ -221,7 +221,7 @@ impl Lines {
         Self(std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect())
     }
 
-    /// The line of a byte, from 1.
+    /// Returns the line of a byte, from 1.
     fn line(&self, offset: usize) -> usize {
         self.0.partition_point(|&start| start <= offset)
     }
@@ -230,16 +230,16 @@ impl Lines {
 /// A key with its value, or an empty table.
 struct Key<'t> {
     offset: usize,
-    /// The table that it is in, by its number; none for that of the whole file.
+    /// The number of its table, `None` for the root table.
     table: Option<usize>,
     name: &'t str,
     value: Option<&'t Spanned<DeValue<'t>>>,
 }
 
-/// The keys of a file, before their names are joined: a long name of a table would stand in each of its keys.
+/// The keys of a file. Their names are joined late, because a long name of a table would be repeated in each key.
 #[derive(Default)]
 struct Keys<'t> {
-    /// The name of each table and the table that it is in.
+    /// The name and the parent of each table.
     tables: Vec<(Option<usize>, &'t str)>,
     found: Vec<Key<'t>>,
 }
@@ -261,7 +261,7 @@ impl<'t> Keys<'t> {
         }
     }
 
-    /// The full key; of one that is longer than any setting's, the beginning.
+    /// Returns the full key, shortened if it is longer than that of any setting.
     fn path(&self, key: &Key<'t>) -> String {
         let (mut names, mut table) = (vec![key.name], key.table);
         while let Some(&(above, name)) = table.and_then(|number| self.tables.get(number)) {
@@ -279,7 +279,7 @@ impl<'t> Keys<'t> {
     }
 }
 
-/// A TOML value as a setting's value.
+/// Converts a TOML value into the value of a setting.
 fn plain(value: &Spanned<DeValue<'_>>) -> Result<Value, &'static str> {
     match value.get_ref() {
         DeValue::Boolean(flag) => Ok(Value::Flag(*flag)),
@@ -300,7 +300,7 @@ fn plain(value: &Spanned<DeValue<'_>>) -> Result<Value, &'static str> {
     }
 }
 
-/// Splits `key=value` as `--set` has it; what is no TOML value is a word.
+/// Splits `key=value` of `--set`. A value that is not TOML is a word.
 pub(crate) fn assignment(text: &str) -> Result<(String, Value), String> {
     let (key, value) = text.split_once('=').ok_or("not of the form key=value")?;
     let (key, value) = (key.trim(), value.trim());
@@ -371,14 +371,14 @@ mod tests {
         assert_eq!(keys, expected.into_iter().zip(places.iter().map(String::as_str)).collect::<Vec<_>>());
         assert_eq!(file.entries.iter().filter(|(_, entry)| entry.value.is_none()).count(), 2);
         assert_eq!(file.seed.map(|seed| seed.value), Some(3));
-        // Not the seed of the run.
+        // This is not the seed of the run.
         assert!(ConfigFile::parse("my.toml", "\"\".seed = 3").unwrap().seed.is_none());
     }
 
     #[test]
     fn names_and_keys_do_not_multiply() {
         use std::fmt::Write as _;
-        // Each name of the table in each of its keys would be 2e10 bytes.
+        // Repeating the name of the table in each key would take 2e10 bytes.
         let mut text = format!("[{}]\n", "a".repeat(1_000_000));
         for number in 0..2 * MAX_KEYS {
             writeln!(text, "k{number} = {number}").unwrap();

@@ -30,7 +30,7 @@ pub(crate) fn run_command(
         directory: directory.path().display().to_string(),
         config: plan.to_toml()?,
         checkpoint: checksummed::to_bytes(&directory.checkpoint(), checkpoint)?,
-        record: RunRecord::content(directory, checkpoint)?,
+        record: RunRecord::content(plan, directory, checkpoint)?,
     }))
 }
 

@@ -1,4 +1,4 @@
-//! The experiments and strategies that a command knows by name.
+//! The experiments and strategies that a command finds by name.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::known;
 
-/// Experiments and strategies by name: what the command is over.
+/// Experiments and strategies by name, with the command over them.
 ///
 /// ```no_run
 /// use std::process::ExitCode;
@@ -29,13 +29,13 @@ pub struct Laboratory<'e> {
     module: Option<(&'static [u8], &'static [&'static str])>,
 }
 
-/// Makes an experiment of a text, which is the content of a file of a name; it may name these strategies.
+/// Builds an experiment from the text of a file with the given name. The text may name the given strategies.
 ///
-/// Files that the text names are read from `folder`. A text that a run has kept comes without one, wherever the command is
-/// called: it has in it what it needs, and reads no file.
+/// Files named by the text are read from `folder`. The text stored in a run has no folder. It contains everything it needs and
+/// reads no file.
 ///
 /// # Errors
-/// What is wrong with the text, with file, line and key, and a file that it names and cannot have.
+/// An error in the text, with file, line and key, or in a file that it names.
 pub type ReadExperiment = fn(
     name: &str,
     text: &str,
@@ -43,48 +43,48 @@ pub type ReadExperiment = fn(
     strategies: &[&'static dyn StrategyDefinition],
 ) -> Result<Box<dyn Experiment>, Error>;
 
-/// Makes the text of a file `name` of a text in another format, which is the content of `file`.
+/// Converts the content of `file`, in another format, into the text of an experiment file `name`.
 ///
 /// # Errors
-/// What is wrong with the text, with file, line and key.
+/// An error in the text, with file, line and key.
 pub type ImportExperiment = fn(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error>;
 
-/// How experiments are described by files.
+/// The functions that read experiments from files.
 #[derive(Clone, Copy)]
 pub struct ExperimentFiles {
-    /// Makes an experiment of a text.
+    /// Builds an experiment from a text.
     pub read: ReadExperiment,
     /// The schema of the files, as JSON.
     pub schema: fn() -> String,
-    /// What a new file may begin as, the default one first.
+    /// The templates for a new file, the default first.
     pub templates: &'static [Template],
     /// Converts a configuration of the 2013 program into such a file; `None` in programs without `farsa import FILE.ini`.
     pub import: Option<ImportExperiment>,
 }
 
-/// What a new file may begin as.
+/// A template for a new experiment file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Template {
-    /// Its name.
+    /// The name of the template.
     pub name: &'static str,
-    /// What it describes, in one line.
+    /// The experiment in one line.
     pub summary: &'static str,
-    /// The file.
+    /// The text of the file.
     pub text: &'static str,
 }
 
-/// What names of files end with that describe an experiment.
+/// The extension of files that describe experiments.
 pub(crate) const FILE: &str = ".toml";
-/// The most bytes of such a file.
+/// Bytes of the largest experiment file.
 pub(crate) const MAX_BYTES: u64 = 1_000_000;
 
 impl<'e> Laboratory<'e> {
-    /// These experiments, in the order in which they are listed, with the strategies of this crate.
+    /// Creates a laboratory of experiments, in the order in which they are listed, with the strategies of this crate.
     pub fn new(experiments: &[&'e dyn Experiment]) -> Self {
         Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None, module: None }
     }
 
-    /// Adds a strategy for `--strategy NAME`; one of the same name goes.
+    /// Adds a strategy for `--strategy NAME`. It replaces a strategy with the same name.
     #[must_use]
     pub fn with_strategy(mut self, strategy: &'static dyn StrategyDefinition) -> Self {
         self.strategies.retain(|other| other.name() != strategy.name());
@@ -92,53 +92,53 @@ impl<'e> Laboratory<'e> {
         self
     }
 
-    /// Takes files for experiments, too: `farsa run NAME.toml`.
+    /// Adds experiments from files: `farsa run NAME.toml`.
     #[must_use]
     pub fn with_files(self, files: ExperimentFiles) -> Self {
         Self { files: Some(files), ..self }
     }
 
-    /// Makes pages that run agents by themselves, too: `farsa live`; `module` is these experiments as WebAssembly, compressed by
-    /// gzip or xz, and `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it is built without.
+    /// Adds interactive pages: `farsa live`. `module` is a program with these experiments as WebAssembly, compressed by gzip or
+    /// xz. `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it does not include.
     #[must_use]
     pub fn with_live_module(self, module: &'static [u8], lacking: &'static [&'static str]) -> Self {
         Self { module: Some((module, lacking)), ..self }
     }
 
-    /// The module of live pages and the worlds that it lacks, if there is one.
+    /// Returns the module of live pages and the worlds that it lacks.
     pub(crate) fn live_module(&self) -> Option<(&'static [u8], &'static [&'static str])> {
         self.module
     }
 
-    /// The experiments.
+    /// Returns the experiments.
     pub fn experiments(&self) -> &[&'e dyn Experiment] {
         &self.experiments
     }
 
-    /// The strategies.
+    /// Returns the strategies.
     pub fn strategies(&self) -> &[&'static dyn StrategyDefinition] {
         &self.strategies
     }
 
-    /// How experiments are described by files.
+    /// Returns the functions that read experiments from files.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a program that takes none.
+    /// [`Error::Usage`] for a program without them.
     pub(crate) fn files(&self) -> Result<&ExperimentFiles, Error> {
         self.files.as_ref().ok_or_else(|| Error::Usage("this program takes no files for experiments".into()))
     }
 
-    /// The experiment of a text that names files in a folder, or none.
+    /// Builds the experiment of a text, with the folder of the files that it names.
     ///
-    /// It lasts as long as the process, like those that are built in; a process reads few.
+    /// The experiment is leaked. A process reads few of them.
     fn described(&self, name: &str, text: &str, folder: Option<&Path>) -> Result<&'e dyn Experiment, Error> {
         Ok(Box::leak((self.files()?.read)(name, text, folder, &self.strategies)?))
     }
 
-    /// The experiment that a configuration names or describes.
+    /// Returns the experiment that a configuration names or describes.
     ///
     /// # Errors
-    /// [`Error::Usage`] where it does neither, and those of [`experiment`](Self::experiment).
+    /// [`Error::Usage`] for a configuration without an experiment, and the errors of [`experiment`](Self::experiment).
     pub(crate) fn of_configuration(&self, file: &ConfigFile) -> Result<&'e dyn Experiment, Error> {
         match (&file.experiment, &file.definition) {
             (Some(name), Some(text)) => self.described(&format!("{}{FILE}", name.value), &text.value, None),
@@ -147,10 +147,10 @@ impl<'e> Laboratory<'e> {
         }
     }
 
-    /// The experiment of a name, which stands at `place`, or of a file.
+    /// Returns the experiment with a name found at `place`, or of a file.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Io`] and what is wrong with a file.
+    /// [`Error::Unknown`] with the nearest name, [`Error::Io`], and the errors of a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if name.ends_with(FILE) {
             let path = Path::new(name);
@@ -165,7 +165,7 @@ impl<'e> Laboratory<'e> {
         found.ok_or_else(|| Error::unknown(place, "experiment", name, names))
     }
 
-    /// The strategy of a name, which stands at `place`.
+    /// Returns the strategy with a name found at `place`.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest name.
@@ -178,7 +178,7 @@ impl<'e> Laboratory<'e> {
 mod tests {
     use super::*;
 
-    /// Says what it was given, as an error.
+    /// Returns its arguments as an error.
     fn read(
         name: &str,
         text: &str,
@@ -188,7 +188,7 @@ mod tests {
         Err(Error::Other(format!("{name}, {text}, {folder:?}")))
     }
 
-    /// What a run has kept may come from anyone: it names no files of the folder where the command is called.
+    /// A run directory may be untrusted, so its text cannot name files of the current folder.
     #[test]
     fn only_files_of_the_user_have_a_folder() {
         let files = ExperimentFiles { read, schema: String::new, templates: &[], import: None };

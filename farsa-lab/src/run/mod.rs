@@ -6,8 +6,6 @@ pub(crate) mod begin;
 /// `farsa bench`: measures trials per second and estimates the duration of a study.
 #[cfg(feature = "command")]
 pub(crate) mod bench;
-/// The best individual of a run, for programs that analyze runs.
-mod best_of_run;
 /// Panics of an experiment's code, caught.
 pub(crate) mod catch_panic;
 /// The archive or front of a strategy, as a table and a picture.
@@ -44,7 +42,6 @@ pub(crate) mod progress;
 #[cfg(feature = "command")]
 pub(crate) mod queue;
 /// `record.bin`: the reported fitness of every generation.
-#[cfg(feature = "command")]
 pub(crate) mod record_file;
 /// The checksummed files of a run: checkpoint, champions and imported genotypes.
 pub(crate) mod records;
@@ -71,7 +68,6 @@ pub(crate) mod worker;
 /// The choice of world, where an experiment offers one.
 pub(crate) mod world_choice;
 
-pub use best_of_run::BestOfRun;
 pub use imported_file::{ImportedFile, LeftOut};
 pub use laboratory::{ExperimentFiles, ImportExperiment, Laboratory, ReadExperiment, Template};
 pub use world_choice::ENGINE;

@@ -1,4 +1,4 @@
-//! What is to be run: an experiment, a condition, a seed and all settings.
+//! The experiment, condition, seed and settings of a run.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,6 +11,7 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Paragraph, Settings, Value};
+use crate::limits::Limits;
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::laboratory::Laboratory;
 use crate::store::bounded;
@@ -20,10 +21,10 @@ use crate::strategy::history::Fresh;
 use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
-/// The largest seed of a run; bit 63 marks the trials of a test.
+/// The largest seed of a run. Bit 63 marks the trials of a test.
 pub(crate) const MAX_SEED: u64 = i64::MAX as u64;
 
-/// The most bytes that are read of a file that an experiment names.
+/// Bytes of the largest file that an experiment names.
 const MAX_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
@@ -31,21 +32,22 @@ const MAX_BYTES: u64 = 1_000_000_000;
 pub(crate) struct Plan<'e> {
     pub(crate) experiment: &'e dyn Experiment,
     pub(crate) condition: String,
-    /// The strategy that was asked for, where it is not the experiment's own.
+    /// The requested strategy, if it is not the default of the experiment.
     chosen: Option<&'static dyn StrategyDefinition>,
     pub(crate) seed: u64,
     pub(crate) settings: Settings,
-    /// The settings with another world, for trials outside that of the run; none of the identity.
+    /// The settings with another world, for trials outside the world of the run. They are not part of the identity.
     pub(crate) elsewhere: Option<Settings>,
+    pub(crate) limits: Limits,
 }
 
 impl<'e> Plan<'e> {
-    /// An experiment with its defaults under a condition, the first if none is named, and with its own strategy.
+    /// Plans an experiment with its defaults under a condition, by default the first, and with its default strategy.
     pub(crate) fn new(experiment: &'e dyn Experiment, condition: Option<&str>, place: &str) -> Result<Self, Error> {
         Self::with_strategy(experiment, condition, place, None)
     }
 
-    /// The same with another strategy, if one is named; of a condition that is unknown it is said where it stands, `place`.
+    /// Plans an experiment with a given strategy. `place` is where the condition was named, for errors.
     pub(crate) fn with_strategy(
         experiment: &'e dyn Experiment,
         condition: Option<&str>,
@@ -55,7 +57,7 @@ impl<'e> Plan<'e> {
         let conditions = experiment.conditions();
         let condition = match condition {
             None => conditions.first().copied().unwrap_or_default(),
-            // A run of an experiment without conditions writes none into its configuration.
+            // The configuration of a run without conditions has no condition.
             Some("") if conditions.is_empty() => "",
             Some(name) => conditions
                 .iter()
@@ -68,10 +70,18 @@ impl<'e> Plan<'e> {
             None => complete(table, own.settings()),
             Some(other) => chosen(table, other.name(), other.settings()),
         })?;
-        Ok(Self { experiment, condition: condition.into(), chosen: other, seed: 1, settings, elsewhere: None })
+        Ok(Self {
+            experiment,
+            condition: condition.into(),
+            chosen: other,
+            seed: 1,
+            settings,
+            elsewhere: None,
+            limits: Limits::default(),
+        })
     }
 
-    /// Takes the seed and the values of a configuration file; experiment and condition are the caller's business.
+    /// Applies the seed and the values of a configuration file. The caller handles experiment and condition.
     pub(crate) fn apply(&mut self, file: &ConfigFile) -> Result<(), Error> {
         if let Some(seed) = &file.seed {
             self.seed = seed.value;
@@ -88,7 +98,7 @@ impl<'e> Plan<'e> {
         }
     }
 
-    /// What a configuration file says, whole.
+    /// Plans the run of a complete configuration file.
     pub(crate) fn from_file(laboratory: &Laboratory<'e>, file: &ConfigFile) -> Result<Self, Error> {
         let experiment = laboratory.of_configuration(file)?;
         let place = file.condition.as_ref().map_or("", |entry| &entry.place);
@@ -100,20 +110,20 @@ impl<'e> Plan<'e> {
         Ok(plan)
     }
 
-    /// What the run searches with.
+    /// Returns the strategy of the run.
     pub(crate) fn definition(&self) -> &'static dyn StrategyDefinition {
         self.chosen.unwrap_or_else(|| self.experiment.strategy(&self.condition))
     }
 
-    /// The name of the strategy, where it is not the experiment's own.
+    /// Returns the name of the strategy, if it is not the default of the experiment.
     pub(crate) fn chosen_strategy(&self) -> Option<&'static str> {
         self.chosen.map(StrategyDefinition::name)
     }
 
-    /// Individuals of each population.
+    /// Returns the number of individuals of each population.
     ///
     /// # Errors
-    /// Those of [`strategy`](Self::strategy).
+    /// The errors of [`strategy`](Self::strategy).
     pub(crate) fn size(&self) -> Result<usize, Error> {
         match self.settings.count(POPULATION) {
             Ok(size) if size > 0 => Ok(size),
@@ -121,10 +131,10 @@ impl<'e> Plan<'e> {
         }
     }
 
-    /// Statistics of the channels that are observed, without an observation; none where observations are not normalised.
+    /// Returns empty statistics of the observed channels, or `None` where observations are not normalized.
     ///
     /// # Errors
-    /// [`Error::Setting`] for an experiment whose observations cannot be.
+    /// [`Error::Setting`] for an experiment whose observations cannot be normalized.
     pub(crate) fn no_observations(&self) -> Result<Option<ObservationStatistics>, Error> {
         if !self.definition().normalises_observations(&self.settings) {
             return Ok(None);
@@ -140,10 +150,10 @@ impl<'e> Plan<'e> {
         }
     }
 
-    /// The strategy at its first generation.
+    /// Starts the strategy at its first generation.
     ///
     /// # Errors
-    /// Those of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy of other populations or genes than the
+    /// The errors of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy with other populations or genes than the
     /// experiment's.
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
         self.no_observations()?;
@@ -193,25 +203,25 @@ impl<'e> Plan<'e> {
         Ok(strategy)
     }
 
-    /// How a fresh strategy is made.
+    /// Returns a function that starts the strategy.
     pub(crate) fn fresh(&self) -> Fresh<'_> {
         Box::new(|| self.strategy())
     }
 
-    /// The experiment made ready for one thread.
+    /// Prepares the experiment for one thread.
     pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
         self.experiment.prepare(&self.condition, &self.settings_of_trials()?)
     }
 
-    /// The settings that trials are evaluated with: those of the plan, or those with another world; a size of populations that is
-    /// left to the strategy is what that chooses, because an experiment of several populations counts by it.
+    /// Returns the settings of trials. A population size of 0 is replaced by the size that the strategy chooses, because an
+    /// experiment with several populations needs it.
     pub(crate) fn settings_of_trials(&self) -> Result<Settings, Error> {
         let chosen_by_strategy = self.settings.count(POPULATION).is_ok_and(|size| size == 0);
         let size = if chosen_by_strategy { self.size()? } else { 0 };
         self.settings_with(size)
     }
 
-    /// The same where a size that is left to the strategy is this one.
+    /// Returns the settings with `size` instead of a population size of 0.
     fn settings_with(&self, size: usize) -> Result<Settings, Error> {
         let mut settings = self.elsewhere.as_ref().unwrap_or(&self.settings).clone();
         if settings.count(POPULATION).is_ok_and(|size| size == 0) {
@@ -220,27 +230,27 @@ impl<'e> Plan<'e> {
         Ok(settings)
     }
 
-    /// How genes stand for the parameters that an evaluator of this plan wants.
+    /// Returns the genotype of the parameters of an evaluator.
     pub(crate) fn genotype(&self, evaluator: &dyn Evaluator) -> Genotype {
         Genotype::new(&evaluator.parameters(), self.experiment.gene_bits())
     }
 
-    /// Generations to evaluate.
+    /// Returns the number of generations.
     pub(crate) fn generations(&self) -> Result<u32, Error> {
         u32::try_from(self.settings.whole(GENERATIONS)?).map_err(|_| Error::setting(GENERATIONS, "is too large"))
     }
 
-    /// The name of the run's directory below `runs/`.
+    /// Returns the name of the run's directory below `runs/`.
     pub(crate) fn name(&self) -> String {
         let seed = self.seed.to_string();
         let parts = [self.experiment.name(), &self.condition, self.chosen_strategy().unwrap_or_default(), &seed];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
     }
 
-    /// All that the results depend on, the content of files included.
+    /// Returns everything that the results depend on, with the content of files.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and those of [`Experiment::files`].
+    /// [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and the errors of [`Experiment::files`].
     pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
         let mut settings: Vec<(String, Value)> = settings
@@ -263,20 +273,20 @@ impl<'e> Plan<'e> {
         })
     }
 
-    /// Whether a record, which was read from a file of `directory`, is one of the run that is planned here.
+    /// Checks that a record, read from a file of `directory`, belongs to the planned run.
     ///
     /// # Errors
-    /// [`Error::OtherConfiguration`], [`Error::OtherFile`], and those of [`identity`](Self::identity).
+    /// [`Error::OtherConfiguration`], [`Error::OtherFile`], and the errors of [`identity`](Self::identity).
     pub(crate) fn same_run(&self, record: &Identity, directory: &Path) -> Result<(), Error> {
         let mut asked = self.identity()?;
-        // A run from before its experiment had conditions is one of what has become the first of them.
+        // A run that is older than the conditions of its experiment has the first of them.
         if record.condition.is_empty() && self.experiment.conditions().first() == Some(&self.condition.as_str()) {
             asked.condition.clear();
         }
         record.same_run(&asked, directory)
     }
 
-    /// The complete configuration as TOML, with the documentation, unit and source of every value.
+    /// Returns the complete configuration as TOML, with the documentation, unit and source of every value.
     pub(crate) fn to_toml(&self) -> Result<String, Error> {
         let mut text =
             String::from("# The complete configuration of a run; `run --config` with this file repeats it.\n");
@@ -426,7 +436,7 @@ mod tests {
 
     #[test]
     fn many_unknown_keys_are_refused_at_the_first() {
-        // In the order of the alphabet the first would be k0. Lines counted from the top for each take minutes.
+        // In alphabetical order the first would be k0. Counting lines from the top for each key would take minutes.
         let keys: Vec<String> = (0..45_000).rev().map(|number| format!("k{number}=1\n")).collect();
         let file = ConfigFile::parse("my.toml", &format!("{}experiment=\"toy\"\n", keys.concat())).unwrap();
         let error = Plan::from_file(&Laboratory::new(&[&Toy]), &file).map(|_| ()).unwrap_err().to_string();
@@ -444,7 +454,7 @@ mod tests {
             error.to_string(),
             "the run in d has `world.step` = 0.01, not 0.02: another configuration is another run"
         );
-        // Before there were conditions, it was the first: the other one is not.
+        // A run that is older than the conditions has the first, not the second.
         let old = Identity { condition: String::new(), ..plan.identity().unwrap() };
         plan.same_run(&old, Path::new("d")).unwrap();
         let without = Plan::new(&Toy, Some("without"), "").unwrap();

@@ -1,4 +1,4 @@
-//! What a waiting user sees: a bar on a terminal, plain lines elsewhere.
+//! Progress on the standard error: a bar on a terminal, plain lines otherwise.
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::thread;
@@ -18,7 +18,7 @@ pub(crate) enum Progress {
 }
 
 impl Progress {
-    /// A bar from `done` to `all` individuals on a terminal, lines elsewhere, and nothing if `quiet`.
+    /// Creates a bar from `done` to `all` individuals on a terminal, lines otherwise, and nothing if `quiet`.
     pub(crate) fn new(done: u64, all: u64, quiet: bool) -> Self {
         if quiet {
             return Self::Quiet;
@@ -28,7 +28,7 @@ impl Progress {
         }
         let bar = ProgressBar::new(all).with_position(done);
         bar.reset_eta();
-        // The message comes last and is cut where a line ends. The template is a constant; the default would do as well.
+        // The message comes last and is cut at the end of the line. The template is a constant.
         if let Ok(style) = ProgressStyle::with_template("{bar:12} {percent:>3}% {rate}, {eta} left  {wide_msg}") {
             // Writing to the bar's own text cannot fail.
             let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
@@ -36,21 +36,21 @@ impl Progress {
             };
             bar.set_style(style.with_key("rate", rate));
         }
-        // A bar that ticks has a thread of its own, without which it moves only when something has happened.
+        // A bar that ticks needs its own thread. Without it the bar moves only after an event.
         if thread::Builder::new().spawn(|| {}).is_ok_and(|thread| thread.join().is_ok()) {
             bar.enable_steady_tick(Duration::from_millis(250));
         }
         Self::Bar(bar)
     }
 
-    /// One more individual is evaluated; called from any thread.
+    /// Counts an evaluated individual. Any thread may call it.
     pub(crate) fn advance(&self) {
         if let Self::Bar(bar) = self {
             bar.inc(1);
         }
     }
 
-    /// Something that is worth a line of its own.
+    /// Prints a note on its own line.
     pub(crate) fn note(&self, text: &str) {
         match self {
             Self::Quiet => {}
@@ -59,20 +59,20 @@ impl Progress {
         }
     }
 
-    /// A generation is finished; `all` is of everyone, or of each of several populations with its name.
+    /// Reports a finished generation. `all` has the statistics of all individuals, or of each population with its name.
     pub(crate) fn generation(&self, generation: u32, all: &[(&str, &Statistics)]) {
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => bar.set_message(format!("generation {generation}: {}", in_words(all, false))),
             Self::Lines => {
-                // A user who closed the error stream does not want to know.
+                // A closed error stream is no error.
                 let _ = writeln!(io::stderr(), "generation {generation}: {}", escaped(&in_words(all, true)));
             }
         }
     }
 }
 
-/// The best, the mean and, where there is room, the worst of each population, and how many failed.
+/// The best, the mean and, if it fits, the worst of each population, and the number of failures.
 fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
     let one = |(name, statistics): &(&str, &Statistics)| {
         let Statistics { best, mean, worst, failed, .. } = statistics;
@@ -86,7 +86,7 @@ fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
 }
 
 fn note(text: &str) {
-    // A user who closed the error stream does not want to know.
+    // A closed error stream is no error.
     let _ = writeln!(io::stderr(), "{}", escaped(text));
 }
 

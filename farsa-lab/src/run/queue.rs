@@ -1,4 +1,4 @@
-//! Runs that any number of processes work at: each takes the next one that nobody has.
+//! Runs shared by any number of processes. Each process takes the next unclaimed run.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -18,40 +18,40 @@ use crate::store::lock::Lock;
 /// One of the runs.
 pub(crate) struct Member<'e> {
     pub(crate) plan: Plan<'e>,
-    /// Its directory.
+    /// The directory of the run.
     pub(crate) path: PathBuf,
-    /// What it is called beside the others.
+    /// The name of the run in messages.
     pub(crate) name: String,
 }
 
-/// Runs in the order in which they are taken.
+/// Runs in their order.
 pub(crate) struct Queue<'q, 'e> {
     pub(crate) count: usize,
-    /// Makes the one of a number below `count`.
+    /// Returns the run of a number below `count`.
     pub(crate) member: &'q dyn Fn(usize) -> Result<Member<'e>, Error>,
     pub(crate) pool: &'q dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
-    /// What the user calls this program.
+    /// The name of this program.
     pub(crate) program: &'q str,
     pub(crate) quiet: bool,
 }
 
-/// What came of a run.
+/// The state of a run.
 #[derive(Debug)]
 pub(crate) enum State {
     Finished {
         summary: Summary,
-        /// Whether all was done before.
+        /// Whether all generations were finished before this process began.
         skipped: bool,
     },
-    /// Another process is at it.
+    /// Another process has claimed the run.
     Elsewhere(PathBuf),
 }
 
 impl Queue<'_, '_> {
-    /// Makes sure that every place has the run that belongs there, or none.
+    /// Checks that every directory has the expected run, or none.
     ///
     /// # Errors
-    /// Those of [`finished`] and of the member.
+    /// The errors of [`finished`] and of the member.
     pub(crate) fn check(&self) -> Result<(), Error> {
         (0..self.count).try_for_each(|number| {
             let Member { plan, path, .. } = (self.member)(number)?;
@@ -59,17 +59,17 @@ impl Queue<'_, '_> {
         })
     }
 
-    /// Begins, goes on with or skips each run, until all are finished or the others are at the rest; in their order.
+    /// Begins, continues or skips each run in order, until all are finished or claimed by other processes.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] after `stop` became true, and what [`evolve::continue_run`] says about the run that failed. The runs
-    /// before it are kept, those after it not begun.
+    /// [`Error::Interrupted`] after `stop` became true, and the errors of [`evolve::continue_run`]. The runs before the failed
+    /// one are saved, and those after it are not begun.
     pub(crate) fn work(&self, stop: &AtomicBool) -> Result<Vec<State>, Error> {
         let mut states: Vec<State> = Vec::new();
         for number in 0..self.count {
             states.push(self.turn(number, stop)?);
         }
-        // A process that was at one of them may have ended before its time.
+        // A process that had claimed a run may have been killed.
         loop {
             let mut changed = false;
             for (number, state) in states.iter_mut().enumerate().filter(|(_, state)| state.is_elsewhere()) {
@@ -82,7 +82,7 @@ impl Queue<'_, '_> {
         }
     }
 
-    /// One run: begun, gone on with, skipped or left to another process.
+    /// Begins, continues, skips or leaves one run.
     fn turn(&self, number: usize, stop: &AtomicBool) -> Result<State, Error> {
         let Member { plan, path, name } = (self.member)(number)?;
         let place = OneLine(path.display());
@@ -101,7 +101,7 @@ impl Queue<'_, '_> {
             self.tell(&format!("{name}: {place}: another process is at it"));
             return Ok(State::Elsewhere(path));
         };
-        // Asked again: another process may have finished it before it gave the lock back.
+        // Checked again, because another process may have finished the run before it released the lock.
         if let Some(summary) = finished(&plan, &path)? {
             return skip(summary);
         }
@@ -118,12 +118,12 @@ impl Queue<'_, '_> {
 
     fn tell(&self, line: &str) {
         if !self.quiet {
-            // A user who closed the error stream does not want to know.
+            // A closed error stream is no error.
             let _ = writeln!(io::stderr(), "{}", escaped(line));
         }
     }
 
-    /// Says how many runs are left to other processes.
+    /// Prints the number of runs claimed by other processes.
     pub(crate) fn tell_of_others(&self, states: &[State]) {
         match states.iter().filter(|state| state.is_elsewhere()).count() {
             0 => {}
@@ -142,7 +142,7 @@ impl State {
         matches!(self, Self::Elsewhere(_))
     }
 
-    /// The fitness of the champion of a run that is finished.
+    /// Returns the champion's fitness of a finished run.
     pub(crate) fn fitness(&self) -> Option<f64> {
         match self {
             Self::Finished { summary, .. } => summary.champion.as_ref().map(|champion| champion.fitness),
@@ -151,28 +151,28 @@ impl State {
     }
 }
 
-/// The directory of a run, and whether this process has made it.
+/// Opens the directory of a run, and returns whether this process has created it.
 fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
     if let Ok(directory) = Directory::open(path) {
         return Ok((directory, false));
     }
     match begin::create(plan, path) {
-        // Another process has made it at the same time.
+        // Another process has created it at the same time.
         Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Ok((Directory::open(path)?, false)),
         made => Ok((made?, true)),
     }
 }
 
-/// What came of the run at a place if it has all its generations; none if it is to be begun or gone on with.
+/// Returns the summary of a run with all its generations, and `None` for one to begin or continue.
 ///
 /// # Errors
-/// [`Error::Occupied`] by other files, [`Error::OtherConfiguration`] by another run, [`Error::Usage`] by one that has more
-/// generations already, and whatever keeps the run from being gone on with.
+/// [`Error::Occupied`] by other files, [`Error::OtherConfiguration`] by another run, [`Error::Usage`] by one with more
+/// generations, and any error that prevents the run from being continued.
 pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     let directory = match Directory::open(path) {
         Ok(directory) => directory,
         Err(_) => match vacant(path) {
-            // Another process has made it in between.
+            // Another process has created it in between.
             Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Directory::open(path)?,
             vacant => return vacant.map(|()| None),
         },
@@ -203,19 +203,19 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
     }))
 }
 
-/// The command line of this process, to be repeated.
+/// Returns the command line of this process, quoted for a shell.
 fn again(program: &str) -> String {
     let arguments = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     std::iter::once(quoted(program)).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// A word as a shell takes it, left as it is wherever that will do.
+/// Quotes a word for a shell where necessary.
 fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=,:+@%".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
         return word.into();
     }
-    // Only a word with a zero byte cannot be quoted, and no process is started with one.
+    // Only a word with a zero byte cannot be quoted, and no process has such an argument.
     shlex::try_quote(word).map_or_else(|_| word.into(), std::borrow::Cow::into_owned)
 }
 

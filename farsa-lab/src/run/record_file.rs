@@ -20,9 +20,6 @@ use crate::store::log::Line;
 use crate::strategy::history::History;
 use crate::strategy::search::Search;
 
-/// Bytes of the largest record that is read. Tests have one that is soon full.
-const MAX_BYTES: u64 = if cfg!(test) { 1 << 19 } else { 1 << 32 };
-
 /// A generation.
 #[derive(Serialize, Deserialize)]
 struct Entry<'e> {
@@ -64,7 +61,7 @@ impl RunRecord {
     /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
         evolved(directory)?;
-        Self::from_content(plan, directory, checkpoint, Self::content(directory, checkpoint)?)
+        Self::from_content(plan, directory, checkpoint, Self::content(plan, directory, checkpoint)?)
     }
 
     /// The same from what the file holds up to the checkpoint.
@@ -146,15 +143,15 @@ impl RunRecord {
     ///
     /// # Errors
     /// [`Error::Io`], and [`Error::Damaged`] when it is not what the checkpoint speaks of.
-    pub(crate) fn content(directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
-        append_log::read(&directory.record(), checkpoint.record, MAX_BYTES)
+    pub(crate) fn content(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
+        append_log::read(&directory.record(), checkpoint.record, plan.limits.record_bytes)
     }
 
     /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
-    pub(crate) fn writer(&mut self, directory: &Directory) -> Result<RunRecordWriter, Error> {
+    pub(crate) fn writer(&mut self, plan: &Plan<'_>, directory: &Directory) -> Result<RunRecordWriter, Error> {
         let content = std::mem::take(&mut self.content);
         let file = AppendLog::new(&directory.record(), &content)?;
-        Ok(RunRecordWriter { file: file.with_most(MAX_BYTES), longest: self.longest })
+        Ok(RunRecordWriter { file: file.with_limit(plan.limits.record_bytes), longest: self.longest })
     }
 }
 

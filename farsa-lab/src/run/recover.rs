@@ -51,7 +51,7 @@ pub(crate) fn recover(
     if read_regular_text(&directory.config(), config_file::MAX_BYTES).ok().as_ref() != Some(&config) {
         replace(&directory.config(), config.as_bytes())?;
     }
-    let record = run_record.writer(directory)?;
+    let record = run_record.writer(plan, directory)?;
     let lineage = lineage(plan, directory, checkpoint, &run_record.record, search)?;
     restore_champions(plan, directory, checkpoint, run_record)?;
     let (log, changed_log) = Log::resume(&directory.log(), &run_record.lines, run_record.record.populations())?;

@@ -1,4 +1,4 @@
-//! What came of a run, for the command to tell.
+//! The result of a run.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use crate::escaped::OneLine;
 use crate::figures::significant::significant;
 use crate::run::records::{Best, Champions};
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) directory: String,
@@ -14,19 +14,19 @@ pub(crate) struct Summary {
     pub(crate) condition: String,
     pub(crate) seed: u64,
     pub(crate) generations: u32,
-    /// Evaluations by this process, not those of earlier sessions.
+    /// Evaluations by this process, without those of earlier sessions.
     pub(crate) evaluations: u64,
     pub(crate) seconds: f64,
-    /// None if there was nothing left to do; of several populations the first one's.
+    /// The champion of the first population. `None` if no generation was left.
     pub(crate) champion: Option<Winner>,
-    /// Those of all populations, if there are several.
+    /// The champions of all populations, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) champions: Vec<Winner>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Winner {
-    /// Of several populations.
+    /// The population, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) population: Option<String>,
     pub(crate) generation: u32,
@@ -35,7 +35,7 @@ pub(crate) struct Winner {
 }
 
 impl Winner {
-    /// The best of every population; `names` are those of the populations.
+    /// Returns the champions of all populations with the given names.
     pub(crate) fn from_champions(champions: &Champions, names: &[String]) -> Vec<Self> {
         let Champions { generation, best, .. } = champions;
         let winner = |(number, &Best { individual, fitness, .. }): (usize, &Best)| Self {
@@ -49,7 +49,7 @@ impl Winner {
 }
 
 impl Summary {
-    /// The same in a line of words.
+    /// Formats the summary as one line.
     pub(crate) fn text(&self) -> String {
         let (directory, generations) = (OneLine(&self.directory), self.generations);
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {

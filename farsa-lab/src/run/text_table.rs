@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// Rows as lines with columns of one width, the head first; some columns stand at their right ends.
+/// Formats rows as lines with aligned columns, the head first. Numeric columns are aligned to the right.
 pub(crate) fn text_table(rows: &[Vec<String>], right: Range<usize>) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| Some(row.get(column)?.chars().count())).max().unwrap_or(0);

@@ -1,16 +1,16 @@
-//! Which world an experiment runs in, where there is a choice.
+//! The choice of world, where an experiment offers one.
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
 use crate::run::plan::Plan;
 
-/// The setting that `--world` is short for.
+/// The setting behind `--world`.
 pub const ENGINE: &str = "world.engine";
 
-/// Chooses the world of a plan, if one was asked for.
+/// Chooses the world of a plan, if one is named.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment that has no choice, [`Error::Setting`] for a world that it does not have.
+/// [`Error::Usage`] for an experiment without a choice, [`Error::Setting`] for an unknown world.
 pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Error> {
     let Some(world) = world else { return Ok(()) };
     if !plan.settings.has(ENGINE) {
@@ -19,7 +19,7 @@ pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Err
     plan.settings.set("--world", ENGINE, Value::Word(world.into()))
 }
 
-/// Lets the trials of a run run in another world than the run's, and says whether it is another.
+/// Chooses another world for the trials of a run, and returns whether it differs from the run's.
 ///
 /// # Errors
 /// As [`choose`].
@@ -39,7 +39,7 @@ mod tests {
     use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::{Setting, Settings};
 
-    /// An experiment with so many worlds to choose from.
+    /// An experiment with the given number of worlds.
     struct Toy(&'static [&'static str]);
 
     impl Experiment for Toy {

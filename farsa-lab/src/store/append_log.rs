@@ -58,7 +58,7 @@ pub(crate) struct AppendLog {
     path: PathBuf,
     file: File,
     bytes: u64,
-    most: u64,
+    limit: u64,
     crc: Crc32,
 }
 
@@ -67,12 +67,12 @@ impl AppendLog {
     pub(crate) fn new(path: &Path, content: &[u8]) -> Result<Self, Error> {
         let file = replace_and_keep(path, content)?;
         let (bytes, crc) = (content.len() as u64, Crc32::new().with(content));
-        Ok(Self { path: path.into(), file, bytes, most: u64::MAX, crc })
+        Ok(Self { path: path.into(), file, bytes, limit: u64::MAX, crc })
     }
 
     /// The same with so many bytes at most, of a file that is read whole.
-    pub(crate) fn with_most(self, most: u64) -> Self {
-        Self { most, ..self }
+    pub(crate) fn with_limit(self, limit: u64) -> Self {
+        Self { limit, ..self }
     }
 
     /// Whether there is room for so many bytes more.
@@ -81,7 +81,7 @@ impl AppendLog {
     /// [`Error::Other`].
     pub(crate) fn room_for(&self, more: usize) -> Result<(), Error> {
         let bytes = self.bytes.saturating_add(more as u64);
-        if bytes > self.most { Err(Error::too_large(&self.path, bytes, self.most)) } else { Ok(()) }
+        if bytes > self.limit { Err(Error::too_large(&self.path, bytes, self.limit)) } else { Ok(()) }
     }
 
     /// Adds to the end.
@@ -159,7 +159,7 @@ mod tests {
     fn a_file_grows_to_what_is_read_of_it() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log");
-        let mut log = AppendLog::new(&path, b"head\n").unwrap().with_most(9);
+        let mut log = AppendLog::new(&path, b"head\n").unwrap().with_limit(9);
         log.append(b"one\n").unwrap();
         let mark = log.sync().unwrap();
         assert!(log.room_for(0).is_ok() && log.room_for(1).is_err() && log.room_for(usize::MAX).is_err());

@@ -45,7 +45,7 @@ impl FailedEvaluation {
 
 /// The file, with so much in it, which stays one that is read.
 fn growing(path: &Path, content: &[u8]) -> Result<AppendLog, Error> {
-    AppendLog::new(path, content).map(|file| file.with_most(MAX_BYTES))
+    AppendLog::new(path, content).map(|file| file.with_limit(MAX_BYTES))
 }
 
 /// The failures of a run in progress; there is no file before the first.

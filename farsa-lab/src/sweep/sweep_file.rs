@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
-use crate::run::config_file::{ConfigFile, Entry, Found, MAX_BYTES};
+use crate::run::config_file::{ConfigFile, Entry, FileKey, MAX_BYTES};
 use crate::run::plan::MAX_SEED;
 use crate::store::bounded;
 use crate::strategy::settings::STRATEGY;
@@ -90,7 +90,7 @@ impl SweepFile {
 
 impl Added {
     /// Takes what a configuration does not have.
-    fn take(&mut self, found: &Found<'_>) -> Result<bool, Error> {
+    fn take(&mut self, found: &FileKey<'_>) -> Result<bool, Error> {
         let key = |key: &str| Entry { value: key.to_owned(), place: found.place.to_owned() };
         match found.key.split_once('.') {
             None if ["grid", "list"].contains(&found.key) => {
@@ -163,7 +163,7 @@ fn wrong(key: &Entry<String>, why: &str) -> Error {
 }
 
 /// Seeds that are named one by one.
-fn listed_seeds(found: &Found<'_>) -> Result<Vec<u64>, Error> {
+fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
     let mut seeds: Vec<u64> = Vec::new();
     for Entry { value, place } in found.list()? {
         let key = Entry { value: "seed".to_owned(), place };

@@ -24,6 +24,7 @@ fn a_run_ends_before_its_record_is_too_large_to_be_read() {
     let root = scratch("large-record");
     let numbers = numbers("random-search");
     let mut plan = plan(&numbers, 20);
+    plan.limits.record_bytes = 1 << 19;
     plan.settings.set("", POPULATION, Value::Whole(10_000)).unwrap();
     let directory = create(&plan, &root.join("alone")).unwrap();
     let never = AtomicBool::new(false);

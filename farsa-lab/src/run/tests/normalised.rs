@@ -12,6 +12,7 @@ use farsa_view::Schema;
 
 use super::ranks::{part, same};
 use super::{pool, rows, run, scratch};
+use crate::RunDirectory;
 use crate::error::Error;
 use crate::evaluation::replay::{Which, replay};
 use crate::evaluation::test;
@@ -225,7 +226,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     test::test(&plan, &directory, None, 5, 1, 2, Wanted::ONE, true).unwrap();
     let text = fs::read_to_string(directory.test()).unwrap();
     let found: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
-    let best = crate::BestOfRun::read_in(&root, &Laboratory::new(&[&SCALES])).unwrap();
+    let best = RunDirectory::open(&root, &Laboratory::new(&[&SCALES])).unwrap().champion().unwrap();
     let expected: Option<&ObservationStatistics> = best.normalisation.as_ref();
     assert_eq!(expected.unwrap().count(), by_hand(GENERATIONS as u32 - 1).0);
     let trial = |trial: usize, normalisation| {
@@ -242,7 +243,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     assert!(error.to_string().contains("`strategy.normalise_observations`") && error.exit_code() == 2, "{error}");
     // A record that lacks what was observed, or has it of other channels.
     let checkpoint = crate::run::records::Checkpoint::read(&plan, &directory).unwrap();
-    let content = RunRecord::content(&directory, &checkpoint).unwrap();
+    let content = RunRecord::content(&plan, &directory, &checkpoint).unwrap();
     for short in [1, 24, 40] {
         let error = RunRecord::from_content(&plan, &directory, &checkpoint, content[..content.len() - short].to_vec());
         let error = error.map(|_| ()).unwrap_err().to_string();
@@ -261,7 +262,7 @@ fn a_run_that_does_not_normalise_says_nothing_of_observations() {
     let (_, past, _) = history(&plan, &directory).unwrap();
     assert!(past.normalisation(0).is_none() && past.normalisation(3).is_none());
     genotype(&plan, &directory, None).unwrap();
-    let best = crate::BestOfRun::read_in(&root, &Laboratory::new(&[&scales])).unwrap();
+    let best = RunDirectory::open(&root, &Laboratory::new(&[&scales])).unwrap().champion().unwrap();
     assert!(best.normalisation.is_none());
     fs::remove_dir_all(root).unwrap();
 }
