@@ -212,8 +212,7 @@ fn a_library_that_evaluates_or_draws_has_no_command_line() {
 
 #[test]
 fn every_fuzz_target_has_seeds_a_row_and_a_result() {
-    let (manifest, table, results) =
-        (read("fuzz/Cargo.toml"), read("quality/README.md"), read("quality/campaign.md"));
+    let (manifest, table, results) = (read("fuzz/Cargo.toml"), read("quality/README.md"), read("quality/campaign.md"));
     let rows: String = table.lines().filter(|line| line.starts_with("| `")).collect();
     let mut targets = vec!["page".to_owned()];
     for entry in fs::read_dir(root().join("fuzz/fuzz_targets")).expect("a folder") {
