@@ -57,11 +57,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         "trial" | "recorded" => {
             let mut evaluator = evaluator(Config { steps: 6 * TIMES as u32, ..Config::default() })?;
-            let genotype = Genotype::new(&evaluator.parameters(), 16);
+            let genotype = Genotype::new(&evaluator.info().parameters, 16);
             let genes: Vec<u16> = (0..genotype.genes() as u32).map(|i| (i * 40503) as u16).collect();
             let parameters = genotype.decode(&genes).ok_or("other genes")?;
             let evaluation = Evaluation::new(&parameters, EpisodeId::default());
-            let mut recording = Recording::new(evaluator.schema());
+            let mut recording = Recording::new(evaluator.info().schema);
             let recorded = case == "recorded";
             // One episode of as many steps as the other cases have repetitions.
             measured_once(|| {

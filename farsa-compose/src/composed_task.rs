@@ -3,8 +3,8 @@
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
 use farsa_lab::{
-    Anatomy, Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive,
-    MotorExport, NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,
+    Behaviour, ControllerExport, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport, NetworkExport,
+    Outcome, Rollout, SensorExport, SensorReading, Task, TaskInfo,
 };
 use farsa_models::MjcfOptions;
 use farsa_nn::{Controller as _, Leak};
@@ -73,41 +73,33 @@ impl<W, E: Episode<W>> Episode<W> for ComposedTask<E> {
 }
 
 impl<E: Body> Task for ComposedTask<E> {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.0.agents().spec.searched.parameters().to_vec()
+    fn info(&self) -> TaskInfo {
+        let agents = self.0.agents();
+        let schema = agents.schema(self.0.bodies(), self.0.scalars());
+        // A network with wires set by hand has inputs and links, but no neurons.
+        let anatomy = Some(agents.anatomy(&schema));
+        let info = TaskInfo::new(agents.spec.searched.parameters().to_vec(), schema);
+        let populations = agents.groups.populations();
+        TaskInfo {
+            description: agents.description(),
+            trials: agents.document.episode.trials as usize,
+            terms: agents.ledger.names(),
+            populations: if populations.is_empty() { info.populations } else { populations },
+            observations: agents.spec.inputs.len(),
+            protocols: agents.interventions.protocols(),
+            anatomy,
+            ..info
+        }
     }
-    fn trials(&self) -> usize {
-        self.0.agents().document.episode.trials as usize
-    }
-    fn terms(&self) -> Vec<String> {
-        self.0.agents().ledger.names()
-    }
-    fn populations(&self) -> Vec<String> {
-        let names = self.0.agents().groups.populations();
-        if names.is_empty() { vec!["0".into()] } else { names }
-    }
-    fn observations(&self) -> usize {
-        self.0.agents().spec.inputs.len()
-    }
-    fn protocols(&self) -> Vec<Protocol> {
-        self.0.agents().interventions.protocols()
-    }
-    /// Returns the anatomy. A network with wires set by hand has inputs and links, but no neurons.
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(self.0.agents().anatomy(&self.schema()))
-    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.0.agents().ledger.behaviour.as_ref().map(|behaviour| behaviour as _)
     }
+
     fn exports(&self) -> Option<&dyn Exports> {
         Some(self)
     }
-    fn schema(&self) -> Schema {
-        self.0.agents().schema(self.0.bodies(), self.0.scalars())
-    }
-    fn description(&self) -> Description {
-        self.0.agents().description()
-    }
+
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         self.0.agents().ledger.fitness(trials)
     }

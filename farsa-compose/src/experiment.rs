@@ -46,7 +46,7 @@ const MAX_BYTES: u64 = 1_000_000;
 /// let experiment = ComposedExperiment::from_text("wander.toml", text, farsa_lab::strategies())?;
 /// let settings = Settings::new(experiment.settings(""))?;
 /// let mut evaluator = experiment.prepare("", &settings)?;
-/// let parameters = vec![0.5; evaluator.parameters().len()];
+/// let parameters = vec![0.5; evaluator.info().parameters.len()];
 /// let outcome = evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), None);
 /// assert!(outcome.is_finite());
 /// # Ok::<(), farsa_lab::Error>(())

@@ -31,7 +31,7 @@ fn drawn_files_live_and_lanes_change_no_bit() {
             .map(|_| {
                 let of_parameter =
                     |ends: [f64; 2]| draw.stream.range_f64(ends[0].min(ends[1]), ends[0].max(ends[1])) as f32;
-                alone.parameters().iter().map(|parameter| parameter.ends).map(of_parameter).collect()
+                alone.info().parameters.iter().map(|parameter| parameter.ends).map(of_parameter).collect()
             })
             .collect();
         let jobs: Vec<Evaluation<'_>> = (0..6)
@@ -117,12 +117,12 @@ fn controllers_leave_with_their_channels() {
         let text = text.replace("activation = \"clamp\"", "activation = \"logistic\"");
         let nearly = if text.contains("kind = \"wired\"") { 1e-5 } else { 0.0 };
         let mut task = evaluator(&text);
-        let ends = task.parameters().into_iter().map(|parameter| parameter.ends);
+        let ends = task.info().parameters.into_iter().map(|parameter| parameter.ends);
         let parameters: Vec<f32> =
             ends.map(|[from, to]| draw.stream.range_f64(from.min(to), from.max(to)) as f32).collect();
         let export = task.exports().and_then(|exports| exports.controller(&parameters)).expect("a controller");
         assert_eq!(task.exports().and_then(|exports| exports.controller(&parameters[1..])), None);
-        let schema = task.schema();
+        let schema = task.info().schema;
         assert_eq!([export.sensors.len(), export.motors.len()], [schema.sensors.len(), schema.outputs.len()], "{text}");
         assert_eq!(export.network.shape(), [export.sensors.len(), export.motors.len()], "{text}");
         assert!(!export.network.bytes(export.channels()).expect("bytes").is_empty());

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use farsa_body::Recorder;
 use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Schema, Setting, Settings};
-use farsa_lab::{SimpleExperiment, Task, cli, record_row};
+use farsa_lab::{SimpleExperiment, Task, TaskInfo, cli, record_row};
 use farsa_num::{Domain, Stream};
 
 fn settings(_: &str) -> Vec<Setting> {
@@ -28,17 +28,12 @@ struct Faulty {
 }
 
 impl Task for Faulty {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("aim", [0.0, 1.0])]
-    }
-    fn trials(&self) -> usize {
-        3
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["place"])
-    }
-    fn description(&self) -> Description {
-        Description { parameters: 1, steps: self.steps as usize, ..Description::default() }
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: Description { parameters: 1, steps: self.steps as usize, ..Description::default() },
+            trials: 3,
+            ..TaskInfo::new(vec![Parameter::new("aim", [0.0, 1.0])], Schema::from_scalars(["place"]))
+        }
     }
 }
 

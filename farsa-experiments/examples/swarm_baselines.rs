@@ -50,7 +50,7 @@ fn random(genotype: &Genotype, id: EpisodeId, which: u32) -> Vec<f32> {
 
 /// How all these experiments read genes: with 16 bits.
 fn genotype(evaluator: &dyn Evaluator) -> Genotype {
-    Genotype::new(&evaluator.parameters(), 16)
+    Genotype::new(&evaluator.info().parameters, 16)
 }
 
 fn earned(outcomes: &[Outcome]) -> Vec<f64> {

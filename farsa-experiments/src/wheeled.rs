@@ -44,7 +44,7 @@ pub(crate) fn layer_protocols(schema: &Schema) -> Interventions {
 
 /// What is done to such a layer in an evaluation; protocols are made only where a case is asked for.
 pub(crate) fn applied(task: &impl Task, evaluation: &Evaluation<'_>) -> Intervention {
-    let all = evaluation.case.map(|_| layer_protocols(&task.schema())).unwrap_or_default();
+    let all = evaluation.case.map(|_| layer_protocols(&task.info().schema)).unwrap_or_default();
     all.applied(evaluation).into_owned()
 }
 

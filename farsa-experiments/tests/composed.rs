@@ -48,17 +48,17 @@ fn same_evaluators(
     individuals: u32,
     trials: u32,
 ) {
-    let terms = theirs.terms().len();
-    assert_eq!(ours.parameters().len(), theirs.parameters().len());
-    assert_eq!(ours.trials(), theirs.trials());
-    for (ours, theirs) in ours.parameters().iter().zip(theirs.parameters()) {
+    let terms = theirs.info().terms.len();
+    assert_eq!(ours.info().parameters.len(), theirs.info().parameters.len());
+    assert_eq!(ours.info().trials, theirs.info().trials);
+    for (ours, theirs) in ours.info().parameters.iter().zip(theirs.info().parameters) {
         assert_eq!(ours.ends, theirs.ends, "{} and {}", ours.name, theirs.name);
     }
-    let genotype = Genotype::new(&theirs.parameters(), gene_bits);
+    let genotype = Genotype::new(&theirs.info().parameters, gene_bits);
     let mut earned = 0;
     for individual in 0..individuals {
         let mut draw = Stream::new(1, Domain::InitialGenome, 0, individual, 0);
-        let genes: Vec<u16> = theirs.parameters().iter().map(|_| draw.below(1 << gene_bits) as u16).collect();
+        let genes: Vec<u16> = theirs.info().parameters.iter().map(|_| draw.below(1 << gene_bits) as u16).collect();
         let parameters = genotype.decode(&genes).expect("as many genes as parameters");
         let (mut own, mut other) = (Vec::new(), Vec::new());
         for trial in 0..trials {

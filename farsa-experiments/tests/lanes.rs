@@ -79,7 +79,7 @@ fn scripted_grasps_in_lanes_are_those_alone() {
 
 /// The parameters of random genes.
 fn random_parameters(evaluator: &dyn Evaluator, bits: u32, seed: u64, individual: u32) -> Vec<f32> {
-    let genotype = Genotype::new(&evaluator.parameters(), bits);
+    let genotype = Genotype::new(&evaluator.info().parameters, bits);
     let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(seed, Domain::InitialGenome, 0, individual, 0));
     for gene in &mut genes {
@@ -119,7 +119,7 @@ fn in_lanes_as_alone(
 #[test]
 fn trials_of_networks_in_lanes_are_those_alone() {
     let mut evaluator = evaluator(Config::default()).unwrap();
-    let genotype = Genotype::new(&farsa_lab::Task::parameters(&evaluator), 16);
+    let genotype = Genotype::new(&farsa_lab::Task::info(&evaluator).parameters, 16);
     let parameters: Vec<Vec<f32>> = (0..10)
         .map(|individual| {
             let mut stream = Stream::new(3, Domain::InitialGenome, 0, individual, 0);
@@ -162,7 +162,7 @@ fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]
     let random = |individual| random_parameters(evaluator.as_ref(), experiment.gene_bits(), 5, individual);
     let parameters: Vec<Vec<f32>> = (0..21).map(random).collect();
     let others: Vec<[&[f32]; 1]> = (0..21).map(|number| [&parameters[20 - number][..]]).collect();
-    let populations = evaluator.populations().len();
+    let populations = evaluator.info().populations.len();
     let evaluation = |number: usize| {
         let population = number % populations;
         let size = if populations > 1 { settings.count("evolution.population").unwrap() } else { 0 };

@@ -40,7 +40,7 @@ fn prepare(experiment: &dyn Experiment, condition: &str, steps: i64) -> Box<dyn 
 
 /// The parameters of random genes; all these experiments have genes of 16 bits.
 fn parameters(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
-    let genotype = Genotype::new(&evaluator.parameters(), 16);
+    let genotype = Genotype::new(&evaluator.info().parameters, 16);
     let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(5, Domain::InitialGenome, number, 0, 0));
     genotype.decode(&genes).unwrap()
@@ -62,7 +62,7 @@ fn note(outcome: &Outcome, name: &str) -> f64 {
 fn recorded(evaluator: &mut dyn Evaluator, own: &[f32], other: &[f32], id: EpisodeId) -> (Outcome, Recording) {
     let plain = evaluator.evaluate(against(own, &[other], id), None);
     evaluator.evaluate(against(other, &[own], EpisodeId { trial: id.trial + 1, ..id }), None);
-    let mut recording = Recording::new(evaluator.schema());
+    let mut recording = Recording::new(evaluator.info().schema);
     let recorded = evaluator.evaluate(against(own, &[other], id), Some(&mut recording));
     assert_eq!(plain, recorded);
     (plain, recording)
@@ -143,7 +143,7 @@ fn trials_repeat_and_robots_stay_between_the_walls_and_apart() {
 #[test]
 fn the_book_of_food_is_what_the_robots_ways_tell() {
     let mut evaluator = prepare(&Foraging, "marxbot", 400);
-    let columns = evaluator.schema().columns();
+    let columns = evaluator.info().schema.columns();
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap_or_else(|| panic!("{name}"));
     let (mut deaths, mut food) = (0.0, 0.0);
     for number in 0..6 {

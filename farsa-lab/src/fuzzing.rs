@@ -272,7 +272,7 @@ impl<'l> RunReader<'l> {
     /// When a log that was taken up says something else than the run.
     pub fn logs(&self, path: &Path) -> Result<bool, Error> {
         let directory = Directory::at(path.into());
-        let populations = self.evaluator.populations().len();
+        let populations = self.evaluator.info().populations.len();
         let (_, kept) = Log::resume(&directory.log(), &[], populations)?;
         let written = fs::read(directory.log()).map_err(Error::io("read", &directory.log()))?;
         assert!(written == header(populations).as_bytes(), "a log that was taken up says something else");

@@ -44,9 +44,9 @@ pub use experiment::{
     InLanes, InWorld, Intervention, Interventions, Iteration, JudgeExport, Lanes, Learner, MotorDrive, MotorExport,
     NetworkExport, Neurocontroller, NoWorld, NormalisedController, Note, NotedBehaviour, Objective, Outcome,
     OwnedNetwork, Parameter, PartNames, PlanarWorld, PointExport, Protocol, Push, Rescored, Rollout, SensorExport,
-    SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials,
-    Value, input_ranges, mean_of_note, mean_of_trials, network_parameters, record_row, resting_network, run_episode,
-    run_in_lanes, seconds,
+    SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task,
+    TaskInfo, Trials, Value, input_ranges, mean_of_note, mean_of_trials, network_parameters, record_row,
+    resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use live::LiveSession;
 pub use ranks::{Alone, Ranks};

@@ -33,7 +33,7 @@ fn lived(text: &str) -> (usize, f64) {
     let settings = Settings::new(made.settings("")).expect("settings");
     let mut evaluator = made.prepare("", &settings).expect("an evaluator");
     let parameters: Vec<f32> =
-        evaluator.parameters().iter().map(|one| (0.7 * one.ends[0] + 0.3 * one.ends[1]) as f32).collect();
+        evaluator.info().parameters.iter().map(|one| (0.7 * one.ends[0] + 0.3 * one.ends[1]) as f32).collect();
     let outcome = evaluator.evaluate(Evaluation::new(&parameters, EpisodeId { seed: 3, ..EpisodeId::default() }), None);
     (parameters.len(), outcome.terms.iter().sum())
 }

@@ -3,8 +3,9 @@
 use farsa_body::Recorder;
 use farsa_compose::{ComposedExperiment, Limits};
 use farsa_lab::{
-    Behaviour, Description, Error, Evaluation, Evaluator, Experiment, ExperimentFiles, Iteration, Laboratory, Learner,
-    NotedBehaviour, Outcome, Parameter, ReadExperiment, Schema, Setting, Settings, StrategyDefinition, Task, Truncation,
+    Behaviour, Error, Evaluation, Evaluator, Experiment, ExperimentFiles, Iteration, Laboratory, Learner,
+    NotedBehaviour, Outcome, Parameter, ReadExperiment, Schema, Setting, Settings, StrategyDefinition, Task, TaskInfo,
+    Truncation,
 };
 use farsa_num::{Domain, Stream};
 
@@ -72,24 +73,18 @@ static BEHAVIOUR: NotedBehaviour =
     NotedBehaviour { objectives: &[("distance", -1.0)], descriptors: &[("first", [0.0, 1.0]), ("second", [0.0, 1.0])] };
 
 impl Task for Trial {
-    fn parameters(&self) -> Vec<Parameter> {
-        ["first", "second", "third"].map(|name| Parameter::new(name, [0.0, 1.0])).into()
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            trials: 2,
+            terms: vec!["near".into()],
+            populations: (0..self.populations).map(|population| format!("kind {population}")).collect(),
+            ..TaskInfo::new(
+                ["first", "second", "third"].map(|name| Parameter::new(name, [0.0, 1.0])).into(),
+                Schema::from_scalars(["first [m]"]),
+            )
+        }
     }
-    fn populations(&self) -> Vec<String> {
-        (0..self.populations).map(|population| format!("kind {population}")).collect()
-    }
-    fn trials(&self) -> usize {
-        2
-    }
-    fn terms(&self) -> Vec<String> {
-        vec!["near".into()]
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["first [m]"])
-    }
-    fn description(&self) -> Description {
-        Description::default()
-    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(&BEHAVIOUR)
     }

@@ -31,7 +31,7 @@ fn evaluator(text: &str) -> Box<dyn Evaluator> {
 
 /// An individual of this number, who drives with all outputs at the largest or the smallest, among others that do.
 fn driven(evaluator: &mut dyn Evaluator, individual: u32, own: f32, others: f32) -> Outcome {
-    let count = evaluator.parameters().len();
+    let count = evaluator.info().parameters.len();
     let (own, others) = (vec![20.0 * own; count], vec![20.0 * others; count]);
     let opponents = [others.as_slice()];
     let id = EpisodeId { seed: 1, individual, ..EpisodeId::default() };
@@ -48,7 +48,7 @@ fn robots_of_one_genome_may_differ() {
                  [[reward]]\nname = \"prey\"\nkind = \"displacement\"\nof = \"prey\"\nover = \"end\"\n\
                  [[reward]]\nname = \"second\"\nkind = \"displacement\"\nrobot = 2\nover = \"end\"\n";
     let mut team = evaluator(&format!("{GROUPS}{MOVED}{terms}"));
-    assert_eq!(team.populations(), ["0"]);
+    assert_eq!(team.info().populations, ["0"]);
     let outcome = driven(team.as_mut(), 0, 1.0, 0.0);
     // Half a second at 0.12 and at 0.06 m/s.
     for (found, wanted) in outcome.terms.iter().zip([0.04, 0.06, 0.03, 0.03]) {
@@ -62,7 +62,7 @@ fn each_population_drives_its_own_robots_and_earns_by_them() {
     let terms = "[[reward]]\nname = \"hunter\"\nkind = \"displacement\"\nof = \"hunter\"\nover = \"end\"\n\
                  [[reward]]\nname = \"prey\"\nkind = \"displacement\"\nof = \"prey\"\nover = \"end\"\nweight = -1.0\n";
     let mut both = evaluator(&format!("[team]\ncoevolution = true\n{GROUPS}{MOVED}{terms}"));
-    assert_eq!(both.populations(), ["hunter", "prey"]);
+    assert_eq!(both.info().populations, ["hunter", "prey"]);
     // A network without drive leaves both wheels at rest: 1/2.
     for (individual, own, others, wanted) in [
         (3, 1.0, 0.0, [0.06, 0.06, 0.0]),
@@ -81,7 +81,7 @@ fn each_population_drives_its_own_robots_and_earns_by_them() {
 fn lanes_have_the_bits_of_one_world() {
     let text = std::fs::read_to_string(CHASE).expect("the file");
     let mut alone = evaluator(&text);
-    let ends: Vec<[f64; 2]> = alone.parameters().iter().map(|parameter| parameter.ends).collect();
+    let ends: Vec<[f64; 2]> = alone.info().parameters.iter().map(|parameter| parameter.ends).collect();
     let row = |row: usize| {
         let share = |place: usize| ((row * 37 + place * 11) % 21) as f64 / 20.0;
         ends.iter().enumerate().map(|(place, [from, to])| (from + share(place) * (to - from)) as f32).collect()
@@ -131,7 +131,7 @@ impl Recorder for First {
 #[test]
 fn points_are_taken_once_and_all_of_them() {
     let mut team = evaluator(&format!("{GROUPS}{MOVED}"));
-    let parameters = vec![0.0; team.parameters().len()];
+    let parameters = vec![0.0; team.info().parameters.len()];
     let mut seen = Vec::new();
     for trial in 0..60 {
         let (id, mut first) = (EpisodeId { seed: 9, trial, ..EpisodeId::default() }, First::default());
@@ -155,7 +155,7 @@ fn points_are_taken_once_and_all_of_them() {
 fn controllers_leave_with_the_numbers_of_their_robots() {
     let both = evaluator(&format!("[team]\ncoevolution = true\n{GROUPS}{MOVED}"));
     let exports = both.exports().expect("exports");
-    let parameters = vec![0.0; both.parameters().len()];
+    let parameters = vec![0.0; both.info().parameters.len()];
     let largest = |population| {
         let controller = exports.controller_of(population, &parameters).expect("a controller");
         format!("{:?}", controller.motors[0])
@@ -212,7 +212,7 @@ fn a_thing_follows_the_choice_of_another() {
     };
     let apart = |like: &str| -> Vec<[i64; 2]> {
         let mut evaluator = evaluator(&text(like));
-        let still = vec![0.0; evaluator.parameters().len()];
+        let still = vec![0.0; evaluator.info().parameters.len()];
         let trial = |trial| {
             let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
             let terms = evaluator.evaluate(Evaluation::new(&still, id), None).terms;

@@ -45,7 +45,7 @@ fn refused(network: &str) -> String {
 }
 
 fn names(evaluator: &dyn Evaluator) -> Vec<String> {
-    evaluator.parameters().into_iter().map(|parameter| parameter.name).collect()
+    evaluator.info().parameters.into_iter().map(|parameter| parameter.name).collect()
 }
 
 fn recorded(evaluator: &mut dyn Evaluator, parameters: &[f32], trial: u32) -> Vec<[Vec<f32>; 2]> {

@@ -169,7 +169,7 @@ fn each_neuron_that_is_silent_is_heard_by_none() {
         let parameters = drawn(evaluator.as_ref());
         let export =
             evaluator.exports().and_then(|exports| exports.controller(&parameters)).expect("a network").network;
-        let protocols = evaluator.protocols();
+        let protocols = evaluator.info().protocols;
         Protocol::check(&protocols).expect("protocols");
         assert_eq!(protocols.iter().map(|protocol| protocol.name.as_str()).collect::<Vec<_>>(), ["lesions", "noise"]);
         let wanted = ["intact", "no wheel-speed", "no body-pose", "no constant"].map(str::to_owned).into_iter();
@@ -230,7 +230,7 @@ fn sensors_are_cut_and_disturbed() {
 
 /// What the first robot sensed and did with changes of this list.
 fn changed(evaluator: &mut dyn Evaluator, list: &str) -> Vec<[Vec<f32>; 2]> {
-    let change = evaluator.anatomy().expect("parts").intervention(list).expect("a change");
+    let change = evaluator.info().anatomy.expect("parts").intervention(list).expect("a change");
     let (parameters, mut steps) = (drawn(evaluator), Steps::default());
     let evaluation = Evaluation { intervention: Some(&change), ..Evaluation::new(&parameters, ID) };
     evaluator.evaluate(evaluation, Some(&mut steps));
@@ -241,7 +241,7 @@ fn changed(evaluator: &mut dyn Evaluator, list: &str) -> Vec<[Vec<f32>; 2]> {
 fn parts_are_changed_by_name() {
     for (network, neurons) in NETWORKS {
         let mut evaluator = of(network);
-        let schema = evaluator.schema();
+        let schema = evaluator.info().schema;
         let (_, intact) = recorded(evaluator.as_mut(), None);
         let of_case = |evaluator: &mut dyn Evaluator, case| recorded(evaluator, Some(CaseId { protocol: 0, case })).1;
         assert!(changed(evaluator.as_mut(), "sensor:body-pose") == of_case(evaluator.as_mut(), 2), "{network}");
@@ -259,8 +259,12 @@ fn parts_are_changed_by_name() {
         }
 
         let Some(links) = schema.links.first() else {
-            let error =
-                evaluator.anatomy().expect("parts").intervention("link:constant-wheels left").expect_err("no links");
+            let error = evaluator
+                .info()
+                .anatomy
+                .expect("parts")
+                .intervention("link:constant-wheels left")
+                .expect_err("no links");
             assert!(error.to_string().ends_with("the schema names no links"), "{error}");
             continue;
         };
@@ -293,7 +297,7 @@ fn parts_are_changed_by_name() {
 
 #[test]
 fn what_is_wired_by_hand_has_noise_alone() {
-    let protocols = of(WIRED).protocols();
+    let protocols = of(WIRED).info().protocols;
     assert_eq!(protocols.len(), 1);
     assert_eq!((protocols[0].name.as_str(), names(&protocols[0])), ("noise", vec!["0", "0.05", "0.1", "0.2", "0.4"]));
 }
@@ -303,7 +307,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>) {
     let parameters = drawn(evaluator.as_ref());
     let plain = Evaluation::new(&parameters, ID);
     let before = evaluator.evaluate(plain, None);
-    let protocols = evaluator.protocols();
+    let protocols = evaluator.info().protocols;
     let of_protocol =
         |(protocol, about): (usize, &Protocol)| (0..about.cases.len()).map(move |case| CaseId { protocol, case });
     let cases = protocols.iter().enumerate().flat_map(of_protocol);
@@ -359,7 +363,7 @@ impl Recorder for First {
 #[test]
 fn opponents_are_intact() {
     let mut evaluator = prepared(&shown("chase.toml"));
-    let parameters = vec![0.1; evaluator.parameters().len()];
+    let parameters = vec![0.1; evaluator.info().parameters.len()];
     let mut disturbed = Vec::new();
     for individual in [0, 9_999] {
         let mut of_case = |case| {

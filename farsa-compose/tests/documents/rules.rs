@@ -22,7 +22,7 @@ fn refused(text: &str) -> String {
 }
 
 fn names(evaluator: &dyn Evaluator) -> Vec<String> {
-    evaluator.parameters().into_iter().map(|parameter| parameter.name).collect()
+    evaluator.info().parameters.into_iter().map(|parameter| parameter.name).collect()
 }
 
 /// What was sensed and done in each step, and where bodies were.
@@ -184,7 +184,7 @@ fn wrappers_are_told_as_they_act() {
         format!("{rest}[[sensors]]\n{sensors}\n[[motors]]\nkind = \"wheels\"\nwrappers = [{motor}]\n")
     };
     let told = |sensor: &str, motor: &str| {
-        let found = evaluator(&text(sensor, motor)).description();
+        let found = evaluator(&text(sensor, motor)).info().description;
         let after = |meaning: &str| meaning.split_once(" With ").map_or(String::new(), |(_, words)| words.into());
         [&found.sensors[0].meaning, &found.motors[0].meaning].map(|meaning| after(meaning))
     };
@@ -217,7 +217,7 @@ fn wrappers_are_told_as_they_act() {
     );
     let all_of = |sensor: &str| {
         let mut made = evaluator(&text(sensor, two));
-        let parameters = vec![0.5; made.parameters().len()];
+        let parameters = vec![0.5; made.info().parameters.len()];
         recorded(made.as_mut(), &parameters, 3).1.all
     };
     let steps = all_of(&sensor);
@@ -308,9 +308,9 @@ fn fitness_is_made_of_terms_with_a_weight() {
     let text = format!("{WORLD}{FORAGING}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 30\ntrials = 1\n");
     let lived = |text: &str| {
         let mut task = evaluator(text);
-        let parameters = vec![0.3; task.parameters().len()];
+        let parameters = vec![0.3; task.info().parameters.len()];
         let outcome = recorded(task.as_mut(), &parameters, 0).0;
-        (task.terms(), task.fitness(std::slice::from_ref(&outcome)), outcome)
+        (task.info().terms, task.fitness(std::slice::from_ref(&outcome)), outcome)
     };
     let (terms, fitness, outcome) = lived(&text);
     assert_eq!((terms, &outcome.terms[..]), (vec!["food".to_owned()], &[fitness][..]));
@@ -333,7 +333,7 @@ fn behaviours_are_measures_of_terms() {
     let text =
         format!("{WORLD}{FORAGING}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 60\ntrials = 2\n{behaviour}");
     let mut task = evaluator(&text);
-    let parameters = vec![0.3; task.parameters().len()];
+    let parameters = vec![0.3; task.info().parameters.len()];
     let trials: Vec<Outcome> = (0..2).map(|trial| recorded(task.as_mut(), &parameters, trial).0).collect();
     let note = |outcome: &Outcome, wanted: &str| match outcome
         .notes

@@ -9,7 +9,7 @@ pub(crate) fn drawn(evaluator: &dyn Evaluator) -> Vec<f32> {
         let share = (number * 37 % 101) as f64 / 100.0;
         (parameter.ends[0] + share * (parameter.ends[1] - parameter.ends[0])) as f32
     };
-    evaluator.parameters().into_iter().enumerate().map(own).collect()
+    evaluator.info().parameters.into_iter().enumerate().map(own).collect()
 }
 
 /// What was sensed and done in each step.

@@ -29,7 +29,7 @@ fn cameras_see_coloured_things_in_their_plane() {
     }
     // While the bar turns, in lanes as alone.
     let mut evaluator = made(&watching(1.0, "[1.0, 1.0, 1.0]")).expect("an evaluator");
-    let parameters = vec![0.7; evaluator.parameters().len()];
+    let parameters = vec![0.7; evaluator.info().parameters.len()];
     let evaluation = Evaluation::new(&parameters, EpisodeId::default());
     let alone = evaluator.evaluate(evaluation, None);
     let lanes = evaluator.in_lanes().expect("lanes");
@@ -56,8 +56,8 @@ fn eyed(sensor: &str) -> String {
 /// What is recorded of the first step of a trial at rest.
 fn recorded(text: &str) -> Recording {
     let mut evaluator = made(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let mut recording = Recording::new(evaluator.schema());
-    let parameters = vec![0.0; evaluator.parameters().len()];
+    let mut recording = Recording::new(evaluator.info().schema);
+    let parameters = vec![0.0; evaluator.info().parameters.len()];
     evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), Some(&mut recording));
     recording
 }

@@ -36,7 +36,7 @@ fn refused(text: &str) -> String {
 fn outcome(text: &str, y: f64) -> Outcome {
     let mut evaluator = made(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let bias = farsa_num::ln(y / (1.0 - y));
-    let names = evaluator.parameters().into_iter().map(|parameter| parameter.name);
+    let names = evaluator.info().parameters.into_iter().map(|parameter| parameter.name);
     let parameters: Vec<f32> = names.map(|name| if name.starts_with("bias") { bias as f32 } else { 0.0 }).collect();
     evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), None)
 }
@@ -106,7 +106,7 @@ fn muscles_pull_against_each_other() {
     let motor = "kind = \"muscles\"\ntension = 100.0\nmoment_arm = 0.05";
     let text = file("", motor, &FELT.replace("over = \"end\"", "over = \"most\""));
     let mut evaluator = made(&text).expect("an evaluator");
-    let names: Vec<String> = evaluator.parameters().into_iter().map(|parameter| parameter.name).collect();
+    let names: Vec<String> = evaluator.info().parameters.into_iter().map(|parameter| parameter.name).collect();
     assert!(names.contains(&"bias of muscles 2".into()), "{names:?}");
     let mut pulled = |second: f32| {
         let own = |name: &String| match name.as_str() {
@@ -226,7 +226,7 @@ fn shown_in_lanes(file: &str) {
             .expect("an experiment");
     let mut evaluators =
         [made.prepare("", &settings).expect("an evaluator"), kept.prepare("", &settings).expect("an evaluator")];
-    let parameters = vec![0.3; evaluators[0].parameters().len()];
+    let parameters = vec![0.3; evaluators[0].info().parameters.len()];
     let [one, other] = &mut evaluators;
     for trial in 0..3 {
         let id = EpisodeId { seed: 3, trial, ..EpisodeId::default() };
@@ -374,7 +374,7 @@ fn a_marker_follows_the_choice_of_another() {
     let motor = "kind = \"joint-torque\"";
     let text = file("", motor, &[marker("sign", 1.0, ""), marker("goal", 2.0, "like = \"sign\"\n")].concat());
     let mut evaluator = made(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let still = vec![0.0; evaluator.parameters().len()];
+    let still = vec![0.0; evaluator.info().parameters.len()];
     let mut seen = [false; 3];
     for trial in 0..40 {
         let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };

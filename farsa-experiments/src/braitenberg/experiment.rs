@@ -7,7 +7,7 @@ use farsa_physics::arena::{Batch, World};
 use crate::braitenberg::episode::{Config, LIGHTS, Vehicle, VehicleEpisode};
 use farsa_lab::{
     ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Lanes, Note, Outcome,
-    Parameter, Rollout, Setting, Settings, Task, mean_of_trials,
+    Parameter, Rollout, Setting, Settings, Task, TaskInfo, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -110,20 +110,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleEpisode>, Error
     Ok(InWorld::new(world, VehicleEpisode::new(config)?).with_lanes(batch).with_displacements())
 }
 
-impl Task for VehicleEpisode {
-    /// Nothing evolves: one parameter that nothing depends on.
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("none", [0.0, 1.0])]
-    }
-
-    fn trials(&self) -> usize {
-        self.config().trials as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["approach [m]".into()]
-    }
-
+impl VehicleEpisode {
     fn schema(&self) -> Schema {
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let places =
@@ -161,6 +148,18 @@ impl Task for VehicleEpisode {
             parameters: self.wiring().parameters.len(),
             steps: config.steps as usize,
             step_seconds: config.time_step,
+        }
+    }
+}
+
+impl Task for VehicleEpisode {
+    /// Nothing evolves: one parameter that nothing depends on.
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().trials as usize,
+            terms: vec!["approach [m]".into()],
+            ..TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], self.schema())
         }
     }
 

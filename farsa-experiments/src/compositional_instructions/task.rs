@@ -7,7 +7,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles
 use farsa_body::robot::Robot;
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, Intervention,
-    MotorExport, NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
+    MotorExport, NetworkExport, Note, Outcome, Rollout, SensorExport, Task, TaskInfo, mean_of_trials,
 };
 use farsa_view::Schema;
 
@@ -136,33 +136,7 @@ impl Rollout for InstructionTask {
     }
 }
 
-impl Task for InstructionTask {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.wiring.parameters().to_vec()
-    }
-
-    fn trials(&self) -> usize {
-        self.config().trials()
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.protocols.list()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        let anatomy = Anatomy::new(&self.schema(), &self.description());
-        Some(anatomy.with_parameter_order(LAYOUT.parameter_count(), schema::in_schema_order))
-    }
-
-    /// In a test the instruction may change, and as many steps follow.
-    fn step_budget(&self) -> u64 {
-        2 * u64::from(self.config().steps)
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["fitness".into()]
-    }
-
+impl InstructionTask {
     fn schema(&self) -> Schema {
         schema::schema(self.episode.scene())
     }
@@ -198,6 +172,26 @@ impl Task for InstructionTask {
             parameters: self.wiring.parameters().len(),
             steps: steps as usize,
             step_seconds: time_step,
+        }
+    }
+
+    fn anatomy(&self) -> Anatomy {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        anatomy.with_parameter_order(LAYOUT.parameter_count(), schema::in_schema_order)
+    }
+}
+
+impl Task for InstructionTask {
+    /// In a test the instruction may change, and as many steps follow.
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().trials(),
+            step_budget: Some(2 * u64::from(self.config().steps)),
+            terms: vec!["fitness".into()],
+            protocols: self.protocols.list(),
+            anatomy: Some(self.anatomy()),
+            ..TaskInfo::new(self.wiring.parameters().to_vec(), self.schema())
         }
     }
 

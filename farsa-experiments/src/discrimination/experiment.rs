@@ -16,7 +16,7 @@ use crate::worlds::PlanarEngine;
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, EpisodeId, Error, Evaluation, Evaluator,
     Experiment, Exports, InWorld, NetworkExport, NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome,
-    Parameter, Protocol, Rollout, SensorExport, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
+    Parameter, Rollout, SensorExport, Setting, Settings, StrategyDefinition, Task, TaskInfo, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -141,7 +141,7 @@ static NEAR_TWO: NotedBehaviour = NotedBehaviour {
     descriptors: &[("share of time near the first", [0.0, 1.0]), ("share of time near the other", [0.0, 1.0])],
 };
 
-impl Task for CylinderEpisode<Layer> {
+impl CylinderEpisode<Layer> {
     /// As the original wrote them, w = range - gene/255 * 2 range.
     fn parameters(&self) -> Vec<Parameter> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
@@ -151,16 +151,6 @@ impl Task for CylinderEpisode<Layer> {
             .into_iter()
             .flat_map(|wheel| (1..=inputs).map(move |input| format!("weight of sensor {input} on the {wheel} wheel")));
         biases.into_iter().chain(weights).map(|name| Parameter::new(name, [range, -range])).collect()
-    }
-
-    fn trials(&self) -> usize {
-        self.config().trials as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        let several = self.cylinders().len() > 1;
-        let terms = if several { &["near the first", "near the other"][..] } else { &["near"] };
-        terms.iter().map(|&term| term.into()).collect()
     }
 
     fn schema(&self) -> Schema {
@@ -221,16 +211,24 @@ impl Task for CylinderEpisode<Layer> {
         }
     }
 
-    fn observations(&self) -> usize {
-        self.config().inputs()
+    fn terms(&self) -> Vec<String> {
+        let several = self.cylinders().len() > 1;
+        let terms = if several { &["near the first", "near the other"][..] } else { &["near"] };
+        terms.iter().map(|&term| term.into()).collect()
     }
+}
 
-    fn protocols(&self) -> Vec<Protocol> {
-        layer_protocols(&self.schema()).protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
+impl Task for CylinderEpisode<Layer> {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().trials as usize,
+            terms: self.terms(),
+            observations: self.config().inputs(),
+            protocols: layer_protocols(&self.schema()).protocols(),
+            anatomy: Some(Anatomy::new(&self.schema(), &self.description())),
+            ..TaskInfo::new(self.parameters(), self.schema())
+        }
     }
 
     fn behaviour(&self) -> Option<&dyn Behaviour> {
@@ -334,7 +332,7 @@ mod tests {
         // Biases +5 and -5; of each wheel the weights of sensors 0 to 5.
         let genes = [0, 255, 10, 20, 30, 40, 50, 60, 110, 120, 130, 140, 150, 160];
         let task = evaluator(Config::default()).unwrap();
-        let parameters = Genotype::new(&task.parameters(), GENE_BITS).decode(&genes).unwrap();
+        let parameters = Genotype::new(&task.info().parameters, GENE_BITS).decode(&genes).unwrap();
         let mut layer = layer(6, in_order_of_layer(&parameters, 6)).unwrap();
         let weight = |gene: u16| 5.0 - f64::from(gene) / 255.0 * 10.0;
         for (wheel, bias) in [(0, 5.0), (1, -5.0)] {
@@ -349,7 +347,7 @@ mod tests {
         }
         // To the last bit: the same products in another order.
         for gene in 0..=255 {
-            let found = Genotype::new(&task.parameters()[..1], GENE_BITS).decode(&[gene]).unwrap();
+            let found = Genotype::new(&task.info().parameters[..1], GENE_BITS).decode(&[gene]).unwrap();
             assert_eq!(found[0], (5.0 - f64::from(gene) / 255.0 * 2.0 * 5.0) as f32);
         }
     }

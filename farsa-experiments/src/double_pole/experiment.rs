@@ -4,8 +4,8 @@ use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
-    SensorExport, Setting, Settings, Task, mean_of_trials, seconds,
+    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Rollout,
+    SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
 };
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Color, Geometry, Links, OKABE_ITO, Role, SceneObject, Schema, View};
@@ -109,7 +109,7 @@ impl Balancing {
     }
 }
 
-impl Task for Balancing {
+impl Balancing {
     fn parameters(&self) -> Vec<Parameter> {
         let config = self.episode.config();
         let (inputs, neurons) = (config.inputs(), config.neurons());
@@ -122,14 +122,6 @@ impl Task for Balancing {
             Parameter::new(name, ends)
         };
         (0..neurons * (inputs + neurons)).map(weight).collect()
-    }
-
-    fn observations(&self) -> usize {
-        self.episode.sensed().len()
-    }
-
-    fn terms(&self) -> Vec<String> {
-        if self.episode.config().damping { vec!["balance".into(), "rest".into()] } else { vec!["steps".into()] }
     }
 
     fn schema(&self) -> Schema {
@@ -177,17 +169,6 @@ impl Task for Balancing {
         }
     }
 
-    fn protocols(&self) -> Vec<Protocol> {
-        self.interventions.protocols()
-    }
-
-    /// Neurons of the network are counted from its inputs.
-    fn anatomy(&self) -> Option<Anatomy> {
-        let schema = self.schema();
-        let (inputs, neurons) = (schema.sensors.len(), schema.neurons.len());
-        Some(Anatomy::new(&schema, &self.description()).with_first(inputs, inputs + neurons))
-    }
-
     fn description(&self) -> Description {
         let config = self.episode.config();
         let [of_position, of_angle, of_velocity] = config.scales;
@@ -206,6 +187,30 @@ impl Task for Balancing {
             parameters: self.parameters().len(),
             steps: config.steps as usize,
             step_seconds: config.time_step * f64::from(config.substeps),
+        }
+    }
+
+    /// Neurons of the network are counted from its inputs.
+    fn anatomy(&self) -> Anatomy {
+        let schema = self.schema();
+        let (inputs, neurons) = (schema.sensors.len(), schema.neurons.len());
+        Anatomy::new(&schema, &self.description()).with_first(inputs, inputs + neurons)
+    }
+}
+
+impl Task for Balancing {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            terms: if self.episode.config().damping {
+                vec!["balance".into(), "rest".into()]
+            } else {
+                vec!["steps".into()]
+            },
+            observations: self.episode.sensed().len(),
+            protocols: self.interventions.protocols(),
+            anatomy: Some(self.anatomy()),
+            ..TaskInfo::new(self.parameters(), self.schema())
         }
     }
 

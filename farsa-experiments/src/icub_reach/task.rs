@@ -7,7 +7,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, Handles};
 use farsa_body::robot::Robot;
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
-    NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
+    NetworkExport, Note, Outcome, Rollout, SensorExport, Task, TaskInfo, mean_of_trials,
 };
 use farsa_nn::Leak;
 use farsa_nn::block::BlockLayoutBuf;
@@ -105,32 +105,7 @@ impl Rollout for ReachTask {
     }
 }
 
-impl Task for ReachTask {
-    fn parameters(&self) -> Vec<Parameter> {
-        parameters(self.config().weight_range)
-    }
-
-    fn trials(&self) -> usize {
-        self.config().targets as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["fitness".into()]
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.protocols.list()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        let anatomy = Anatomy::new(&self.schema(), &self.description());
-        Some(anatomy.with_first(HIDDEN_ONES.first, HIDDEN_ONES.end()))
-    }
-
-    fn observations(&self) -> usize {
-        INPUTS
-    }
-
+impl ReachTask {
     fn schema(&self) -> Schema {
         schema::schema(self.episode.scene())
     }
@@ -162,6 +137,25 @@ impl Task for ReachTask {
             parameters: LAYOUT.parameter_count(),
             steps: steps as usize,
             step_seconds: time_step,
+        }
+    }
+
+    fn anatomy(&self) -> Anatomy {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        anatomy.with_first(HIDDEN_ONES.first, HIDDEN_ONES.end())
+    }
+}
+
+impl Task for ReachTask {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().targets as usize,
+            terms: vec!["fitness".into()],
+            observations: INPUTS,
+            protocols: self.protocols.list(),
+            anatomy: Some(self.anatomy()),
+            ..TaskInfo::new(parameters(self.config().weight_range), self.schema())
         }
     }
 

@@ -8,7 +8,7 @@ use farsa_body::robot::Robot;
 use farsa_body::sensors::Camera;
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, SensorExport, Task,
+    MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Rollout, SensorExport, Task, TaskInfo,
     mean_of_trials, network_parameters,
 };
 use farsa_nn::Leak;
@@ -119,35 +119,7 @@ static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     descriptors: &[("highest [cm]", [0.0, 40.0]), ("distance [cm]", [0.0, 40.0])],
 };
 
-impl Task for GraspTask {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.parameters.to_vec()
-    }
-
-    fn trials(&self) -> usize {
-        self.config().trials as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        ["nearness", "touch", "lift"].map(String::from).to_vec()
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.protocols.list()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
-    }
-
-    fn observations(&self) -> usize {
-        SENSORS
-    }
-
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        Some(&BEHAVIOUR)
-    }
-
+impl GraspTask {
     fn schema(&self) -> Schema {
         schema::schema(self.episode.scene())
     }
@@ -182,6 +154,24 @@ impl Task for GraspTask {
             steps: steps as usize,
             step_seconds: time_step,
         }
+    }
+}
+
+impl Task for GraspTask {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().trials as usize,
+            terms: ["nearness", "touch", "lift"].map(String::from).to_vec(),
+            observations: SENSORS,
+            protocols: self.protocols.list(),
+            anatomy: Some(Anatomy::new(&self.schema(), &self.description())),
+            ..TaskInfo::new(self.parameters.to_vec(), self.schema())
+        }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     /// The mean over the trials of the sum of the three terms: 3 at most.

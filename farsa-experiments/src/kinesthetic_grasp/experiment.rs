@@ -12,10 +12,9 @@ use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
 use farsa_lab::{
-    Anatomy, Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner,
-    Learning, Outcome, Parameter, Protocol, Setting, Settings, StrategyDefinition, Task,
+    ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Learning, Outcome, Setting,
+    Settings, StrategyDefinition, Task, TaskInfo,
 };
-use farsa_view::Schema;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///
@@ -140,36 +139,12 @@ impl Trainee {
 }
 
 impl Task for Trainee {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.evaluator.parameters()
-    }
-
-    fn trials(&self) -> usize {
-        self.evaluator.trials()
-    }
-
-    fn terms(&self) -> Vec<String> {
-        self.evaluator.terms()
-    }
-
-    fn schema(&self) -> Schema {
-        self.evaluator.schema()
-    }
-
-    fn description(&self) -> Description {
-        self.evaluator.description()
+    fn info(&self) -> TaskInfo {
+        self.evaluator.info()
     }
 
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         self.evaluator.fitness(trials)
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.evaluator.protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        self.evaluator.anatomy()
     }
 
     fn exports(&self) -> Option<&dyn Exports> {

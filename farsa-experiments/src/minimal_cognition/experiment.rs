@@ -13,8 +13,8 @@ use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTOR
 use crate::minimal_cognition::object::Object;
 use farsa_lab::{
     Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
-    SensorExport, Setting, Settings, Task, mean_of_trials, seconds,
+    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Protocol, Rollout,
+    SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
 };
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Color, Geometry, Links, NodeParameters, OKABE_ITO, Role, SceneObject, Schema, View};
@@ -150,7 +150,7 @@ fn record(episode: &AgentEpisode, recorder: &mut dyn Recorder) {
     recorder.tick(seconds(episode.steps(), time_step));
 }
 
-/// The parameters as [`Task::schema`] says where they are: the weights between the layers, then biases, gains and time
+/// The parameters as [`TaskInfo::schema`] says where they are: the weights between the layers, then biases, gains and time
 /// constants.
 fn in_schema_order(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
@@ -182,32 +182,7 @@ impl Episode<NoWorld> for Agent {
     }
 }
 
-impl Task for Agent {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.wiring.parameters().to_vec()
-    }
-
-    fn trials(&self) -> usize {
-        self.episode.config().trials as usize
-    }
-
-    fn observations(&self) -> usize {
-        RAYS
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["score".into()]
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.interventions.protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        let anatomy = Anatomy::new(&self.schema(), &self.description());
-        Some(anatomy.with_parameter_order(LAYOUT.parameter_count(), in_schema_order))
-    }
-
+impl Agent {
     fn schema(&self) -> Schema {
         let Config { width, body, diameter, side, start_height, input_gain, clip, .. } = *self.episode.config();
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
@@ -287,6 +262,25 @@ impl Task for Agent {
             parameters: LAYOUT.range(CtrnnParameter::Weight).len() + 3 * NEURONS,
             steps: config.steps() as usize,
             step_seconds: time_step,
+        }
+    }
+
+    fn anatomy(&self) -> Anatomy {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        anatomy.with_parameter_order(LAYOUT.parameter_count(), in_schema_order)
+    }
+}
+
+impl Task for Agent {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.episode.config().trials as usize,
+            terms: vec!["score".into()],
+            observations: RAYS,
+            protocols: self.interventions.protocols(),
+            anatomy: Some(self.anatomy()),
+            ..TaskInfo::new(self.wiring.parameters().to_vec(), self.schema())
         }
     }
 

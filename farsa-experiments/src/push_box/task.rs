@@ -9,7 +9,7 @@ use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
-    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, Task, mean_of_trials,
+    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task, TaskInfo, mean_of_trials,
 };
 use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
@@ -28,7 +28,7 @@ static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     descriptors: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
 };
 
-impl Task for PushEpisode<Layer> {
+impl PushEpisode<Layer> {
     /// In the layer's order, from +range to -range.
     fn parameters(&self) -> Vec<Parameter> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
@@ -37,14 +37,6 @@ impl Task for PushEpisode<Layer> {
             (1..=inputs).flat_map(|input| wheels.map(|wheel| format!("weight of sensor {input} on the {wheel} wheel")));
         let biases = wheels.map(|wheel| format!("bias of the {wheel} wheel"));
         weights.chain(biases).map(|name| Parameter::new(name, [range, -range])).collect()
-    }
-
-    fn trials(&self) -> usize {
-        self.config().trials as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["moved [m]".into()]
     }
 
     fn schema(&self) -> Schema {
@@ -97,17 +89,19 @@ impl Task for PushEpisode<Layer> {
             step_seconds: config.time_step,
         }
     }
+}
 
-    fn observations(&self) -> usize {
-        self.config().inputs()
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        layer_protocols(&self.schema()).protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
+impl Task for PushEpisode<Layer> {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config().trials as usize,
+            terms: vec!["moved [m]".into()],
+            observations: self.config().inputs(),
+            protocols: layer_protocols(&self.schema()).protocols(),
+            anatomy: Some(Anatomy::new(&self.schema(), &self.description())),
+            ..TaskInfo::new(self.parameters(), self.schema())
+        }
     }
 
     fn behaviour(&self) -> Option<&dyn Behaviour> {
@@ -192,7 +186,7 @@ mod tests {
     #[test]
     fn genes_are_decoded_over_the_whole_range() {
         let task = evaluator(PushConfig::default()).unwrap();
-        let first = Genotype::new(&task.parameters()[..2], 16);
+        let first = Genotype::new(&task.info().parameters[..2], 16);
         assert_eq!(first.decode(&[0, u16::MAX]).unwrap(), [5.0, -5.0]);
         assert!(first.decode(&[u16::MAX / 2; 2]).unwrap()[0].abs() < 1e-3);
         // To the last bit as values 2 of this experiment computed it.
@@ -206,16 +200,16 @@ mod tests {
     fn an_episode_can_be_repeated_and_recorded() {
         let mut evaluator = evaluator(PushConfig { steps: 40, ..PushConfig::default() }).unwrap();
         let genes: Vec<u16> = (0..18_u32).map(|i| (i * 40503) as u16).collect();
-        let parameters = Genotype::new(&evaluator.parameters(), 16).decode(&genes).unwrap();
+        let parameters = Genotype::new(&evaluator.info().parameters, 16).decode(&genes).unwrap();
         let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
         let of = |id| Evaluation::new(&parameters, id);
         let plain = evaluator.evaluate(of(id), None);
         evaluator.evaluate(of(EpisodeId { trial: 3, ..id }), None);
-        let mut recording = Recording::new(evaluator.schema());
+        let mut recording = Recording::new(evaluator.info().schema);
         assert_eq!(evaluator.evaluate(of(id), Some(&mut recording)), plain);
         assert!(plain.is_finite() && plain.steps == 40, "{plain:?}");
         assert_eq!(recording.times().len(), 40);
-        let columns = evaluator.schema().columns();
+        let columns = evaluator.info().schema.columns();
         let moved = columns.iter().position(|column| column == "box moved [m]").unwrap();
         assert_eq!(recording.row(39).nth(moved), Some(plain.terms[0]));
         // Shared by the generation's individuals.

@@ -100,13 +100,13 @@ mod tests {
         for (condition, sensors, parameters) in [(LABELS, 29, 792), (NO_LABELS, 26, 756)] {
             let settings = Settings::new(ReachGraspLift.settings(condition)).unwrap();
             let evaluator = ReachGraspLift.prepare(condition, &settings).unwrap();
-            assert_eq!(evaluator.parameters().len(), parameters);
-            let description = evaluator.description();
+            assert_eq!(evaluator.info().parameters.len(), parameters);
+            let description = evaluator.info().description;
             assert_eq!(description.parameters, parameters);
             assert_eq!(description.sensors.iter().map(|group| group.count).sum::<usize>(), sensors);
             assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), 23);
             assert_eq!((description.steps, description.step_seconds), (600, 0.01));
-            assert_eq!(evaluator.schema().columns().len(), SCALARS + sensors + 12 + 23);
+            assert_eq!(evaluator.info().schema.columns().len(), SCALARS + sensors + 12 + 23);
         }
     }
 
@@ -115,10 +115,10 @@ mod tests {
         let settings = Settings::new(ReachGraspLift.settings(LABELS)).unwrap();
         let mut evaluator = ReachGraspLift.prepare(LABELS, &settings).unwrap();
         let genes: Vec<u16> = (0..792u32).map(|i| (i * 40503) as u16).collect();
-        let genotype = Genotype::new(&evaluator.parameters(), ReachGraspLift.gene_bits());
+        let genotype = Genotype::new(&evaluator.info().parameters, ReachGraspLift.gene_bits());
         let parameters = genotype.decode(&genes).unwrap();
         let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let schema = evaluator.schema();
+        let schema = evaluator.info().schema;
         let mut evaluate =
             |id, recorder: Option<&mut dyn Recorder>| evaluator.evaluate(evaluation(&parameters, id), recorder);
         let plain = evaluate(id, None);

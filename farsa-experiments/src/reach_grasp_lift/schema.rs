@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn joints_muscles_and_servos_have_labels_and_nothing_else() {
-        let schema = evaluator(Config::default()).unwrap().schema();
+        let schema = evaluator(Config::default()).unwrap().info().schema;
         let all = [&schema.scalars, &schema.sensors, &schema.neurons, &schema.outputs].into_iter().flatten();
         let mut shown = BTreeSet::new();
         let mut labelled = 0;

@@ -15,8 +15,8 @@ use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    Intervention, Interventions, NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Parameter,
-    Protocol, Rollout, StartExport, Task, input_ranges,
+    Intervention, Interventions, NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Protocol, Rollout,
+    StartExport, Task, TaskInfo, input_ranges,
 };
 use farsa_view::Schema;
 
@@ -153,35 +153,7 @@ static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     descriptors: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
 };
 
-impl Task for ReachTask {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.ranges.parameters()
-    }
-
-    fn trials(&self) -> usize {
-        TRIALS
-    }
-
-    fn terms(&self) -> Vec<String> {
-        ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.interventions.protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
-    }
-
-    fn observations(&self) -> usize {
-        self.episode.sensed().len()
-    }
-
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        Some(&BEHAVIOUR)
-    }
-
+impl ReachTask {
     fn schema(&self) -> Schema {
         EpisodeRecorder::schema(&self.episode)
     }
@@ -231,6 +203,24 @@ impl Task for ReachTask {
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
+    }
+}
+
+impl Task for ReachTask {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: TRIALS,
+            terms: ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec(),
+            observations: self.episode.sensed().len(),
+            protocols: self.interventions.protocols(),
+            anatomy: Some(Anatomy::new(&self.schema(), &self.description())),
+            ..TaskInfo::new(self.ranges.parameters(), self.schema())
+        }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     /// The sum of the rewards, each part within the individual's cap.

@@ -16,7 +16,7 @@ use crate::wheeled::infrared_exports;
 use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
     InWorld, Interventions, MotorExport, NetworkExport, NormalisedController, Outcome, OwnedNetwork, Parameter,
-    PlanarWorld, Protocol, Rollout, SensorExport, Task, mean_of_trials, network_parameters, resting_network, seconds,
+    PlanarWorld, Rollout, SensorExport, Task, TaskInfo, mean_of_trials, network_parameters, resting_network, seconds,
 };
 use farsa_view::Schema;
 
@@ -154,42 +154,10 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     }
 }
 
-impl<M: Scenario> Task for TeamTask<M> {
+impl<M: Scenario> TeamTask<M> {
     fn parameters(&self) -> Vec<Parameter> {
         let range = self.episode.scenario().robots().weight_range;
         network_parameters(&self.layout, range, [0.0, 1.0], "net.weight_range").unwrap_or_default()
-    }
-
-    fn populations(&self) -> Vec<String> {
-        self.episode.scenario().population_names().iter().map(|&name| name.into()).collect()
-    }
-
-    fn trials(&self) -> usize {
-        self.episode.scenario().robots().trials
-    }
-
-    fn robots(&self) -> Vec<String> {
-        self.schema().bodies.into_iter().take(self.episode.scenario().robots().robots).collect()
-    }
-
-    fn protocols(&self) -> Vec<Protocol> {
-        self.interventions.protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
-    }
-
-    fn terms(&self) -> Vec<String> {
-        self.episode.scenario().terms()
-    }
-
-    fn observations(&self) -> usize {
-        self.layout.sensors()
-    }
-
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        self.episode.scenario().behaviour()
     }
 
     /// Sensors, neurons and outputs are those of the watched robot: by default the first, or the individual's where populations meet.
@@ -214,6 +182,30 @@ impl<M: Scenario> Task for TeamTask<M> {
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
+    }
+
+    fn populations(&self) -> Vec<String> {
+        self.episode.scenario().population_names().iter().map(|&name| name.into()).collect()
+    }
+}
+
+impl<M: Scenario> Task for TeamTask<M> {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.episode.scenario().robots().trials,
+            terms: self.episode.scenario().terms(),
+            populations: self.populations(),
+            robots: self.schema().bodies.into_iter().take(self.episode.scenario().robots().robots).collect(),
+            observations: self.layout.sensors(),
+            protocols: self.interventions.protocols(),
+            anatomy: Some(Anatomy::new(&self.schema(), &self.description())),
+            ..TaskInfo::new(self.parameters(), self.schema())
+        }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        self.episode.scenario().behaviour()
     }
 
     /// The mean over the trials.

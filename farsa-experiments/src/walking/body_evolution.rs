@@ -18,7 +18,7 @@ use crate::worlds::Engine;
 use farsa_lab::{
     Behaviour, Bodies, ChannelGroup, ControllerExport, Description, ENGINE, Episode, EpisodeId, Error, Evaluation,
     Evaluator, Experiment, Exports, Genotype, MotorExport, NetworkExport, Note, Outcome, Parameter, SensorExport,
-    Setting, Settings, Task, mean_of_note, mean_of_trials, network_parameters, run_episode,
+    Setting, Settings, Task, TaskInfo, mean_of_note, mean_of_trials, network_parameters, run_episode,
 };
 use farsa_view::Schema;
 
@@ -287,7 +287,7 @@ impl Walkers {
     }
 }
 
-impl Task for Walkers {
+impl Walkers {
     fn parameters(&self) -> Vec<Parameter> {
         let of_body = BODY.iter().zip(self.config.ranges);
         // Bodies are computed from numbers that f32 holds.
@@ -297,18 +297,6 @@ impl Task for Walkers {
             .layout()
             .and_then(|layout| network_parameters(&layout, self.config.weights, [0.0, 1.0], "network.range").ok());
         of_body.chain(to_network.into_iter().flatten()).collect()
-    }
-
-    fn trials(&self) -> usize {
-        self.config.trials as usize
-    }
-
-    fn observations(&self) -> usize {
-        if self.config.powered() { SENSES } else { 0 }
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["distance [m]".into()]
     }
 
     /// The schema of the middle of all bodies.
@@ -338,6 +326,18 @@ impl Task for Walkers {
             network: format!("{SENSES}-{}-1, recurrent hidden layer, leak filter", layout.hidden()),
             parameters: layout.parameter_count(),
             ..plain
+        }
+    }
+}
+
+impl Task for Walkers {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config.trials as usize,
+            terms: vec!["distance [m]".into()],
+            observations: if self.config.powered() { SENSES } else { 0 },
+            ..TaskInfo::new(self.parameters(), self.schema())
         }
     }
 
@@ -380,7 +380,7 @@ impl Exports for Walkers {
         Some(mjcf_options(&self.config.walk))
     }
 
-    /// Of parameters as others may have it: ball soles, as in the [`schema`](Task::schema) of the middle of all bodies.
+    /// Of parameters as others may have it: ball soles, as in the [`schema`](TaskInfo::schema) of the middle of all bodies.
     fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
         parameters.map(|parameters| exported(&self.body(parameters)))
     }

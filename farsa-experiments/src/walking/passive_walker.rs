@@ -18,7 +18,7 @@ use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk}
 use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
 use farsa_lab::{
     Bodies, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Note,
-    Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials,
+    Outcome, Parameter, Rollout, Setting, Settings, Task, TaskInfo, mean_of_trials,
 };
 use farsa_view::Schema;
 
@@ -254,24 +254,7 @@ where
     }
 }
 
-impl Task for PassiveTrial {
-    /// Nothing evolves: one parameter that nothing depends on.
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("none", [0.0, 1.0])]
-    }
-
-    fn trials(&self) -> usize {
-        self.config.trials as usize
-    }
-
-    fn terms(&self) -> Vec<String> {
-        vec!["distance [m]".into()]
-    }
-
-    fn schema(&self) -> Schema {
-        schema(&exported(&self.config.walker))
-    }
-
+impl PassiveTrial {
     fn description(&self) -> Description {
         let Walk { steps, time_step, .. } = self.config.walk;
         Description {
@@ -279,6 +262,18 @@ impl Task for PassiveTrial {
             steps: steps as usize,
             step_seconds: time_step,
             ..Description::default()
+        }
+    }
+}
+
+impl Task for PassiveTrial {
+    /// Nothing evolves: one parameter that nothing depends on.
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.description(),
+            trials: self.config.trials as usize,
+            terms: vec!["distance [m]".into()],
+            ..TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], schema(&exported(&self.config.walker)))
         }
     }
 

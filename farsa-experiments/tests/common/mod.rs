@@ -9,14 +9,14 @@ const INDIVIDUALS: usize = 6;
 
 fn random(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
     let mut stream = Stream::new(2, Domain::InitialGenome, number, 0, 0);
-    evaluator.parameters().into_iter().map(|one| stream.range_f64(one.ends[0], one.ends[1]) as f32).collect()
+    evaluator.info().parameters.into_iter().map(|one| stream.range_f64(one.ends[0], one.ends[1]) as f32).collect()
 }
 
 /// Evaluates random individuals in so many plain trials and cases of all test protocols, alone and in every number of lanes at every
 /// instruction set of this machine; all outcomes are the same.
 pub(crate) fn assert_lanes_are_alone(evaluator: &mut dyn Evaluator, count: usize, trials: u32) {
     let parameters: Vec<Vec<f32>> = (0..INDIVIDUALS as u32).map(|number| random(evaluator, number)).collect();
-    let protocols = evaluator.protocols();
+    let protocols = evaluator.info().protocols;
     let evaluations: Vec<Evaluation<'_>> = (0..count)
         .map(|number| {
             let id = EpisodeId { seed: 4, generation: 1, individual: 0, trial: number as u32 % trials };

@@ -83,9 +83,9 @@ fn evolved_agents_follow_what_they_were_trained_for() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name);
         let genes: Vec<f64> =
             std::fs::read_to_string(path).unwrap().lines().map(|line| line.parse().unwrap()).collect();
-        let parameters = Genotype::new(&evaluator.parameters(), 16).decode_reals(&genes).unwrap();
-        let protocol = evaluator.protocols().iter().position(|protocol| protocol.name == "instructions").unwrap();
-        let cases = evaluator.protocols()[protocol].cases.clone();
+        let parameters = Genotype::new(&evaluator.info().parameters, 16).decode_reals(&genes).unwrap();
+        let protocol = evaluator.info().protocols.iter().position(|protocol| protocol.name == "instructions").unwrap();
+        let cases = evaluator.info().protocols[protocol].cases.clone();
         assert_eq!(cases.iter().filter(|case| case.held_out).count(), 2);
         for (number, what) in cases.iter().enumerate() {
             let understood = condition == Condition::WithIndicate && what.row == "MOVE";

@@ -72,7 +72,7 @@ fn genotypes_of_the_original_stay_near_as_long_as_in_an_independent_replay() {
 
 /// The parameters of these genes.
 fn parameters(experiment: &dyn Experiment, evaluator: &dyn Evaluator, gene: impl Fn(usize) -> u16) -> Vec<f32> {
-    let genotype = Genotype::new(&evaluator.parameters(), experiment.gene_bits());
+    let genotype = Genotype::new(&evaluator.info().parameters, experiment.gene_bits());
     genotype.decode(&(0..genotype.genes()).map(gene).collect::<Vec<_>>()).unwrap()
 }
 
@@ -182,13 +182,13 @@ fn trials_can_be_repeated_recorded_and_run_by_hand() {
             let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
             let plain = evaluator.evaluate(alone(&own, id), None);
             evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-            let mut recording = Recording::new(evaluator.schema());
+            let mut recording = Recording::new(evaluator.info().schema);
             assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
             let ticks = recording.times().len();
             assert_eq!(ticks, plain.steps as usize);
             assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
             assert_eq!(recording.rays_at(ticks - 1).len(), 6);
-            let description = evaluator.description();
+            let description = evaluator.info().description;
             assert_eq!(description.sensors.iter().map(|g| g.count).sum::<usize>(), config.inputs());
             assert_eq!(description.parameters, own.len());
             // The same as an episode of its own controller.
@@ -239,9 +239,9 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     assert_eq!(near, [0, 0, 1, 2, 3]);
     let settings = settings(&Discrimination, "e-puck", &[]);
     let evaluator = Discrimination.prepare("e-puck", &settings).unwrap();
-    let description = evaluator.description();
-    assert_eq!((evaluator.trials(), description.steps, description.step_seconds), (10, 500, 0.1));
-    assert_eq!(evaluator.schema().bodies, ["e-puck", "cylinder"]);
+    let description = evaluator.info().description;
+    assert_eq!((evaluator.info().trials, description.steps, description.step_seconds), (10, 500, 0.1));
+    assert_eq!(evaluator.info().schema.bodies, ["e-puck", "cylinder"]);
     // Its sensors were never measured, and a hull that the wheels stick out of is refused.
     let mut settings = settings;
     let sampled = settings.set("", "robot.infrared", Value::Word("sampled".into())).unwrap_err().to_string();
@@ -292,7 +292,7 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
         let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
         let plain = evaluator.evaluate(alone(&own, id), None);
         evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-        let mut recording = Recording::new(evaluator.schema());
+        let mut recording = Recording::new(evaluator.info().schema);
         assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
         assert!(plain.is_finite() && recording.times().len() == plain.steps as usize);
     }

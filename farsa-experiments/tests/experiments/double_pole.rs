@@ -175,8 +175,8 @@ fn constants_are_those_published() {
         let config = Config::read(velocities, &settings).unwrap();
         assert_eq!(config, Config { damping, ..Config::new(velocities) });
         let evaluator = evaluator(condition, &[]);
-        assert_eq!(evaluator.parameters().len(), 2 * (inputs + 2));
-        let description = evaluator.description();
+        assert_eq!(evaluator.info().parameters.len(), 2 * (inputs + 2));
+        let description = evaluator.info().description;
         assert_eq!((description.steps, description.step_seconds), (100_000, 0.02));
     }
 }
@@ -226,7 +226,7 @@ fn a_known_network_balances_both_poles() {
 fn a_network_without_weights_pushes_least_and_fails() {
     for condition in ["velocities", "no-velocities"] {
         let mut evaluator = evaluator(condition, &[]);
-        let parameters = vec![0.0; evaluator.parameters().len()];
+        let parameters = vec![0.0; evaluator.info().parameters.len()];
         let outcome = outcome(evaluator.as_mut(), &parameters);
         assert!(!outcome.success && outcome.steps < 100, "{outcome:?}");
         if condition == "no-velocities" {
@@ -276,11 +276,11 @@ fn starts_of_the_generalization_test_are_spread() {
 fn a_recorded_trial_is_the_same_and_has_what_the_stage_names() {
     for hidden in [0, 3] {
         let mut evaluator = evaluator("no-velocities", &[("net.hidden", Value::Whole(hidden))]);
-        let count = evaluator.parameters().len();
+        let count = evaluator.info().parameters.len();
         assert_eq!(count, layout(false, hidden as u32).parameter_count());
         let parameters: Vec<f32> = (0..count).map(|i| (i % 5) as f32 - 1.5).collect();
         let plain = outcome(evaluator.as_mut(), &parameters);
-        let schema = evaluator.schema();
+        let schema = evaluator.info().schema;
         let mut recording = Recording::new(schema.clone());
         let evaluation = Evaluation::new(&parameters, EpisodeId::default());
         assert_eq!(evaluator.evaluate(evaluation, Some(&mut recording)), plain);

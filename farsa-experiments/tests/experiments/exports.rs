@@ -94,7 +94,7 @@ fn random(evaluator: &dyn Evaluator, seed: u64) -> Vec<f32> {
         let [low, high] = ends.map(|end| end as f32);
         low + (high - low) * stream.uniform()
     };
-    evaluator.parameters().into_iter().map(|parameter| parameter.ends).map(drawn).collect()
+    evaluator.info().parameters.into_iter().map(|parameter| parameter.ends).map(drawn).collect()
 }
 
 /// The network of bytes, by what the bytes alone say.
@@ -183,7 +183,7 @@ fn every_channel_has_a_name_and_says_what_it_is() {
         let [inputs, outputs] = controller.network.shape();
         assert_eq!([controller.sensors.len(), controller.motors.len()], [inputs, outputs], "{who}");
         // The names of a recording; those of the arm have units there.
-        let schema = evaluator.schema();
+        let schema = evaluator.info().schema;
         let names = |channels: &[farsa_view::Channel]| channels.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
         let hash = channel_hash(names(&schema.sensors), names(&schema.outputs));
         assert!(controller.channels() == hash || name.contains("grasp"), "{who}");

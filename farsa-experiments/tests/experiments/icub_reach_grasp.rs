@@ -256,7 +256,7 @@ fn trials_and_cases_in_lanes_are_those_alone() {
 fn exported_sensors_mean_what_is_sensed() {
     let mut evaluator = evaluator(Config::default()).unwrap();
     let (task, _) = evaluator.parts_mut();
-    let parameters = vec![0.0; task.parameters().len()];
+    let parameters = vec![0.0; task.info().parameters.len()];
     let export = task.controller(&parameters).unwrap();
     let ends: Vec<[f64; 2]> = export
         .sensors

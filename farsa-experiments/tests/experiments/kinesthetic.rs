@@ -23,7 +23,7 @@ fn learner(trainee: &mut Trainee) -> &mut dyn Learner {
 
 /// How genes stand for the parameters.
 fn genotype(trainee: &Trainee) -> Genotype {
-    Genotype::new(&trainee.parameters(), KinestheticGrasp.gene_bits())
+    Genotype::new(&trainee.info().parameters, KinestheticGrasp.gene_bits())
 }
 
 /// What has been learned in a state, as genes.
@@ -71,7 +71,7 @@ fn genes_are_the_parameters_to_half_a_unit() {
     let mut trainee = trainee(1, 0);
     let state = learner(&mut trainee).initial_state(SEED);
     let genes = genes(&mut trainee, &state);
-    assert_eq!(genes.len(), trainee.parameters().len());
+    assert_eq!(genes.len(), trainee.info().parameters.len());
     let layout = Config::default().reach.layout();
     let unit = 40.0 / 65535.0;
     for (index, (gene, word)) in genes.iter().zip(&state).enumerate() {
@@ -94,7 +94,7 @@ fn the_network_is_the_mean_over_the_steps() {
         let training = Training { demonstrations: 2, epochs: 6, batch: 2, averaging, ..Training::default() };
         let mut trainee = Trainee::new(Config { training, ..Config::default() }).unwrap();
         let (state, _) = taught(&mut trainee, 1);
-        (trainee.parameters().len(), genes(&mut trainee, &state), state)
+        (trainee.info().parameters.len(), genes(&mut trainee, &state), state)
     };
     // The same is learned from what the script shows, and the network that is evaluated is another.
     let (count, latest, mut state) = after_an_iteration(1);

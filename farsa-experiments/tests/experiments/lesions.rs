@@ -52,13 +52,13 @@ impl Subject {
         // Not all have so short trials.
         let _ = settings.set("", "trial.steps", Value::Whole(25));
         let evaluator = experiment.prepare(condition, &settings).unwrap();
-        let anatomy = evaluator.anatomy()?;
+        let anatomy = evaluator.info().anatomy?;
         let mut stream = Stream::new(6, Domain::InitialGenome, 0, 0, 0);
-        let genotype = Genotype::new(&evaluator.parameters(), 16);
+        let genotype = Genotype::new(&evaluator.info().parameters, 16);
         // In the middle of their ranges, where neurons are not saturated.
-        let genes = evaluator.parameters().into_iter().map(|_| (24_576 + stream.below(16_384)) as u16);
+        let genes = evaluator.info().parameters.into_iter().map(|_| (24_576 + stream.below(16_384)) as u16);
         let genes: Vec<u16> = genes.collect();
-        let (parameters, schema) = (genotype.decode(&genes).unwrap(), evaluator.schema());
+        let (parameters, schema) = (genotype.decode(&genes).unwrap(), evaluator.info().schema);
         Some(Self { name: experiment.name(), evaluator, parameters, schema, anatomy })
     }
 
@@ -162,7 +162,7 @@ fn neurons_and_outputs_are_held() {
 fn what_is_not_heard_changes_the_course_and_lanes_do_not() {
     for mut subject in subjects() {
         let name = subject.name;
-        let group = subject.evaluator.description().sensors[0].name.clone();
+        let group = subject.evaluator.info().description.sensors[0].name.clone();
         let (_, intact) = subject.with("");
         // All inputs at another value than they have: some answer differs.
         let held: Vec<String> = subject.schema.sensors.iter().map(|s| format!("sensor:{}=0.8125", s.name)).collect();
@@ -213,7 +213,7 @@ fn lists_do_what_cases_of_protocols_do() {
         let by_name = subject.with(list);
         let (_, intact) = subject.with("");
         let kind = if list.starts_with("noise") { "noise" } else { "lesions" };
-        let protocols = subject.evaluator.protocols();
+        let protocols = subject.evaluator.info().protocols;
         let protocol = protocols.iter().position(|protocol| protocol.name == kind).unwrap();
         let rows: Vec<&str> = protocols[protocol].cases.iter().map(|case| case.row.as_str()).collect();
         let case = rows.iter().position(|found| *found == row).unwrap_or_else(|| panic!("{experiment}: {rows:?}"));

@@ -41,7 +41,7 @@ fn evaluator() -> Box<dyn Evaluator> {
 
 /// The parameters of an evaluation that genes stand for.
 fn of_genes(evaluator: &dyn Evaluator, genes: &[u16]) -> Vec<f32> {
-    Genotype::new(&evaluator.parameters(), MinimalCognition.gene_bits()).decode(genes).unwrap()
+    Genotype::new(&evaluator.info().parameters, MinimalCognition.gene_bits()).decode(genes).unwrap()
 }
 
 /// Where the agent is after every step of a trial.
@@ -202,7 +202,7 @@ fn a_recorded_episode_is_the_same_and_has_what_the_stage_names() {
     let id = EpisodeId { seed: 5, trial: 3, ..EpisodeId::default() };
     let evaluation = Evaluation::new(&parameters, id);
     let plain = evaluator.evaluate(evaluation, None);
-    let schema = evaluator.schema();
+    let schema = evaluator.info().schema;
     let mut recording = Recording::new(schema.clone());
     assert_eq!(evaluator.evaluate(evaluation, Some(&mut recording)), plain);
     assert_eq!((recording.times().len(), recording.times()[816]), (817, 81.7));

@@ -9,7 +9,7 @@ const TRIALS: u32 = 11;
 
 /// Parameters of random genes, others for each number.
 fn random(experiment: &dyn Experiment, evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
-    let genotype = Genotype::new(&evaluator.parameters(), experiment.gene_bits());
+    let genotype = Genotype::new(&evaluator.info().parameters, experiment.gene_bits());
     let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(5, Domain::InitialGenome, 0, number, 0));
     for gene in &mut genes {
@@ -25,8 +25,8 @@ fn check(experiment: &dyn Experiment, condition: &str) -> Option<usize> {
     // Some have no such setting, or want more.
     let _ = settings.set("", "trial.steps", Value::Whole(60));
     let mut evaluator = experiment.prepare(condition, &settings).unwrap();
-    let channels = evaluator.observations();
-    if channels == 0 || evaluator.populations().len() > 1 {
+    let channels = evaluator.info().observations;
+    if channels == 0 || evaluator.info().populations.len() > 1 {
         return None;
     }
     let name = experiment.name();

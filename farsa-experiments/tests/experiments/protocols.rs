@@ -41,8 +41,8 @@ fn evaluator(experiment: &dyn Experiment, condition: &str, changed: &[(&str, Val
 /// A random individual.
 fn parameters(evaluator: &dyn Evaluator) -> Vec<f32> {
     let mut stream = Stream::new(5, Domain::InitialGenome, 0, 0, 0);
-    let genotype = Genotype::new(&evaluator.parameters(), 16);
-    let genes: Vec<u16> = evaluator.parameters().iter().map(|_| stream.below(65536) as u16).collect();
+    let genotype = Genotype::new(&evaluator.info().parameters, 16);
+    let genes: Vec<u16> = evaluator.info().parameters.iter().map(|_| stream.below(65536) as u16).collect();
     genotype.decode(&genes).unwrap()
 }
 
@@ -53,7 +53,7 @@ fn id(trial: u32) -> EpisodeId {
 /// The case of this row and column of a protocol, as an evaluation takes it.
 #[allow(clippy::unnecessary_wraps)]
 fn case(evaluator: &dyn Evaluator, name: &str, row: &str, column: &str) -> Option<CaseId> {
-    let protocols = evaluator.protocols();
+    let protocols = evaluator.info().protocols;
     let protocol = protocols.iter().position(|protocol| protocol.name == name).unwrap();
     let wanted = |case: &farsa_lab::Case| case.row == row && case.column == column;
     let case = protocols[protocol].cases.iter().position(wanted).unwrap();
@@ -75,7 +75,7 @@ fn the_protocols_of_all_experiments_can_be_run() {
             let settings = Settings::new(experiment.settings(condition)).unwrap();
             // Some need a file.
             let Ok(evaluator) = experiment.prepare(condition, &settings) else { continue };
-            Protocol::check(&evaluator.protocols()).unwrap();
+            Protocol::check(&evaluator.info().protocols).unwrap();
         }
     }
 }
@@ -85,7 +85,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>, most: usize) {
     let parameters = parameters(evaluator.as_ref());
     let plain = Evaluation::new(&parameters, id(1));
     let before = evaluator.evaluate(plain, None);
-    let protocols = evaluator.protocols();
+    let protocols = evaluator.info().protocols;
     let all = protocols.iter().enumerate().flat_map(|(protocol, about)| {
         (0..about.cases.len().min(most)).map(move |case| Some(CaseId { protocol, case }))
     });
@@ -117,7 +117,7 @@ fn cases_in_lanes_are_those_alone_and_leave_nothing_behind() {
 #[test]
 fn objects_of_psychophysics_fall_from_their_part_of_the_line() {
     let mut evaluator = evaluator(&MinimalCognition, "", &[]);
-    let protocol = evaluator.protocols().remove(0);
+    let protocol = evaluator.info().protocols.remove(0);
     assert_eq!((protocol.name.as_str(), protocol.cases.len()), ("psychophysics", 22));
     // 100 units in 11 parts.
     for (number, about) in protocol.cases.iter().enumerate() {
@@ -143,7 +143,7 @@ fn objects_of_psychophysics_fall_from_their_part_of_the_line() {
 #[test]
 fn a_team_of_one_has_one_robot() {
     let mut evaluator = evaluator(&Foraging, Foraging.conditions()[0], &[("trial.steps", Value::Whole(40))]);
-    let cases = evaluator.protocols().remove(0).cases;
+    let cases = evaluator.info().protocols.remove(0).cases;
     let all: u16 = cases.last().unwrap().row.parse().unwrap();
     assert!(cases.iter().all(|case| case.held_out == (case.row != all.to_string())));
     for about in &cases {
@@ -186,6 +186,6 @@ fn starts_are_paired_and_labels_removed_or_wrong() {
     let moved = seen(evaluator.as_mut(), other, 1).1;
     assert_eq!(moved.sensors[0][..17], as_it_is.sensors[0][..17]);
     assert_ne!(moved.sensors[0][23..26], as_it_is.sensors[0][23..26]);
-    let held_out = evaluator.protocols().remove(0).cases.iter().filter(|case| case.held_out).count();
+    let held_out = evaluator.info().protocols.remove(0).cases.iter().filter(|case| case.held_out).count();
     assert_eq!(held_out, 12);
 }

@@ -267,7 +267,7 @@ fn settings_that_do_not_go_together_are_refused_by_name() {
 /// Trials of an evolved genome that no run has met.
 fn trials(condition: &str, genes: &[u16]) -> Vec<Outcome> {
     let mut evaluator = prepared(&BodyEvolution, condition, &[]).unwrap();
-    let parameters = Genotype::new(&evaluator.parameters(), BodyEvolution.gene_bits()).decode(genes).unwrap();
+    let parameters = Genotype::new(&evaluator.info().parameters, BodyEvolution.gene_bits()).decode(genes).unwrap();
     let id = |trial| EpisodeId { seed: 1 << 63, trial, ..EpisodeId::default() };
     let evaluation = |trial| Evaluation::new(&parameters, id(trial));
     (0..3).map(|trial| evaluator.evaluate(evaluation(trial), None)).collect()

@@ -63,7 +63,7 @@ impl Group {
 
 /// The units of what the channels of sensors and motors stand for, of an experiment whose controllers say so.
 fn units(task: &dyn Task) -> [Vec<String>; 2] {
-    let middle: Vec<f32> = task.parameters().iter().map(|it| (0.5 * (it.ends[0] + it.ends[1])) as f32).collect();
+    let middle: Vec<f32> = task.info().parameters.iter().map(|it| (0.5 * (it.ends[0] + it.ends[1])) as f32).collect();
     let Some(controller) = task.exports().and_then(|exports| exports.controller(&middle)) else {
         return [Vec::new(), Vec::new()];
     };
@@ -103,7 +103,7 @@ impl Connections {
     pub(crate) fn new(plan: &Plan<'_>) -> Result<Self, Error> {
         let task = plan.evaluator()?;
         let (schema, Description { sensors, motors, network, steps, step_seconds, .. }) =
-            (task.schema(), task.description());
+            (task.info().schema, task.info().description);
         let names =
             |channels: &[farsa_view::Channel]| channels.iter().map(farsa_view::Channel::title).collect::<Vec<_>>();
         let [of_sensors, of_motors] = units(task.as_ref());
@@ -113,11 +113,16 @@ impl Connections {
             condition: plan.condition.clone(),
             sensors: groups(&sensors, &names(&schema.sensors), &of_sensors),
             network,
-            parameters: task.parameters().into_iter().map(|Parameter { name, ends }| Searched { name, ends }).collect(),
+            parameters: task
+                .info()
+                .parameters
+                .into_iter()
+                .map(|Parameter { name, ends }| Searched { name, ends })
+                .collect(),
             motors: groups(&motors, &names(&schema.outputs), &of_motors),
-            terms: task.terms(),
+            terms: task.info().terms,
             behaviour: BehaviourInfo::new(task.behaviour()),
-            trials: task.trials(),
+            trials: task.info().trials,
             steps,
             step_seconds,
         })

@@ -136,9 +136,9 @@ impl SettingInfo {
 impl Info {
     fn from_plan(plan: &Plan<'_>) -> Result<Self, Error> {
         let evaluator = plan.evaluator()?;
-        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
+        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.info().description;
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
-        let protocols = evaluator.protocols();
+        let protocols = evaluator.info().protocols;
         Protocol::check(&protocols)?;
         let settings = plan.settings.table().iter().map(SettingInfo::new);
         Ok(Self {
@@ -152,15 +152,15 @@ impl Info {
             motors,
             network,
             parameters,
-            genes: evaluator.parameters().len(),
-            genome_bits: plan.experiment.gene_bits() as usize * evaluator.parameters().len(),
-            trials: evaluator.trials(),
+            genes: evaluator.info().parameters.len(),
+            genome_bits: plan.experiment.gene_bits() as usize * evaluator.info().parameters.len(),
+            trials: evaluator.info().trials,
             steps,
             step_seconds,
-            fitness_terms: evaluator.terms(),
+            fitness_terms: evaluator.info().terms,
             behaviour: BehaviourInfo::new(evaluator.behaviour()),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
-            lesions: evaluator.anatomy().map(|anatomy| anatomy.names()).unwrap_or_default(),
+            lesions: evaluator.info().anatomy.map(|anatomy| anatomy.names()).unwrap_or_default(),
             settings: settings.collect(),
         })
     }

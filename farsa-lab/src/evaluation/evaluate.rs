@@ -169,7 +169,7 @@ pub(crate) fn evaluate(
     seed: u64,
     quiet: bool,
 ) -> Result<Evaluation, Error> {
-    let names = pool.evaluator().populations();
+    let names = pool.info().populations.clone();
     let genes = genes(given, plan.experiment.name(), &names, Shape::from_genotype(pool.genotype()))?;
     let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| genes.decode(pool.genotype())).collect();
     let parameters = parameters.unwrap_or_default();

@@ -66,7 +66,7 @@ pub(crate) fn import(
     out: &Path,
 ) -> Result<Summary, Error> {
     let evaluator = plan.evaluator()?;
-    let (names, genotype) = (evaluator.populations(), plan.genotype(evaluator.as_ref()));
+    let (names, genotype) = (evaluator.info().populations, plan.genotype(evaluator.as_ref()));
     let of = genomes(paths, plan.experiment.name(), &names, Shape::from_genotype(&genotype))?;
     let (populations, size) = (names.len(), of.first().map_or(0, Vec::len));
     if populations > 1 {

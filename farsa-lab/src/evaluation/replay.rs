@@ -146,7 +146,7 @@ impl Replayable {
         let genotype = plan.genotype(evaluator.as_ref());
         let others = || Error::damaged(path, "its genomes are not those of the experiment");
         let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
-        let trials = 0..evaluator.trials() as u32;
+        let trials = 0..evaluator.info().trials as u32;
         let trials = match trial {
             WhichTrial::All | WhichTrial::Best => trials,
             WhichTrial::Number(trial) if trials.contains(&trial) => trial..trial + 1,
@@ -154,7 +154,7 @@ impl Replayable {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let met = opponents::met(history, generation, individual as usize, trials.clone(), evaluator.trials())?;
+        let met = opponents::met(history, generation, individual as usize, trials.clone(), evaluator.info().trials)?;
         let decoded = |genes: &Vec<Genome>| genes.iter().map(|genes| genes.decode(&genotype)).collect::<Option<_>>();
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
@@ -207,7 +207,7 @@ impl Replayable {
     /// The schema of its recordings.
     pub(crate) fn schema(&self) -> Schema {
         let with = |bodies: &dyn Bodies| bodies.schema_with(&self.parameters);
-        self.evaluator.bodies().map_or_else(|| self.evaluator.schema(), with)
+        self.evaluator.bodies().map_or_else(|| self.evaluator.info().schema, with)
     }
 
     /// Replays one of the trials that were asked for.
@@ -254,7 +254,7 @@ impl Replayable {
 
     /// What came of each of the trials that were asked for.
     fn replayed(&self, outcomes: &[Outcome]) -> Vec<ReplayedTrial> {
-        let terms = self.evaluator.terms();
+        let terms = self.evaluator.info().terms;
         let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
             trial,
             steps: outcome.steps,
@@ -277,7 +277,7 @@ impl Replayable {
 /// # Errors
 /// [`Error::Usage`] if none can be.
 pub(crate) fn parts(evaluator: &dyn Evaluator, plan: &Plan<'_>) -> Result<Anatomy, Error> {
-    evaluator.anatomy().ok_or_else(|| {
+    evaluator.info().anatomy.ok_or_else(|| {
         let experiment = plan.experiment.name();
         Error::Usage(format!("--lesion: experiment `{experiment}` has no controller that can be changed"))
     })

@@ -12,7 +12,7 @@ use crate::evaluation::replay::{Found, Which};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::evaluation::trials::episode;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::Evaluation;
+use crate::experiment::evaluator::{Evaluation, TaskInfo};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
@@ -123,10 +123,9 @@ pub(crate) fn test(
     drop(progress);
     let results = results?;
 
-    let terms = pool.evaluator().terms();
-    let names = pool.evaluator().populations();
-    let failure = failure(&results, &terms);
-    let table = Table::new(&terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
+    let TaskInfo { terms, populations: names, .. } = pool.info();
+    let failure = failure(&results, terms);
+    let table = Table::new(terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
     let Subject { generation, individual, individuals, warning, .. } = subject;
     if other.is_none() {
         let path = directory.test();
@@ -134,7 +133,7 @@ pub(crate) fn test(
         let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
         recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
     }
-    let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
+    let (path, findings) = (directory.path().display().to_string(), table.findings(terms));
     Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
 }
 
@@ -181,7 +180,7 @@ impl Subject {
         }
         let Champions { identity, generation, best, normalisation } = Champions::read(plan, directory)?;
         let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
-        let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+        let parameters = parameters.filter(|all| all.len() == pool.info().populations.len());
         let Some(parameters) = parameters else {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         };
@@ -209,7 +208,7 @@ impl Subject {
         let wanted: Vec<(u32, usize)> = all.iter().map(|&individual| (generation, individual)).collect();
         let genomes = history.genomes(&wanted)?;
         let parameters: Option<Vec<_>> = genomes.iter().map(|genes| genes.decode(pool.genotype())).collect();
-        let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+        let parameters = parameters.filter(|all| all.len() == pool.info().populations.len());
         let several = all.len() > 1;
         Ok(Self {
             generation,
@@ -275,7 +274,7 @@ pub(crate) fn run_trials(
     progress: &Progress,
 ) -> Result<Vec<TrialResult>, Unfinished> {
     let Tested { parameters: champions, size, normalisation } = tested;
-    let (count, kinds) = (champions.len().max(1), pool.evaluator().trials().max(1));
+    let (count, kinds) = (champions.len().max(1), pool.info().trials.max(1));
     let others_of = |own: usize| champions.iter().enumerate().filter(move |(other, _)| *other != own);
     let others: Vec<Vec<&[f32]>> =
         (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();

@@ -31,7 +31,7 @@ pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
 /// What came of a trial, by name.
 pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String, String)> {
     let fitness = fitness(evaluator, core::slice::from_ref(outcome));
-    let terms = evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
+    let terms = evaluator.info().terms.into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
     let notes = outcome.notes.iter().map(|(name, note)| {
         let value = match note {
             Note::Number(x) => readable(*x),

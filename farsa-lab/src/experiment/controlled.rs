@@ -8,20 +8,16 @@ use farsa_body::ports::{
 use farsa_body::robot::Robot;
 use farsa_nn::Leak;
 use farsa_physics::arena::{Arena, Batch, World};
-use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::anatomy::Anatomy;
 use crate::experiment::controller_export::{ControllerExport, MotorDrive, MotorExport, SensorExport, SensorReading};
 use crate::experiment::episode::{Episode, EpisodeId, seconds};
-use crate::experiment::evaluator::{Evaluation, Exports, Task};
+use crate::experiment::evaluator::{Evaluation, Exports, Task, TaskInfo};
 use crate::experiment::in_world::{InWorld, Rollout};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::network_export::NetworkExport;
 use crate::experiment::neurocontroller::Neurocontroller;
-use crate::experiment::outcome::{Description, Note, Outcome};
-use crate::experiment::parameter::Parameter;
-use crate::experiment::protocol::Protocol;
+use crate::experiment::outcome::{Note, Outcome};
 
 /// A world of wheeled robots: an arena alone, a lane of many, or one in rapier.
 pub trait PlanarWorld:
@@ -148,33 +144,16 @@ where
 }
 
 impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S, M, O> {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.control.parameters()
-    }
-
-    fn schema(&self) -> Schema {
-        self.control.schema().clone()
-    }
-
-    fn description(&self) -> Description {
-        self.control.description(self.trials.steps as usize, self.trials.time_step)
-    }
-
-    fn trials(&self) -> usize {
-        self.trials.count
-    }
-
-    fn observations(&self) -> usize {
-        self.control.sensed().len()
-    }
-
     /// Those of [`Neurocontroller::protocols`].
-    fn protocols(&self) -> Vec<Protocol> {
-        self.control.protocols()
-    }
-
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(self.control.anatomy())
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: self.control.description(self.trials.steps as usize, self.trials.time_step),
+            trials: self.trials.count,
+            observations: self.control.sensed().len(),
+            protocols: self.control.protocols(),
+            anatomy: Some(self.control.anatomy()),
+            ..TaskInfo::new(self.control.parameters(), self.control.schema().clone())
+        }
     }
 
     fn exports(&self) -> Option<&dyn Exports> {

@@ -18,99 +18,107 @@ use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::{CaseId, Protocol};
 
-/// What there is to know of an experiment under its settings before anything is evaluated.
+/// The data of a task under its settings: parameters, recording, trials, and what tests can do with it.
 ///
-/// Beside the two that are required, methods say what is so for some experiments only: several populations, exports,
-/// bodies that are made of parameters.
-pub trait Task: Send {
-    /// The parameters that an evaluation takes, in their order.
-    fn parameters(&self) -> Vec<Parameter>;
-
-    /// What an episode records at every step, by name: [`Schema::from_scalars`] if it is a row of numbers.
-    fn schema(&self) -> Schema;
-
-    /// What the robot senses, does and computes with, for `farsa info`; by default the number of parameters alone.
-    fn description(&self) -> Description {
-        Description { parameters: self.parameters().len(), ..Description::default() }
-    }
-
-    /// Trials of an evaluation.
-    fn trials(&self) -> usize {
-        1
-    }
-
-    /// The step at which an episode that has not ended is stopped and counts as failed, so that one without an end ends.
+/// Start from [`new`](Self::new) and name the fields that differ:
+///
+/// ```
+/// use farsa_lab::{Parameter, Schema, TaskInfo};
+///
+/// let parameters = vec![Parameter::new("gain", [-1.0, 1.0])];
+/// let info = TaskInfo { trials: 5, ..TaskInfo::new(parameters, Schema::from_scalars(["angle [rad]"])) };
+/// assert_eq!(info.step_budget(), 10_000_000);
+/// ```
+#[derive(Debug, Clone)]
+pub struct TaskInfo {
+    /// Parameters of an evaluation, in order.
+    pub parameters: Vec<Parameter>,
+    /// Names of the values that an episode records at every step: [`Schema::from_scalars`] for a row of numbers.
+    pub schema: Schema,
+    /// Sensors, motors and network for `farsa info`. By default only the number of parameters.
+    pub description: Description,
+    /// Trials per evaluation. By default 1.
+    pub trials: usize,
+    /// Step at which an episode is stopped and counts as failed. By default see [`step_budget`](Self::step_budget).
+    pub step_budget: Option<u64>,
+    /// Names of the fitness terms in [`Outcome::terms`], in order. By default `fitness`.
+    pub terms: Vec<String>,
+    /// Names of the populations that evolve against each other, one word each. By default one population, `0`.
     ///
-    /// By default the most steps that the [`description`](Self::description) names, or ten million where it names none.
-    fn step_budget(&self) -> u64 {
-        match self.description().steps {
-            0 => 10_000_000,
-            steps => steps as u64,
+    /// Individuals are numbered through, one population after the other: see [`EpisodeId::population`]. Each population
+    /// has `evolution.population` individuals and all parameters.
+    pub populations: Vec<String>,
+    /// Names of the robots, when the channels of any one of several can be recorded.
+    pub robots: Vec<String>,
+    /// Number of observed channels that can be normalized. By default 0, without normalization.
+    ///
+    /// A [`NormalisedController`](crate::NormalisedController) normalizes, and [`Outcome::observed`] reports its statistics.
+    pub observations: usize,
+    /// Test protocols of `farsa test --protocol`. By default none.
+    ///
+    /// They are the same under all settings, except settings that remove the subject of a protocol.
+    pub protocols: Vec<Protocol>,
+    /// Parts of the controller that `farsa test --lesion` can change. By default none.
+    ///
+    /// The evaluator must apply [`Evaluation::intervention`]. [`Interventions::applied`] combines it with the case.
+    ///
+    /// [`Interventions::applied`]: crate::Interventions::applied
+    pub anatomy: Option<Anatomy>,
+}
+
+impl TaskInfo {
+    /// A task of one population and one trial with these parameters and this recording.
+    pub fn new(parameters: Vec<Parameter>, schema: Schema) -> Self {
+        let description = Description { parameters: parameters.len(), ..Description::default() };
+        Self {
+            parameters,
+            schema,
+            description,
+            trials: 1,
+            step_budget: None,
+            terms: vec!["fitness".into()],
+            populations: vec!["0".into()],
+            robots: Vec::new(),
+            observations: 0,
+            protocols: Vec::new(),
+            anatomy: None,
         }
     }
 
-    /// Names of the terms of the fitness that [`Outcome::terms`] holds, in its order.
-    fn terms(&self) -> Vec<String> {
-        vec!["fitness".into()]
-    }
-
-    /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
+    /// Returns the step at which an episode is stopped, so that every episode ends.
     ///
-    /// By default the sum of all terms.
+    /// Without a `step_budget` it is the number of steps in the description, or ten million if there is none.
+    pub fn step_budget(&self) -> u64 {
+        self.step_budget.unwrap_or(match self.description.steps {
+            0 => 10_000_000,
+            steps => steps as u64,
+        })
+    }
+}
+
+/// A task: its data, its fitness, and the abilities of some tasks.
+pub trait Task: Send {
+    /// Returns the data of the task. The same settings must give the same data.
+    fn info(&self) -> TaskInfo;
+
+    /// Returns the fitness of an individual from its trials, in the order of trials.
+    ///
+    /// By default the sum of all terms. `farsa test` also calls it with single trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         trials.iter().flat_map(|outcome| &outcome.terms).sum()
     }
 
-    /// What the populations that evolve against each other are called, in their order: one word each. By default there is
-    /// one population, and it is called 0.
-    ///
-    /// The individuals of all are numbered through, one population after the other: see [`EpisodeId::population`]. Each
-    /// has `evolution.population` individuals and all parameters.
-    fn populations(&self) -> Vec<String> {
-        vec!["0".into()]
-    }
-
-    /// The robots by name, where there are several and the channels of any one of them can be recorded.
-    fn robots(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// How many channels a controller observes, where observations can be normalised: a [`NormalisedController`] does
-    /// that, and the [`Outcome`] says what was observed. By default 0: they cannot be.
-    ///
-    /// [`NormalisedController`]: crate::NormalisedController
-    fn observations(&self) -> usize {
-        0
-    }
-
-    /// More objectives than the fitness, and what an individual did, where the experiment says so.
+    /// Returns further objectives and measures of an individual, if the task has any.
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         None
     }
 
-    /// The tests that `farsa test --protocol` offers beside its plain one; by default none.
-    ///
-    /// The same under all settings but those that take away what a protocol is about, and the same whenever it is asked.
-    fn protocols(&self) -> Vec<Protocol> {
-        Vec::new()
-    }
-
-    /// The parts of the controller that `farsa test --lesion` can change; by default none can be.
-    ///
-    /// An evaluator that names them does what [`Evaluation::intervention`] says, as [`Interventions::applied`] brings it together
-    /// with the case.
-    ///
-    /// [`Interventions::applied`]: crate::Interventions::applied
-    fn anatomy(&self) -> Option<Anatomy> {
-        None
-    }
-
-    /// What can be exported, if anything can.
+    /// Returns the exports of the task, if it has any.
     fn exports(&self) -> Option<&dyn Exports> {
         None
     }
 
-    /// How bodies are made of parameters, if they are.
+    /// Returns the construction of bodies from parameters, if bodies evolve.
     fn bodies(&self) -> Option<&dyn Bodies> {
         None
     }
@@ -118,12 +126,12 @@ pub trait Task: Send {
 
 /// What `farsa export` writes of an experiment; each by default nothing.
 pub trait Exports {
-    /// What a MuJoCo model of the robot in the [`schema`](Task::schema) says beside the robot.
+    /// What a MuJoCo model of the robot in the [`schema`](TaskInfo::schema) says beside the robot.
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         None
     }
 
-    /// The robot as other programs may have it, where that is not the one of the [`schema`](Task::schema): of these
+    /// The robot as other programs may have it, where that is not the one of the [`schema`](TaskInfo::schema): of these
     /// parameters where bodies are made of them, else, or without parameters, the experiment's own.
     ///
     /// Its MuJoCo model steps as [`MjcfOptions::default`] does, unless [`mjcf_options`](Self::mjcf_options) says otherwise.
@@ -153,7 +161,7 @@ pub trait Exports {
 
 /// Bodies that are made of parameters.
 pub trait Bodies {
-    /// The schema of one evaluation's episodes; its channels are those of [`Task::schema`], whatever the parameters.
+    /// The schema of one evaluation's episodes; its channels are those of [`TaskInfo::schema`], whatever the parameters.
     fn schema_with(&self, parameters: &[f32]) -> Schema;
 }
 
@@ -162,27 +170,27 @@ pub trait Bodies {
 pub struct Evaluation<'p> {
     /// Its number among those that are evaluated together.
     pub number: usize,
-    /// The parameters \[[`Task::parameters`]\].
+    /// The parameters \[[`TaskInfo::parameters`]\].
     pub parameters: &'p [f32],
     /// Those of its opponents, one of each other population in the order of the populations; empty where there is only one.
     ///
     /// Which population the parameters are of follows from the episode, [`EpisodeId::population`].
     pub opponents: &'p [&'p [f32]],
-    /// What was observed in all generations before, where observations are to be normalised \[[`Task::observations`]\].
+    /// What was observed in all generations before, where observations are to be normalised \[[`TaskInfo::observations`]\].
     pub normalisation: Option<&'p ObservationStatistics>,
     /// Which episode.
     pub id: EpisodeId,
-    /// The case of a test protocol that it belongs to \[[`Task::protocols`]\]; none in a run and in a plain test.
+    /// The case of a test protocol that it belongs to \[[`TaskInfo::protocols`]\]; none in a run and in a plain test.
     ///
     /// All cases of a protocol have the same episodes, so that they differ in nothing but the case.
     pub case: Option<CaseId>,
-    /// What else is done to the controller, where a test asks for that \[[`Task::anatomy`]\].
+    /// What else is done to the controller, where a test asks for that \[[`TaskInfo::anatomy`]\].
     pub intervention: Option<&'p Intervention>,
     /// Bodies that are put elsewhere in its course \[[`Evaluator::displaces`]\]; none in a run and in a test.
     pub displacements: &'p [Displacement],
     /// Forces on bodies in its course \[[`Evaluator::pushes`]\]; none in a run and in a test.
     pub pushes: &'p [Push],
-    /// Of several robots the one whose channels are recorded \[[`Task::robots`]\]; by default the individual's first.
+    /// Of several robots the one whose channels are recorded \[[`TaskInfo::robots`]\]; by default the individual's first.
     pub watched: Option<u32>,
 }
 
@@ -213,9 +221,9 @@ impl<'p> Evaluation<'p> {
 pub trait Evaluator: Task {
     /// Runs one trial from its start to its end.
     ///
-    /// What [`schema`](Task::schema) names goes to the recorder at every step if there is one; whether there is must
+    /// What [`schema`](TaskInfo::schema) names goes to the recorder at every step if there is one; whether there is must
     /// not change the outcome. A trial that broke down is [`Outcome::failed`]; one that panics counts as such, and this value is
-    /// then dropped and made again. [`InWorld`](crate::InWorld) ends a trial at its [step budget](Task::step_budget); a loop of
+    /// then dropped and made again. [`InWorld`](crate::InWorld) ends a trial at its [step budget](TaskInfo::step_budget); a loop of
     /// one's own has to end by itself.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
@@ -269,7 +277,7 @@ pub trait Learner {
     /// The same state, seed and generation must become the same state, whatever this value did before.
     fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration>;
 
-    /// What has been learned in this state: a value for each of the task's [`parameters`](Task::parameters), which is evaluated
+    /// What has been learned in this state: a value for each of the task's [`parameters`](TaskInfo::parameters), which is evaluated
     /// after it was rounded to the nearest gene.
     fn learned(&self, state: &[f64]) -> Vec<f64>;
 }

@@ -2,20 +2,16 @@
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Arrange, BodyId, ExternalForces, Handles, Kinematics, World};
-use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::disturbance::{Apply, Disturbances, Disturbed, Place, apply, place};
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
-use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task};
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task, TaskInfo};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
-use crate::experiment::outcome::{Description, Outcome};
-use crate::experiment::parameter::Parameter;
-use crate::experiment::protocol::Protocol;
+use crate::experiment::outcome::Outcome;
 
 /// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
 pub trait Rollout: Task {
@@ -128,7 +124,7 @@ impl<W, R> InWorld<W, R> {
     {
         self.make = Some(Box::new(move |lanes, rollout: &R| {
             let batch = batch(lanes)?;
-            let (budget, count) = (rollout.step_budget(), lanes.count());
+            let (budget, count) = (rollout.info().step_budget(), lanes.count());
             let limited = (0..count).map(|_| Limited::new(rollout.clone(), budget));
             let episodes = limited.map(|limited| Numbered { limited, number: 0 }).collect();
             Ok(Box::new(InBatch { batch, episodes }))
@@ -167,44 +163,14 @@ impl<W, R> InWorld<W, R> {
 }
 
 impl<W: Send, R: Rollout> Task for InWorld<W, R> {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.rollout.parameters()
-    }
-    fn schema(&self) -> Schema {
-        self.rollout.schema()
-    }
-    fn description(&self) -> Description {
-        self.rollout.description()
-    }
-    fn trials(&self) -> usize {
-        self.rollout.trials()
-    }
-    fn step_budget(&self) -> u64 {
-        self.rollout.step_budget()
-    }
-    fn terms(&self) -> Vec<String> {
-        self.rollout.terms()
+    fn info(&self) -> TaskInfo {
+        self.rollout.info()
     }
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         self.rollout.fitness(trials)
     }
-    fn populations(&self) -> Vec<String> {
-        self.rollout.populations()
-    }
-    fn robots(&self) -> Vec<String> {
-        self.rollout.robots()
-    }
-    fn observations(&self) -> usize {
-        self.rollout.observations()
-    }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.rollout.behaviour()
-    }
-    fn protocols(&self) -> Vec<Protocol> {
-        self.rollout.protocols()
-    }
-    fn anatomy(&self) -> Option<Anatomy> {
-        self.rollout.anatomy()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.rollout.exports()
@@ -226,7 +192,7 @@ where
         if let Some(recorder) = &mut recorder {
             self.rollout.record_parameters(*recorder);
         }
-        let budget = *self.budget.get_or_insert_with(|| self.rollout.step_budget());
+        let budget = *self.budget.get_or_insert_with(|| self.rollout.info().step_budget());
         let mut limited = Limited::new(&mut self.rollout, budget);
         let Evaluation { id, displacements, pushes, .. } = evaluation;
         let disturbances = Disturbances { displacements, pushes, place: self.place, apply: self.apply };

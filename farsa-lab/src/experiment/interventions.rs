@@ -80,7 +80,7 @@ impl Interventions {
         self.with_protocol(protocol, levels.iter().copied().map(Intervention::noise).collect())
     }
 
-    /// The protocols: what [`Task::protocols`](crate::Task::protocols) returns.
+    /// The protocols: what [`TaskInfo::protocols`](crate::TaskInfo::protocols) returns.
     pub fn protocols(&self) -> Vec<Protocol> {
         self.protocols.iter().map(|(protocol, _)| protocol.clone()).collect()
     }

@@ -64,7 +64,7 @@ pub use controller_export::{
 pub use definition::{Experiment, SimpleExperiment};
 pub use disturbance::{Displacement, Push};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
-pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task};
+pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task, TaskInfo};
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
 pub use in_world::{InWorld, Rollout};

@@ -7,7 +7,7 @@ use farsa_evo::ObservationStatistics;
 /// What came of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
-    /// The terms of the fitness, named by [`Task::terms`](crate::Task::terms); a term that is not finite makes the individual a failed one.
+    /// The terms of the fitness, named by [`TaskInfo::terms`](crate::TaskInfo::terms); a term that is not finite makes the individual a failed one.
     pub terms: Vec<f64>,
     /// Steps of the episode.
     pub steps: u32,
@@ -28,7 +28,7 @@ pub struct Outcome {
 pub enum Failure {
     /// It panicked: the message and the place in the source.
     Panicked(String),
-    /// It had not ended after so many steps, [`Task::step_budget`](crate::Task::step_budget).
+    /// It had not ended after so many steps, [`TaskInfo::step_budget`](crate::TaskInfo::step_budget).
     Endless(u64),
 }
 

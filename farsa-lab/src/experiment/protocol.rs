@@ -73,7 +73,7 @@ impl Case {
 /// Which case of which protocol a trial belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseId {
-    /// Index of the protocol in [`Task::protocols`](crate::Task::protocols).
+    /// Index of the protocol in [`TaskInfo::protocols`](crate::TaskInfo::protocols).
     pub protocol: usize,
     /// Index of the case in [`Protocol::cases`].
     pub case: usize,

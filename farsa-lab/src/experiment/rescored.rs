@@ -1,16 +1,12 @@
 //! An experiment that there is, under another fitness.
 
 use farsa_body::Recorder;
-use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
-use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task};
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task, TaskInfo};
 use crate::experiment::lanes::Lanes;
-use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
-use crate::experiment::parameter::Parameter;
-use crate::experiment::protocol::Protocol;
+use crate::experiment::outcome::{Outcome, mean_of_trials};
 
 /// Evaluates as another evaluator does, and puts terms of its own in the place of the outcomes'.
 ///
@@ -41,44 +37,14 @@ fn rescore(score: &Score, outcome: Outcome) -> Outcome {
 }
 
 impl Task for Rescored {
-    fn parameters(&self) -> Vec<Parameter> {
-        self.inner.parameters()
-    }
-    fn schema(&self) -> Schema {
-        self.inner.schema()
-    }
-    fn description(&self) -> Description {
-        self.inner.description()
-    }
-    fn trials(&self) -> usize {
-        self.inner.trials()
-    }
-    fn step_budget(&self) -> u64 {
-        self.inner.step_budget()
-    }
-    fn terms(&self) -> Vec<String> {
-        self.names.clone()
+    fn info(&self) -> TaskInfo {
+        TaskInfo { terms: self.names.clone(), ..self.inner.info() }
     }
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
     }
-    fn populations(&self) -> Vec<String> {
-        self.inner.populations()
-    }
-    fn robots(&self) -> Vec<String> {
-        self.inner.robots()
-    }
-    fn observations(&self) -> usize {
-        self.inner.observations()
-    }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.inner.behaviour()
-    }
-    fn protocols(&self) -> Vec<Protocol> {
-        self.inner.protocols()
-    }
-    fn anatomy(&self) -> Option<Anatomy> {
-        self.inner.anatomy()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.inner.exports()

@@ -50,7 +50,7 @@ pub(crate) fn robot(
     format: ModelFormat,
 ) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
-    let (name, names) = (plan.experiment.name(), evaluator.populations());
+    let (name, names) = (plan.experiment.name(), evaluator.info().populations);
     let parameters = match (run, evaluator.bodies()) {
         (Some((directory, population)), Some(_)) => {
             let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
@@ -66,10 +66,10 @@ pub(crate) fn robot(
     let own = evaluator.exports().and_then(|exports| exports.robot(parameters.as_deref()));
     let recorded = || match (&parameters, evaluator.bodies()) {
         (Some(parameters), Some(bodies)) => bodies.schema_with(parameters).robot,
-        _ => evaluator.schema().robot,
+        _ => evaluator.info().schema.robot,
     };
     // What a robot of the plane steps by is no step of its dynamics.
-    let step = if own.is_some() { 0.0 } else { evaluator.description().step_seconds };
+    let step = if own.is_some() { 0.0 } else { evaluator.info().description.step_seconds };
     let robot = own.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
         ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref(), step)),
@@ -97,7 +97,7 @@ impl Champion {
     ) -> Result<Self, Error> {
         let Champions { generation, mut best, normalisation, .. } =
             Champions::read_checked(plan, directory, evaluator)?;
-        let (experiment, names) = (plan.experiment.name(), evaluator.populations());
+        let (experiment, names) = (plan.experiment.name(), evaluator.info().populations);
         let population = Populations { experiment, names: &names }.one("--population", population)?;
         if population >= best.len() {
             return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
@@ -210,7 +210,7 @@ pub(crate) fn controller(
     let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
     as_they_are(champion.normalisation.as_ref(), directory)?;
     let parameters = champion.parameters(plan, directory, evaluator.as_ref())?;
-    let names = evaluator.populations();
+    let names = evaluator.info().populations;
     let exports = evaluator.exports();
     let controller = exports.and_then(|exports| exports.controller_of(champion.population, &parameters));
     let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
@@ -236,7 +236,7 @@ pub(crate) fn controller(
 pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let start = |trial| evaluator.exports()?.start(trials::episode(trial, evaluator.trials(), seed));
+    let start = |trial| evaluator.exports()?.start(trials::episode(trial, evaluator.info().trials, seed));
     let starts: Option<Vec<_>> = (0..trials).map(start).collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
     pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })

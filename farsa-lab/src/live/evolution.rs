@@ -4,7 +4,7 @@ use farsa_evo::{Fitness, ObservationStatistics, Snapshot as _};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::evaluator::Evaluator;
+use crate::experiment::evaluator::{Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::outcome::Outcome;
 use crate::live::bytes::Bytes;
@@ -33,6 +33,7 @@ pub(crate) struct Bred {
 /// A search that goes on.
 pub(crate) struct Evolution {
     progression: SearchState,
+    info: TaskInfo,
     genotype: Genotype,
     /// The champions so far, and what the first of them earned.
     champions: Option<(Fitness, Vec<Evolved>)>,
@@ -53,7 +54,8 @@ impl Evolution {
         }
         let populations = search.populations();
         let floats = standing.hall.floats();
-        let each = evaluator.parameters().len().max(1);
+        let info = evaluator.info();
+        let each = info.parameters.len().max(1);
         if !floats.len().is_multiple_of(populations * each) {
             return Err(wrong("its champions are of another length"));
         }
@@ -66,7 +68,7 @@ impl Evolution {
             None => None,
         };
         let progression = SearchState::new(search, hall, observed, plan.seed);
-        Ok(Self { progression, genotype: plan.genotype(evaluator), champions: None })
+        Ok(Self { progression, info, genotype: plan.genotype(evaluator), champions: None })
     }
 
     /// Evaluates a part of the present generation: of `parts` that are as large, the one with this number.
@@ -78,7 +80,7 @@ impl Evolution {
             return Err(Error::Usage(format!("part {part} of {parts}; at most {MOST_PARTS}, the first is 0")));
         }
         let part = Part::Share { part, parts, found: Vec::new() };
-        let mut session = Session { evaluator, genotype: &self.genotype, part };
+        let mut session = Session { evaluator, info: &self.info, genotype: &self.genotype, part };
         let ended = self.progression.generation(&mut session, &|| {}, |_, _| Ok(()));
         if let Err(Unfinished::Error(error)) = ended {
             return Err(error);
@@ -101,7 +103,7 @@ impl Evolution {
         }
         all.sort_by_key(|(number, _)| *number);
         let generation = self.progression.search.generation();
-        let mut session = Session { evaluator, genotype: &self.genotype, part: Part::Known(all) };
+        let mut session = Session { evaluator, info: &self.info, genotype: &self.genotype, part: Part::Known(all) };
         let found = self.progression.generation(&mut session, &|| {}, Search::tell_unrecorded);
         let GenerationResult { fitness, statistics, each, best, met, normalisation, .. } =
             found.map_err(|error| match error {
@@ -134,6 +136,7 @@ enum Part {
 /// Evaluates a part of a generation, or knows what all came to.
 struct Session<'s> {
     evaluator: &'s mut dyn Evaluator,
+    info: &'s TaskInfo,
     genotype: &'s Genotype,
     part: Part,
 }
@@ -141,6 +144,10 @@ struct Session<'s> {
 impl EvaluationBackend for Session<'_> {
     fn evaluator(&self) -> &dyn Evaluator {
         self.evaluator
+    }
+
+    fn info(&self) -> &TaskInfo {
+        self.info
     }
 
     fn genotype(&self) -> &Genotype {

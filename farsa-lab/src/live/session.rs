@@ -57,7 +57,7 @@ impl Agent {
     /// # Errors
     /// [`Error::Other`] for an individual of another experiment.
     fn new(own: Evolved, evaluator: &dyn Evaluator) -> Result<Self, Error> {
-        let (expected, found) = (evaluator.parameters().len(), own.parameters.len());
+        let (expected, found) = (evaluator.info().parameters.len(), own.parameters.len());
         if expected != found {
             return Err(Error::Other(format!("script: an individual of {found} parameters where {expected} are")));
         }
@@ -138,7 +138,7 @@ impl LiveSession {
 
     /// Kinds of trials.
     pub(crate) fn trials(&self) -> usize {
-        self.evaluator.trials()
+        self.evaluator.info().trials
     }
 
     /// Whether bodies can be put elsewhere.
@@ -153,12 +153,12 @@ impl LiveSession {
 
     /// The robots of which any can be recorded.
     pub(crate) fn robots(&self) -> Vec<String> {
-        self.evaluator.robots()
+        self.evaluator.info().robots
     }
 
     /// The names of the populations, where there are several.
     pub(crate) fn populations(&self) -> Vec<String> {
-        let names = self.evaluator.populations();
+        let names = self.evaluator.info().populations;
         if names.len() > 1 { names } else { Vec::new() }
     }
 
@@ -170,13 +170,13 @@ impl LiveSession {
         let Film { individual, trial, lesion, watched, .. } = asked;
         let schema = schema(self.evaluator.as_ref(), &one(&self.individuals, *individual)?.own);
         let (displacements, pushes) = &hands(self.evaluator.as_ref(), self.name, &schema, asked)?;
-        let robots = self.evaluator.robots();
+        let robots = self.evaluator.info().robots;
         if let Some(robot) = watched.filter(|robot| *robot as usize >= robots.len()) {
             return Err(Error::Usage(format!("robot {robot} of {} (the first is 0)", robots.len())));
         }
         let intervention = self.intervention(lesion)?;
         let Self { evaluator, individuals, seed, .. } = self;
-        let (individual, kinds) = (one(individuals, *individual)?, evaluator.trials());
+        let (individual, kinds) = (one(individuals, *individual)?, evaluator.info().trials);
         let (id, name) = match *trial {
             Trial::Number(trial) if (trial as usize) < kinds => {
                 let Evolved { generation, individual, .. } = individual.own;
@@ -222,7 +222,7 @@ impl LiveSession {
         }
         let intervention = self.intervention(lesion)?;
         let Self { evaluator, individuals, .. } = self;
-        let (agent, kinds) = (one(individuals, individual)?, evaluator.trials());
+        let (agent, kinds) = (one(individuals, individual)?, evaluator.info().trials);
         let ids: Vec<EpisodeId> = numbers.map(|number| episode(number, kinds, seed)).collect();
         let met: Vec<Vec<&[f32]>> = ids.iter().map(|id| agent.met(id.trial)).collect();
         let all = ids.iter().zip(&met).enumerate().map(|(number, (id, opponents))| {
@@ -244,13 +244,13 @@ impl LiveSession {
         if lesion.is_empty() {
             return Ok(None);
         }
-        let anatomy = self.evaluator.anatomy();
+        let anatomy = self.evaluator.info().anatomy;
         let none = || Error::Usage(format!("experiment `{}` has no controller that can be changed", self.name));
         anatomy.ok_or_else(none)?.intervention(lesion).map(Some)
     }
 
     fn names(&self) -> Vec<PartNames> {
-        self.evaluator.anatomy().map(|anatomy| anatomy.names()).unwrap_or_default()
+        self.evaluator.info().anatomy.map(|anatomy| anatomy.names()).unwrap_or_default()
     }
 }
 
@@ -268,7 +268,7 @@ fn one(individuals: &[Agent], place: usize) -> Result<&Agent, Error> {
 /// The schema of an individual's recordings.
 fn schema(evaluator: &dyn Evaluator, individual: &Evolved) -> Schema {
     let with = |bodies: &dyn Bodies| bodies.schema_with(&individual.parameters);
-    evaluator.bodies().map_or_else(|| evaluator.schema(), with)
+    evaluator.bodies().map_or_else(|| evaluator.info().schema, with)
 }
 
 /// Evaluates these, in lanes where the experiment has them; their numbers are their places.

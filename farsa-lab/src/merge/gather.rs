@@ -171,9 +171,9 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
     use crate::experiment::lanes::Wanted;
-    use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::outcome::Outcome;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings};
     use crate::run::pool::Pool;
@@ -206,14 +206,8 @@ mod tests {
     }
 
     impl Task for Toy {
-        fn parameters(&self) -> Vec<Parameter> {
-            vec![Parameter::new("gene", [0.0, 65535.0])]
-        }
-        fn schema(&self) -> Schema {
-            Schema::from_scalars(["gene"])
-        }
-        fn description(&self) -> Description {
-            Description::default()
+        fn info(&self) -> TaskInfo {
+            TaskInfo::new(vec![Parameter::new("gene", [0.0, 65535.0])], Schema::from_scalars(["gene"]))
         }
     }
 

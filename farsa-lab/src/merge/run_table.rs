@@ -58,7 +58,7 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     let test = match test::read(&run.directory)? {
         None => Default::default(),
         Some((table, record)) => {
-            let found = table.findings(&plan.evaluator()?.terms());
+            let found = table.findings(&plan.evaluator()?.info().terms);
             [
                 record.map(|record| record.generation.to_string()).unwrap_or_default(),
                 found.trials.to_string(),
@@ -74,7 +74,7 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
 /// The names of a run's populations, if there are several.
 fn names(run: &Gathered<'_>) -> Result<Vec<String>, Error> {
     let several = run.lines.last().is_some_and(|line| !line.each.is_empty());
-    Ok(if several { run.plan.evaluator()?.populations() } else { Vec::new() })
+    Ok(if several { run.plan.evaluator()?.info().populations } else { Vec::new() })
 }
 
 /// The names of all populations of runs that have several, each once.

@@ -81,7 +81,7 @@ impl<'e> Run<'e> {
         };
         let kept = kept.map_err(|why| Error::damaged(Path::new("the picture of what is kept"), why))?;
         let RunRecord { lines, diagnostics, .. } = told;
-        let (populations, terms) = (evaluator.populations(), evaluator.terms());
+        let (populations, terms) = (evaluator.info().populations, evaluator.info().terms);
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
         let test = test::read(&directory)?.map(tested);

@@ -104,7 +104,7 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
     for group in groups {
         let Some(run) = group.runs.first() else { continue };
         let evaluator = run.plan.evaluator()?;
-        let description = evaluator.description();
+        let description = evaluator.info().description;
         let list = |numbers: &mut dyn Iterator<Item = String>| {
             let mut numbers: Vec<String> = numbers.collect();
             numbers.dedup();
@@ -118,16 +118,16 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
                 Ok(all) if all as usize > run.lines.len() => format!("{} of {all}", run.lines.len()),
                 _ => run.lines.len().to_string(),
             })),
-            match (run.value(POPULATION), evaluator.populations().len()) {
+            match (run.value(POPULATION), evaluator.info().populations.len()) {
                 (Some(size), 1) => size.to_string(),
                 (Some(size), populations) => format!("{populations} populations of {size}"),
                 (None, _) => "1 parent and 1 mutant".into(),
             },
-            evaluator.trials().to_string(),
+            evaluator.info().trials.to_string(),
             format!("at most {}{clock}", description.steps),
             description.network,
-            format!("{} genes of {} bits", evaluator.parameters().len(), run.plan.experiment.gene_bits()),
-            evaluator.terms().join(" + "),
+            format!("{} genes of {} bits", evaluator.info().parameters.len(), run.plan.experiment.gene_bits()),
+            evaluator.info().terms.join(" + "),
         ];
         table.head.push(group.label.clone());
         for (row, cell) in table.rows.iter_mut().zip(cells) {

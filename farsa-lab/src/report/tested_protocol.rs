@@ -24,7 +24,7 @@ impl TestedProtocol {
     /// # Errors
     /// [`Error::Damaged`], [`Error::Io`].
     pub(crate) fn all(directory: &Directory, evaluator: &dyn Evaluator) -> Result<(Vec<Self>, Vec<Protocol>), Error> {
-        let (protocols, terms) = (evaluator.protocols(), evaluator.terms());
+        let (protocols, terms) = (evaluator.info().protocols, evaluator.info().terms);
         Protocol::check(&protocols)?;
         let (mut tested, mut others) = (Vec::new(), Vec::new());
         for protocol in protocols {

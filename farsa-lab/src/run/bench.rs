@@ -86,7 +86,7 @@ impl Sample {
         let lost = |why: &str| Error::Other(format!("the opponents of {}: {why}", plan.name()));
         let evaluator = plan.evaluator()?;
         let parameters = parameters.ok_or_else(|| lost("genomes of another length"))?;
-        let (trials, size) = (evaluator.trials(), parameters.len() / populations);
+        let (trials, size) = (evaluator.info().trials, parameters.len() / populations);
         let meeting = Meeting { generation: finished, populations, size, trials };
         let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost("one is missing"))?;
         let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
@@ -216,12 +216,12 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
 impl Study {
     /// Returns the study of a plan. `mean` is the mean number of steps of a trial.
     fn new(plan: &Plan<'_>, pool: &Pool, population: usize, mean: f64) -> Result<Self, Error> {
-        let most = pool.evaluator().description().steps;
+        let most = pool.info().description.steps;
         let study = Self {
             replications: REPLICATIONS,
             generations: plan.generations()?.into(),
             population: population as u64,
-            trials: pool.evaluator().trials() as u64,
+            trials: pool.info().trials as u64,
             steps: if most == 0 { mean } else { most as f64 },
             control_steps: 0.0,
         };
@@ -329,7 +329,7 @@ fn ticks(stat: &str) -> Option<u64> {
 mod tests {
     use super::*;
     use crate::experiment::definition::Experiment;
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::Description;
     use crate::experiment::parameter::Parameter;
@@ -359,17 +359,12 @@ mod tests {
     }
 
     impl Task for Toy {
-        fn parameters(&self) -> Vec<Parameter> {
-            vec![Parameter::new("none", [0.0, 1.0])]
-        }
-        fn trials(&self) -> usize {
-            3
-        }
-        fn schema(&self) -> Schema {
-            Schema::default()
-        }
-        fn description(&self) -> Description {
-            Description { steps: self.most, ..Description::default() }
+        fn info(&self) -> TaskInfo {
+            TaskInfo {
+                description: Description { steps: self.most, ..Description::default() },
+                trials: 3,
+                ..TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], Schema::default())
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! Who evaluates a generation: the threads and ranks of a run, or the workers of a page.
 
 use crate::error::Error;
-use crate::experiment::evaluator::{Evaluation, Evaluator};
+use crate::experiment::evaluator::{Evaluation, Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::outcome::Outcome;
 
@@ -14,6 +14,9 @@ pub(crate) type Heard<'t> = dyn Fn(usize, Option<&Outcome>) + Sync + 't;
 pub(crate) trait EvaluationBackend {
     /// The experiment.
     fn evaluator(&self) -> &dyn Evaluator;
+
+    /// The data of the task.
+    fn info(&self) -> &TaskInfo;
 
     /// How genes stand for the experiment's parameters.
     fn genotype(&self) -> &Genotype;

@@ -137,7 +137,7 @@ impl<'d> Run<'d> {
             directory,
             program,
             title: plan.name(),
-            names: pool.evaluator().populations(),
+            names: pool.info().populations.clone(),
             identity: checkpoint.identity,
             collection: CollectionTable::new(search, pool.evaluator()),
             curves: LogCurves::from_lines(&run_record.lines, run_record.record.populations()),
@@ -285,9 +285,9 @@ mod tests {
     use crate::evaluation::replay::{Which, WhichTrial, replay};
     use crate::evaluation::test;
     use crate::experiment::definition::Experiment;
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
     use crate::experiment::lanes::Wanted;
-    use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::outcome::Outcome;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::run::begin::create;
@@ -324,14 +324,8 @@ mod tests {
     }
 
     impl Task for Toy {
-        fn parameters(&self) -> Vec<Parameter> {
-            vec![Parameter::new("gene", [0.0, 65535.0])]
-        }
-        fn schema(&self) -> Schema {
-            Schema::from_scalars(["gene"])
-        }
-        fn description(&self) -> Description {
-            Description::default()
+        fn info(&self) -> TaskInfo {
+            TaskInfo::new(vec![Parameter::new("gene", [0.0, 65535.0])], Schema::from_scalars(["gene"]))
         }
     }
 

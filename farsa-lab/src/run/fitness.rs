@@ -77,7 +77,7 @@ pub(crate) fn judgements_of_all(
     shape: ScoreShape,
     advance: &(dyn Fn() + Sync),
 ) -> Result<Judged, Unfinished> {
-    let trials = by.evaluator().trials();
+    let trials = by.info().trials;
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
@@ -116,10 +116,9 @@ pub(crate) fn individuals(
 ) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
     let count = of.parameters.len();
     let mut outcomes = run_generation(by, of, done)?;
-    let evaluator = by.evaluator();
-    let names = evaluator.terms();
+    let (evaluator, names) = (by.evaluator(), &by.info().terms);
     let row = |outcomes: &[Outcome]| row(evaluator, shape, of.opponents.told_apart, outcomes);
-    let one = |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), &names, &row);
+    let one = |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), names, &row);
     Ok((0..count).map(one).collect())
 }
 
@@ -226,7 +225,7 @@ pub(crate) fn run_generation(
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
     let Generation { parameters, opponents, normalisation, id } = of;
-    let (count, trials) = (parameters.len(), by.evaluator().trials());
+    let (count, trials) = (parameters.len(), by.info().trials);
     by.compare(id.generation, &|| of.fingerprint());
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {

@@ -140,8 +140,8 @@ impl<'e> Plan<'e> {
             return Ok(None);
         }
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
-        let (name, populations) = (self.experiment.name(), task.populations().len());
-        match (populations, task.observations()) {
+        let (name, populations) = (self.experiment.name(), task.info().populations.len());
+        match (populations, task.info().observations) {
             (1, 0) => Err(Error::setting(NORMALISE, format!("{name} does not say what its controllers observe"))),
             (1, channels) => {
                 ObservationStatistics::new(channels).map(Some).map_err(|error| Error::setting(NORMALISE, error))
@@ -158,7 +158,8 @@ impl<'e> Plan<'e> {
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
         self.no_observations()?;
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
-        let (populations, genes, trials) = (task.populations().len(), task.parameters().len(), task.trials());
+        let (populations, genes, trials) =
+            (task.info().populations.len(), task.info().parameters.len(), task.info().trials);
         let (objectives, ranges) = task.behaviour().map_or((1, Vec::new()), |behaviour| {
             let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
             (1 + behaviour.objectives().len(), ranges)
@@ -232,7 +233,7 @@ impl<'e> Plan<'e> {
 
     /// Returns the genotype of the parameters of an evaluator.
     pub(crate) fn genotype(&self, evaluator: &dyn Evaluator) -> Genotype {
-        Genotype::new(&evaluator.parameters(), self.experiment.gene_bits())
+        Genotype::new(&evaluator.info().parameters, self.experiment.gene_bits())
     }
 
     /// Returns the number of generations.

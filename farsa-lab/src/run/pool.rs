@@ -8,7 +8,7 @@ use std::thread;
 
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
-use crate::experiment::evaluator::{Evaluation, Evaluator};
+use crate::experiment::evaluator::{Evaluation, Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::Outcome;
@@ -24,6 +24,7 @@ use crate::run::plan::Plan;
 pub(crate) struct Pool<'e> {
     /// At least one.
     evaluators: Vec<Box<dyn Evaluator>>,
+    info: TaskInfo,
     genotype: Genotype,
     maker: Maker<'e>,
     /// With whom the evaluations are shared.
@@ -61,12 +62,13 @@ impl<'e> Pool<'e> {
             let (name, only) = (plan.experiment.name(), lanes.count());
             return Err(Error::Usage(format!("--lanes {}: {name} has {only} only", asked.count())));
         }
+        let info = first.info();
         let genotype = plan.genotype(first.as_ref());
         let settings = plan.settings_of_trials()?;
         let maker = Maker { experiment: plan.experiment, condition: plan.condition.clone(), settings, lanes };
         drop(first);
         let evaluators = (0..threads.max(1)).map(|_| maker.make()).collect::<Result<_, _>>()?;
-        Ok(Self { evaluators, genotype, maker, exchange: Rc::default() })
+        Ok(Self { evaluators, info, genotype, maker, exchange: Rc::default() })
     }
 
     /// The same pool as one rank's part of several.
@@ -97,6 +99,11 @@ impl<'e> Pool<'e> {
     /// How genes stand for the experiment's parameters.
     pub(crate) fn genotype(&self) -> &Genotype {
         &self.genotype
+    }
+
+    /// The data of the task.
+    pub(crate) fn info(&self) -> &TaskInfo {
+        &self.info
     }
 
     /// The experiment as the first thread has it.
@@ -206,6 +213,10 @@ const COMPARED: u32 = 10;
 impl EvaluationBackend for Stoppable<'_, '_> {
     fn evaluator(&self) -> &dyn Evaluator {
         self.pool.evaluator()
+    }
+
+    fn info(&self) -> &TaskInfo {
+        &self.pool.info
     }
 
     fn genotype(&self) -> &Genotype {

@@ -188,7 +188,7 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
         return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
     }
     let champions = Champions::read(plan, &directory)?;
-    let names = if champions.best.len() > 1 { plan.evaluator()?.populations() } else { Vec::new() };
+    let names = if champions.best.len() > 1 { plan.evaluator()?.info().populations } else { Vec::new() };
     let champions = Winner::from_champions(&champions, &names);
     Ok(Some(Summary {
         directory: path.display().to_string(),

@@ -331,12 +331,13 @@ impl Champions {
         }
         let found = Self::read(plan, directory)?;
         found.identity.same_values(&plan.identity()?, &path)?;
-        let genes = evaluator.parameters().len();
-        if found.best.len() != evaluator.populations().len() || found.best.iter().any(|best| best.genes.len() != genes)
+        let genes = evaluator.info().parameters.len();
+        if found.best.len() != evaluator.info().populations.len()
+            || found.best.iter().any(|best| best.genes.len() != genes)
         {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         }
-        let channels = |statistics: &ObservationStatistics| statistics.channels() != evaluator.observations();
+        let channels = |statistics: &ObservationStatistics| statistics.channels() != evaluator.info().observations;
         if found.normalisation.as_ref().is_some_and(channels) {
             return Err(Error::damaged(&path, "its observations are not those of the experiment"));
         }

@@ -63,7 +63,7 @@ impl SearchState {
         let individuals = self.search.individuals();
         let (seed, populations) = (self.seed, self.search.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let trials = by.evaluator().trials();
+        let trials = by.info().trials;
         let parameters = self.search.parameters(by.genotype()).ok_or_else(|| lost("genomes of another length"))?;
         let meeting = Meeting { generation, populations, size: individuals / populations, trials };
         let told_apart = self.search.opponents();

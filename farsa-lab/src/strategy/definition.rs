@@ -65,7 +65,7 @@ pub trait StrategyDefinition: Sync {
     fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error>;
 
     /// Whether observations are normalised by what was observed in all generations before, where the experiment can
-    /// ([`Task::observations`](crate::Task::observations)); by default what a setting `strategy.normalise_observations`
+    /// ([`TaskInfo::observations`](crate::TaskInfo::observations)); by default what a setting `strategy.normalise_observations`
     /// says, if there is one.
     fn normalises_observations(&self, settings: &Settings) -> bool {
         settings.has(NORMALISE) && settings.flag(NORMALISE).unwrap_or(false)

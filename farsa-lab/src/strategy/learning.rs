@@ -42,7 +42,7 @@ impl StrategyDefinition for Learning {
         };
         let state = learner.initial_state(start.seed);
         let learned = learner.learned(&state);
-        let genotype = Genotype::new(&evaluator.parameters(), start.gene_bits);
+        let genotype = Genotype::new(&evaluator.info().parameters, start.gene_bits);
         let population = individual(&genotype, &learned).map_err(|error| Error::Other(error.to_string()))?;
         let latest = None;
         Ok(Search::from_words(Trainee {
@@ -157,8 +157,8 @@ impl Snapshot for Trainee {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::evaluator::{Evaluation, Learner, Task};
-    use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::evaluator::{Evaluation, Learner, Task, TaskInfo};
+    use crate::experiment::outcome::Outcome;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::Settings;
     use farsa_body::Recorder;
@@ -182,14 +182,8 @@ mod tests {
     }
 
     impl Task for Forgetful {
-        fn parameters(&self) -> Vec<Parameter> {
-            vec![Parameter::new("gene", [0.0, 1.0])]
-        }
-        fn schema(&self) -> Schema {
-            Schema::from_scalars(["none"])
-        }
-        fn description(&self) -> Description {
-            Description::default()
+        fn info(&self) -> TaskInfo {
+            TaskInfo::new(vec![Parameter::new("gene", [0.0, 1.0])], Schema::from_scalars(["none"]))
         }
     }
 

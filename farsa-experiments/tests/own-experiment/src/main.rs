@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};
-use farsa_lab::{Schema, Task, cli, record_row};
+use farsa_lab::{Schema, Task, TaskInfo, cli, record_row};
 use farsa_num::{Domain, Stream};
 
 fn settings(condition: &str) -> Vec<Setting> {
@@ -28,18 +28,14 @@ struct Track {
 }
 
 impl Task for Track {
-    fn parameters(&self) -> Vec<Parameter> {
-        ["gain of position", "gain of speed"].map(|name| Parameter::new(name, [-8.0, 8.0])).into()
-    }
-    fn trials(&self) -> usize {
-        3
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["position [m]", "speed [m/s]", "force [N]"])
-    }
-    fn description(&self) -> Description {
+    fn info(&self) -> TaskInfo {
+        let parameters = ["gain of position", "gain of speed"].map(|name| Parameter::new(name, [-8.0, 8.0]));
         let (network, steps) = ("2-1, linear".into(), self.steps as usize);
-        Description { network, parameters: 2, steps, step_seconds: 0.01, ..Description::default() }
+        TaskInfo {
+            description: Description { network, parameters: 2, steps, step_seconds: 0.01, ..Description::default() },
+            trials: 3,
+            ..TaskInfo::new(parameters.into(), Schema::from_scalars(["position [m]", "speed [m/s]", "force [N]"]))
+        }
     }
 }
 

@@ -55,8 +55,8 @@ impl<'d> Introduction<'d> {
             seed: wanted.seed,
             populations: &wanted.populations,
             population_size: (wanted.size > 0).then_some(wanted.size),
-            trials: evaluator.trials(),
-            terms: evaluator.terms(),
+            trials: evaluator.info().trials,
+            terms: evaluator.info().terms,
             objectives: behaviour.map(Behaviour::objectives).unwrap_or_default(),
             behaviour: behaviour.map(Behaviour::descriptors).unwrap_or_default().iter().map(Ranged::from).collect(),
             longest_line,
@@ -147,7 +147,7 @@ impl Judged {
         let fitness = row.next();
         let objectives = Named(objectives.into_iter().zip(row.by_ref()).collect());
         let behaviour = Named(behaviour.zip(row).collect());
-        let terms = evaluator.terms();
+        let terms = evaluator.info().terms;
         let trials = outcomes.into_iter().map(|outcome| Trial::new(outcome, &terms)).collect();
         Self { fitness, objectives, behaviour, failed: None, failed_trial: None, trials }
     }

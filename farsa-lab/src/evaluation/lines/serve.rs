@@ -34,13 +34,12 @@ pub(crate) fn serve(
         let why = "--stdin: observations are normalised by what a run has observed, and this is none";
         return Err(Error::Usage(why.into()));
     }
-    let evaluator = pool.evaluator();
-    let populations = evaluator.populations();
+    let populations = pool.info().populations.clone();
     let wanted = Wanted {
         experiment: plan.experiment.name(),
         size: if populations.len() > 1 { plan.size()? } else { 0 },
         populations,
-        parameters: evaluator.parameters(),
+        parameters: pool.info().parameters.clone(),
         genotype: pool.genotype().clone(),
         seed: plan.seed,
     };
@@ -83,7 +82,7 @@ fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'
     let (objectives, descriptors) =
         behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
     let shape = ScoreShape::new(1 + objectives, descriptors);
-    let trials = pool.evaluator().trials();
+    let trials = pool.info().trials;
     let mut all: Vec<(&str, Vec<Judged>)> = Vec::new();
     for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {
         let met = opponents(&parameters, own, trials);

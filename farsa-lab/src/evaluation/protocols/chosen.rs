@@ -49,7 +49,7 @@ impl CaseTrials {
     /// Those of [`Protocol::find`], [`Protocol::case`] and [`Subject::read`]; [`Error::Usage`] for too many cases.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, choice: Choice<'_>) -> Result<Self, Error> {
         let pool = Pool::new(plan, 1, Wanted::ONE)?;
-        let mut protocols = pool.evaluator().protocols();
+        let mut protocols = pool.info().protocols.clone();
         let number = Protocol::find(&protocols, choice.protocol, plan.experiment.name())?;
         let protocol = protocols.swap_remove(number);
         let mut cases = choice.cases.iter().map(|name| protocol.case(name)).collect::<Result<Vec<_>, _>>()?;
@@ -90,7 +90,7 @@ impl CaseTrials {
     pub(crate) fn schema(&self) -> Schema {
         let parameters = self.subject.tested().parameters.first();
         let with = |bodies: &dyn Bodies| parameters.map(|parameters| bodies.schema_with(parameters));
-        self.evaluator.bodies().and_then(with).unwrap_or_else(|| self.evaluator.schema())
+        self.evaluator.bodies().and_then(with).unwrap_or_else(|| self.evaluator.info().schema)
     }
 
     /// Protocol, champion, trial and seed in words.

@@ -52,7 +52,7 @@ struct ReplayedCase {
 
 impl CasesSummary {
     fn new(plan: &Plan<'_>, directory: &Directory, trials: &CaseTrials, outcomes: &[Outcome]) -> Self {
-        let terms = trials.evaluator().terms();
+        let terms = trials.evaluator().info().terms;
         let cases = trials.cases.iter().zip(outcomes).map(|(number, outcome)| {
             let case = trials.case(*number);
             ReplayedCase {

@@ -89,7 +89,7 @@ impl States {
         let mut evaluator = plan.evaluator()?;
         let Some(parameters) = tested.parameters.first() else { return Ok(Self::default()) };
         let schema: Schema =
-            evaluator.bodies().map_or_else(|| evaluator.schema(), |bodies| bodies.schema_with(parameters));
+            evaluator.bodies().map_or_else(|| evaluator.info().schema, |bodies| bodies.schema_with(parameters));
         let span = protocol.states.clone();
         let Some(neurons) = schema.neurons.get(span.clone()) else {
             let why = format!("protocol `{}` records the states of neurons {span:?}", protocol.name);

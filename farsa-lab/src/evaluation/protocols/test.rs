@@ -155,7 +155,7 @@ pub(crate) fn lesions(
 
 /// The experiment's protocol of this name, with its number.
 fn protocol(plan: &Plan<'_>, pool: &Pool<'_>, name: &str) -> Result<(usize, Protocol), Error> {
-    let mut protocols = pool.evaluator().protocols();
+    let mut protocols = pool.info().protocols.clone();
     let number = Protocol::find(&protocols, name, plan.experiment.name())?;
     Ok((number, protocols.swap_remove(number)))
 }
@@ -189,9 +189,9 @@ fn run(
     let results = run_trials(pool, subject.tested(), fresh, &progress);
     drop(progress);
     let results = results?;
-    let (terms, names) = (pool.evaluator().terms(), pool.evaluator().populations());
+    let (terms, names) = (&pool.info().terms, &pool.info().populations);
     let others = names.get(1..subject.count()).unwrap_or(&[]);
-    let table = ProtocolTable::new(&protocol.cases, trials, &terms, others, &results);
+    let table = ProtocolTable::new(&protocol.cases, trials, terms, others, &results);
     let found = ProtocolRun {
         directory: directory.path().display().to_string(),
         generation: subject.generation,
@@ -199,9 +199,9 @@ fn run(
         individuals: subject.individuals.clone(),
         seed,
         trials,
-        cases: FoundCase::all(&table, &terms),
+        cases: FoundCase::all(&table, terms),
         warning: subject.warning.clone(),
-        failure: failure(&results, &terms),
+        failure: failure(&results, terms),
         protocol,
     };
     Ok((found, table))

@@ -32,7 +32,7 @@ impl CaseTrial {
     ) -> Result<Outcome, ()> {
         let Some((parameters, others)) = tested.parameters.split_first() else { return Err(()) };
         let opponents: Vec<&[f32]> = others.iter().map(Vec::as_slice).collect();
-        let id = episode(self.trial, evaluator.trials(), self.seed);
+        let id = episode(self.trial, evaluator.info().trials, self.seed);
         let normalisation = tested.normalisation;
         let case = Some(self.case);
         let evaluation = Evaluation { opponents: &opponents, normalisation, case, ..Evaluation::new(parameters, id) };

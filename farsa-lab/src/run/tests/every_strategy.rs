@@ -12,7 +12,7 @@ use crate::evaluation::replay::{Replayable, Which, replay};
 use crate::evaluation::test;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
-use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
@@ -224,12 +224,10 @@ impl Behaviour for Described {
 }
 
 impl Task for Described {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("gene", [0.0, 1.0])]
+    fn info(&self) -> TaskInfo {
+        TaskInfo::new(vec![Parameter::new("gene", [0.0, 1.0])], Schema::from_scalars(["gene"]))
     }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["gene"])
-    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         if self.0.is_empty() { None } else { Some(self) }
     }

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::evaluation::test;
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::{Episode, EpisodeId, NoWorld};
-use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
@@ -77,20 +77,13 @@ impl Experiment for Faulty {
 }
 
 impl Task for Faulty {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("gene", [0.0, 1.0])]
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["step"])
-    }
-    fn description(&self) -> Description {
-        Description { parameters: 1, steps: STEPS as usize, ..Description::default() }
-    }
-    fn trials(&self) -> usize {
-        TRIALS as usize
-    }
-    fn terms(&self) -> Vec<String> {
-        vec!["gene".into()]
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: Description { parameters: 1, steps: STEPS as usize, ..Description::default() },
+            trials: TRIALS as usize,
+            terms: vec!["gene".into()],
+            ..TaskInfo::new(vec![Parameter::new("gene", [0.0, 1.0])], Schema::from_scalars(["step"]))
+        }
     }
 }
 

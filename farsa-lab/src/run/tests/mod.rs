@@ -37,7 +37,7 @@ use crate::evaluation::replayed::Replayed;
 use crate::experiment::behaviour::{Behaviour, NotedBehaviour};
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Task};
+use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Task, TaskInfo};
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
@@ -121,21 +121,18 @@ fn plain(genes: &[u16]) -> Vec<f32> {
 }
 
 impl Task for Numbers {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("first", [0.0, 255.0]), Parameter::new("second", [0.0, 255.0])]
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            description: Description::default(),
+            trials: TRIALS as usize,
+            populations: (0..self.populations).map(|population| population.to_string()).collect(),
+            ..TaskInfo::new(
+                vec![Parameter::new("first", [0.0, 255.0]), Parameter::new("second", [0.0, 255.0])],
+                Schema::from_scalars(["gene"]),
+            )
+        }
     }
-    fn populations(&self) -> Vec<String> {
-        (0..self.populations).map(|population| population.to_string()).collect()
-    }
-    fn trials(&self) -> usize {
-        TRIALS as usize
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["gene"])
-    }
-    fn description(&self) -> Description {
-        Description::default()
-    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(&BEHAVIOUR)
     }

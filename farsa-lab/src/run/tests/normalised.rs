@@ -19,7 +19,7 @@ use crate::evaluation::test;
 use crate::experiment::NormalisedController;
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
+use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
@@ -86,20 +86,16 @@ impl Experiment for Scales {
 }
 
 impl Task for Scales {
-    fn parameters(&self) -> Vec<Parameter> {
-        ["first", "second", "bias"].map(|name| Parameter::new(name, [-5.0, 5.0])).into()
-    }
-    fn populations(&self) -> Vec<String> {
-        (0..self.populations).map(|population| population.to_string()).collect()
-    }
-    fn schema(&self) -> Schema {
-        Schema::from_scalars(["output"])
-    }
-    fn trials(&self) -> usize {
-        TRIALS as usize
-    }
-    fn observations(&self) -> usize {
-        if self.strategy == "ars" && self.populations == 1 && !self.says { 0 } else { 2 }
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            trials: TRIALS as usize,
+            populations: (0..self.populations).map(|population| population.to_string()).collect(),
+            observations: if self.strategy == "ars" && self.populations == 1 && !self.says { 0 } else { 2 },
+            ..TaskInfo::new(
+                ["first", "second", "bias"].map(|name| Parameter::new(name, [-5.0, 5.0])).into(),
+                Schema::from_scalars(["output"]),
+            )
+        }
     }
 }
 

@@ -8,9 +8,9 @@ use farsa_view::Schema;
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::{Evaluation, Evaluator, InLanes, Task};
+use crate::experiment::evaluator::{Evaluation, Evaluator, InLanes, Task, TaskInfo};
 use crate::experiment::lanes::{Lanes, Wanted};
-use crate::experiment::outcome::{Description, Outcome};
+use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings};
 use crate::run::evaluation_backend::Unfinished;
@@ -36,14 +36,8 @@ impl Experiment for Nothing {
 }
 
 impl Task for Nothing {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("panic", [0.0, 1.0])]
-    }
-    fn schema(&self) -> Schema {
-        Schema::default()
-    }
-    fn description(&self) -> Description {
-        Description::default()
+    fn info(&self) -> TaskInfo {
+        TaskInfo::new(vec![Parameter::new("panic", [0.0, 1.0])], Schema::default())
     }
 }
 
@@ -121,14 +115,8 @@ impl Experiment for InGroups {
 }
 
 impl Task for InGroups {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("none", [0.0, 1.0])]
-    }
-    fn schema(&self) -> Schema {
-        Schema::default()
-    }
-    fn description(&self) -> Description {
-        Description::default()
+    fn info(&self) -> TaskInfo {
+        TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], Schema::default())
     }
 }
 

@@ -44,26 +44,12 @@ impl Experiment for Words {
     }
 }
 
-impl Task for Words {
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::new("only", [0.0, 255.0])]
-    }
-    fn populations(&self) -> Vec<String> {
-        (0..self.populations).map(|population| population.to_string()).collect()
-    }
-    fn trials(&self) -> usize {
-        TRIALS as usize
-    }
-    fn schema(&self) -> Schema {
+impl Words {
+    fn schema() -> Schema {
         let neurons = ["sensory", "inner 1", "inner 2"].map(farsa_view::Channel::new).into();
         Schema { neurons, ..Schema::from_scalars(["gene"]) }.with_sensors(["ear"])
     }
-    fn anatomy(&self) -> Option<Anatomy> {
-        Some(Anatomy::new(&self.schema(), &self.description()))
-    }
-    fn terms(&self) -> Vec<String> {
-        vec!["case".into(), "start".into()]
-    }
+
     fn protocols(&self) -> Vec<Protocol> {
         let words = Protocol::from_table("words", "two <words>", ["TOUCH", "MOVE"], ["red", "green"])
             .with_axes("action", "object")
@@ -75,6 +61,19 @@ impl Task for Words {
         let none = Protocol::new("none", "breaks down").with_case(Case::new("always", "")).with_trials(2);
         let twice = words.clone();
         [words, none, times].into_iter().chain(self.wrong.then_some(twice)).collect()
+    }
+}
+
+impl Task for Words {
+    fn info(&self) -> TaskInfo {
+        TaskInfo {
+            trials: TRIALS as usize,
+            terms: vec!["case".into(), "start".into()],
+            populations: (0..self.populations).map(|population| population.to_string()).collect(),
+            protocols: self.protocols(),
+            anatomy: Some(Anatomy::new(&Self::schema(), &Description::default())),
+            ..TaskInfo::new(vec![Parameter::new("only", [0.0, 255.0])], Self::schema())
+        }
     }
 }
 
