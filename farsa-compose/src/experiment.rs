@@ -381,14 +381,14 @@ impl Experiment for ComposedExperiment {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        let own = self.entries.iter().map(|entry| &entry.setting);
-        let place = self.conditions.iter().position(|known| *known == condition);
+        let settings = self.entries.iter().map(|entry| &entry.setting);
+        let place = self.conditions.iter().position(|name| *name == condition);
         let changes = place.map_or(&[][..], |place| &self.changes[place]);
         let changed = |setting: &Setting| {
             let change = changes.iter().find(|(key, _)| key == setting.key());
             change.and_then(|(_, value)| setting.with_default(value.clone()).ok()).unwrap_or_else(|| setting.clone())
         };
-        own.chain(&self.strategy_settings).map(changed).collect()
+        settings.chain(&self.strategy_settings).map(changed).collect()
     }
 
     fn definition(&self) -> Option<&str> {

@@ -63,7 +63,7 @@ fn drawn_files_live_and_lanes_change_no_bit() {
     assert!(networks.iter().all(|count| *count > 20), "{networks:?} files with wires and with blocks");
 }
 
-/// What the first robot sensed and did in each step.
+/// Returns the sensor and motor values of the first robot in each step.
 #[derive(Default)]
 struct Steps {
     x: Vec<f32>,
@@ -105,7 +105,7 @@ fn network(export: &NetworkExport) -> Box<dyn Controller> {
     }
 }
 
-/// What is exported computes what the experiment computes, and says of every channel what it is.
+/// Exports compute the same as the experiment, and describe every channel.
 #[test]
 fn controllers_leave_with_their_channels() {
     let mut kinds = Vec::new();
@@ -113,7 +113,7 @@ fn controllers_leave_with_their_channels() {
         let mut draw = Draw::new(20_261_124, file);
         // The dead drive nothing.
         let text = draw.file().replace("cost = 0.01", "cost = 0.0").replace("cost = 0.05", "cost = 0.0");
-        // Wires leave as a layer if their sums become logistic; it adds them in another order.
+        // Wires are exported as a layer if their outputs are logistic. The layer adds them in another order.
         let text = text.replace("activation = \"clamp\"", "activation = \"logistic\"");
         let nearly = if text.contains("kind = \"wired\"") { 1e-5 } else { 0.0 };
         let mut task = evaluator(&text);

@@ -40,17 +40,17 @@ impl Part {
 
     /// Removes a name that an earlier part has.
     pub(super) fn name_once(&mut self, names: &mut BTreeSet<String>) {
-        if let Some(own) = self.name.take() {
+        if let Some(name) = self.name.take() {
             // A part without a name is called by its kind.
-            if names.insert(own.clone()) {
-                self.name = Some(own);
+            if names.insert(name.clone()) {
+                self.name = Some(name);
                 return;
             }
         }
-        let own = (1..).map(|n| if n == 1 { self.kind.to_owned() } else { format!("{}-{n}", self.kind) });
-        let own = own.take(names.len() + 1).find(|own| !names.contains(own)).unwrap_or_default();
-        names.insert(own.clone());
-        self.name = (own != self.kind).then_some(own);
+        let name = (1..).map(|n| if n == 1 { self.kind.to_owned() } else { format!("{}-{n}", self.kind) });
+        let name = name.take(names.len() + 1).find(|name| !names.contains(name)).unwrap_or_default();
+        names.insert(name.clone());
+        self.name = (name != self.kind).then_some(name);
     }
 
     pub(super) fn write(&self, table: &str, out: &mut Written) {

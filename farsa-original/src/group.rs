@@ -14,10 +14,10 @@ impl Group {
     /// Returns the value of a key, if any. The last one counts, as for an editor that appends.
     pub(super) fn text(&self, key: &'static str, remarks: &mut Remarks) -> Option<&Entry> {
         remarks.ask(self, key);
-        let mut found: Vec<&Entry> = self.entries.iter().filter(|entry| entry.key == key).collect();
-        let last = found.pop()?;
+        let mut entries: Vec<&Entry> = self.entries.iter().filter(|entry| entry.key == key).collect();
+        let last = entries.pop()?;
         remarks.take(last);
-        for other in found {
+        for other in entries {
             remarks.lost(self, other, "stands twice, which the original refuses; the last one counts here");
         }
         Some(last)

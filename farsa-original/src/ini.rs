@@ -124,18 +124,18 @@ impl Ini {
 
     /// Returns the groups `NAME`, `NAME:0`, `NAME:1` and so on in a group, by number.
     pub(super) fn numbered(&self, within: &str, name: &str) -> Vec<&Group> {
-        let mut found: Vec<(Option<u64>, &Group)> = Vec::new();
+        let mut groups: Vec<(Option<u64>, &Group)> = Vec::new();
         for group in &self.groups {
             let Some((above, last)) = group.path.rsplit_once('/') else { continue };
             let (word, number) = last.split_once(':').map_or((last, None), |(word, number)| (word, Some(number)));
             let number = number.map(str::parse::<u64>);
             if above.eq_ignore_ascii_case(within) && word.eq_ignore_ascii_case(name) && !matches!(number, Some(Err(_)))
             {
-                found.push((number.and_then(Result::ok), group));
+                groups.push((number.and_then(Result::ok), group));
             }
         }
-        found.sort_by_key(|(number, _)| *number);
-        found.into_iter().map(|(_, group)| group).collect()
+        groups.sort_by_key(|(number, _)| *number);
+        groups.into_iter().map(|(_, group)| group).collect()
     }
 }
 

@@ -58,8 +58,8 @@ pub(super) fn number(value: f64) -> String {
 
 /// Formats a list of numbers.
 pub(super) fn numbers(values: &[f64]) -> String {
-    let all: Vec<String> = values.iter().map(|value| number(*value)).collect();
-    format!("[{}]", all.join(", "))
+    let items: Vec<String> = values.iter().map(|value| number(*value)).collect();
+    format!("[{}]", items.join(", "))
 }
 
 /// Quotes a text.

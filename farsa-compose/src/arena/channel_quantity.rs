@@ -56,8 +56,8 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
         SensorKind::Touch { .. } => ChannelQuantity::new("whether something is touched", "1", [0.0, 1.0]),
         SensorKind::ContactForce { .. } => ChannelQuantity::new("force", "N", [0.0, 1.0]),
         SensorKind::TargetPosition { target, scale, .. } => {
-            let one = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
-            ChannelQuantity::new(format!("{} of the way to {target}", AXES[channel % 3]), "m", [0.0, one])
+            let end = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
+            ChannelQuantity::new(format!("{} of the way to {target}", AXES[channel % 3]), "m", [0.0, end])
         }
         SensorKind::BodyPose { .. } if channel < 3 => {
             ChannelQuantity::new(format!("{} of the robot", AXES[channel]), "m", [0.0, 1.0])
@@ -100,8 +100,8 @@ fn infrared_way(robot: &MobileRobot, groups: u32, channel: usize) -> String {
     let angles = &robot.infrared.angles;
     let size = if groups == 0 { 1 } else { (angles.len() / groups as usize).max(1) };
     let angle = angles.get(channel * size).map_or(0.0, |angle| angle.to_degrees());
-    let of = if size > 1 { format!("the nearest of {size} sensors around ") } else { "at ".into() };
-    format!("{of}{angle:.0} degrees to the left of ahead")
+    let prefix = if size > 1 { format!("the nearest of {size} sensors around ") } else { "at ".into() };
+    format!("{prefix}{angle:.0} degrees to the left of ahead")
 }
 
 /// Returns the quantity of a motor channel.

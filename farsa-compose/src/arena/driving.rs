@@ -1,4 +1,4 @@
-//! Motors of robots in an arena, with their wrappers.
+//! Motors of robots in an arena.
 
 use farsa_body::ChannelError;
 use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
@@ -8,9 +8,7 @@ use farsa_lab::{Error, PlanarWorld};
 
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
-use crate::document::{self, Led, MotorKind};
-use crate::parts::sizes::MemoryBudget;
-use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
+use crate::document::{Led, MotorKind};
 
 /// A motor of a robot in a plane.
 #[derive(Clone, Debug)]
@@ -24,7 +22,6 @@ pub(crate) enum Driving {
     Signal(SignalMotor),
     Attachment(AttachmentMotor),
     Nothing(Nothing),
-    Wrapped(Wrapped<Self>),
 }
 
 /// Calls a method of the motor of any kind.
@@ -39,7 +36,6 @@ macro_rules! motor {
             Driving::Signal($motor) => $call,
             Driving::Attachment($motor) => $call,
             Driving::Nothing($motor) => $call,
-            Driving::Wrapped(wrapped) => around!(wrapped, $motor => $call),
         }
     };
 }
@@ -66,24 +62,15 @@ impl<W: PlanarWorld> Motor<W> for Driving {
     }
 }
 
-impl Reseed for Driving {
-    fn reseed(&mut self, streams: &mut NoiseStreams) {
-        if let Self::Wrapped(wrapped) = self {
-            wrapped.reseed(streams);
-        }
-    }
-}
-
 impl Driving {
     #[inline(never)]
     fn drive_other<W: PlanarWorld>(&mut self, y: &[f32], world: &mut W) {
         motor!(self, motor => motor.drive(y, world));
     }
 
-    /// Stops the motor, without its wrappers, and writes the corresponding values [its channels].
+    /// Stops the motor and writes the corresponding values [its channels].
     pub(crate) fn rest<W: PlanarWorld>(&mut self, y: &mut [f32], world: &mut W) {
         match self {
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().rest(y, world)),
             Self::Wheels(_) => y.fill(0.5),
             Self::SpeedAndTurn(_, forwards) => {
                 y.fill(0.5);
@@ -93,9 +80,7 @@ impl Driving {
             }
             _ => y.fill(0.0),
         }
-        if !matches!(self, Self::Wrapped(_)) {
-            self.drive(y, world);
-        }
+        self.drive(y, world);
     }
 }
 
@@ -113,30 +98,23 @@ impl<W: ?Sized> Motor<W> for Nothing {
     fn drive(&mut self, _: &[f32], _: &mut W) {}
 }
 
-/// Builds the motor at a path of the document for robot number `robot`, with its wrappers.
+/// Builds the motor at a path of the document for robot number `robot`.
 ///
 /// # Errors
-/// [`Error::Setting`] for a missing part of the robot and for invalid wrappers.
+/// [`Error::Setting`] for a missing part of the robot.
 pub(crate) fn motor(
-    motor: &document::Motor,
+    kind: &MotorKind,
     scene: &Scene,
     robot: usize,
     path: &str,
-    budget: &mut MemoryBudget,
     source: &Source,
 ) -> Result<Driving, Error> {
     let wrong = |why: String| source.wrong(path, why);
-    let made =
-        bare(&motor.kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
-    let mut made = made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))?;
-    for (index, wrapper) in motor.wrappers.iter().enumerate() {
-        let path = format!("{path}/wrappers/{index}");
-        made = Driving::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
-    }
-    Ok(made)
+    let made = bare(kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
+    made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))
 }
 
-/// Builds a motor without wrappers, or returns the part that the robot lacks.
+/// Builds a motor, or returns the part that the robot lacks.
 fn bare(
     kind: &MotorKind,
     robot: &MobileRobot,

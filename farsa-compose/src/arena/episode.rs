@@ -17,7 +17,7 @@ use crate::parts::agents::Agents;
 use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::tally::Tally;
-use crate::parts::wrapping::NOISE;
+use crate::parts::wrapping::NoiseStreams;
 
 /// Robots in a trial, each with a copy of one network.
 #[derive(Clone, Debug)]
@@ -98,9 +98,9 @@ impl ArenaEpisode {
         let robots = self.setup.members.iter().zip(&self.poses).zip(&self.numbers);
         for (robot, ((member, pose), numbers)) in robots.enumerate() {
             let quick = term.quick(world, &member.parts, pose, numbers);
-            let own = quick.unwrap_or_else(|| self.value(world, term, robot));
-            let own = tally.share(robot, own);
-            value = if robot == 0 { own } else { value + own };
+            let share = quick.unwrap_or_else(|| self.value(world, term, robot));
+            let share = tally.share(robot, share);
+            value = if robot == 0 { share } else { value + share };
         }
         value / tally.robots()
     }
@@ -139,10 +139,11 @@ impl ArenaEpisode {
         let alive = |robot: usize| foragers.is_none_or(|foragers| foragers[robot].alive);
         for (robot, (member, x)) in members.iter_mut().zip(x.chunks_exact_mut(inputs)).enumerate() {
             if let Some(foragers) = foragers {
-                member.sensors.iter_mut().for_each(|sensor| sensor.feel(&foragers[robot]));
+                let sensors = member.equipment.sensors.iter_mut();
+                sensors.for_each(|sensor| sensor.kind_mut().feel(&foragers[robot]));
             }
             if alive(robot) {
-                member.sense(sensors, world, x);
+                member.equipment.sense(sensors, world, x);
             } else {
                 x.fill(0.0);
             }
@@ -151,7 +152,7 @@ impl ArenaEpisode {
         for (robot, ((member, network), (x, y))) in members.iter_mut().zip(networks).zip(rows).enumerate() {
             if alive(robot) {
                 network.step(x, y);
-                member.drive(motors, y, world);
+                member.equipment.drive(motors, y, world);
             } else {
                 member.rest(motors, y, world);
             }
@@ -202,11 +203,9 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         let arranged = self.arrange(world, id).is_ok();
         self.agents.begin(arranged);
         let Setup { members, terms, foraging, .. } = &mut self.setup;
-        let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
-        Setup::reseed(members, streams, self.agents.document.episode.steps);
+        let mut streams = NoiseStreams::of_episode(id, self.agents.document.episode.steps);
         for (robot, member) in members.iter_mut().enumerate() {
-            member.sensors.iter_mut().for_each(farsa_body::ports::Channels::reset);
-            member.motors.iter_mut().for_each(farsa_body::ports::Channels::reset);
+            member.equipment.begin(&mut streams);
             self.started[robot] = world.pose(member.parts.body);
             self.before[robot] = [0, 1].map(|k| f64::from(self.started[robot].position[k]));
         }
@@ -228,9 +227,9 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         let Setup { members, foraging, .. } = &mut self.setup;
         let Agents { spec, networks, x, y, .. } = &mut self.agents;
         if let ([member], [network], None) = (&mut members[..], &mut networks[..], foraging) {
-            member.sense(&spec.sensors, world, x);
+            member.equipment.sense(&spec.sensors, world, x);
             network.step(x, y);
-            member.drive(&spec.motors, y, world);
+            member.equipment.drive(&spec.motors, y, world);
         } else {
             self.act_as_team(world);
         }

@@ -66,6 +66,7 @@ impl Field {
         forager.away += 1;
         // Computed from the number of steps, so that a hundred times 0.01 is exactly 1.
         forager.energy = (1.0 - self.cost * f64::from(forager.away)).max(0.0);
+        // Cell of the place: floor(p / size * cells).
         let [column, row] = [0, 1].map(|k| at[k] / self.size[k] * self.cells as f64);
         let on_field = |x: f64| x >= 0.0 && x < self.cells as f64;
         if on_field(column) && on_field(row) && (nest || forager.energy > 0.0) {

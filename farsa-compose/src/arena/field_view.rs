@@ -133,7 +133,7 @@ mod tests {
         let seen = |tick: usize, robot: usize, what: fn(&Geometry) -> bool| {
             let at = recording.pose_at(tick, BodyId(robot as u16)).unwrap().position;
             let picture = recording.picture(tick).unwrap();
-            let here = |of: &[f64; 3]| [0, 1].iter().all(|&k| (of[k] - f64::from(at[k])).abs() < 1e-6);
+            let here = |place: &[f64; 3]| [0, 1].iter().all(|&k| (place[k] - f64::from(at[k])).abs() < 1e-6);
             picture.shapes.iter().filter(|shape| here(&shape.pose.position) && what(&shape.geometry)).count()
         };
         let is_load = |geometry: &Geometry| matches!(geometry, Geometry::Sphere { .. });

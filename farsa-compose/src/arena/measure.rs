@@ -100,10 +100,10 @@ impl Measure {
             RewardKind::WheelSpeed {} => Measure::WheelSpeed,
             RewardKind::StraightOn {} => Measure::StraightOn,
             RewardKind::Sensor { sensor } => {
-                let found = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
+                let channels = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
                 let names = sensors.iter().map(|(name, _)| name.as_str());
                 let place = source.of(&format!("{path}/sensor"));
-                Measure::Sensor(found.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
+                Measure::Sensor(channels.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
             }
             RewardKind::InArea { area, or } => {
                 let others = or.iter().enumerate().map(|(index, area)| (format!("{path}/or/{index}"), area));

@@ -188,10 +188,10 @@ impl Scene {
     /// # Errors
     /// [`Error::Unknown`] with the nearest name.
     pub(crate) fn thing(&self, name: &str, path: &str, source: &Source) -> Result<Thing, Error> {
-        let found = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
+        let thing = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
         let names = self.things[..named].iter().map(|(name, _)| name.as_str());
-        found.ok_or_else(|| Error::unknown(&source.of(path), "object", name, names))
+        thing.ok_or_else(|| Error::unknown(&source.of(path), "object", name, names))
     }
 
     /// Returns the body of a named thing.
@@ -286,7 +286,7 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
     let grouped = document.robots.iter().enumerate();
     let grouped =
         grouped.map(|(index, group)| (group.name.clone(), group.color, &group.robot, format!("/robots/{index}")));
-    let all: Vec<_> = alone.chain(grouped).collect();
+    let groups: Vec<_> = alone.chain(grouped).collect();
     match (&document.robot, document.robots.is_empty()) {
         (None, true) => return Err(source.wrong("", "lacks the key `robot`, or `robots` for groups of them")),
         (Some(_), false) => return Err(source.wrong("/robots", "go not with `robot`: one of them")),
@@ -295,15 +295,15 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
         }
         _ => {}
     }
-    let mut found = Vec::new();
-    for (number, (name, color, robot, path)) in all.iter().enumerate() {
+    let mut robots = Vec::new();
+    for (number, (name, color, robot, path)) in groups.iter().enumerate() {
         let Robot { file, floating, base, kind, .. } = robot;
         let joints = kind.has_joints();
         let given = [("kind", joints), ("file", file.is_some()), ("floating", *floating), ("base", *base != [0.0; 3])];
         if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
             return Err(source.wrong(&format!("{path}/{key}"), "is for robots with joints; this one is on wheels"));
         }
-        let taken = all[..number].iter().any(|(other, ..)| other == name);
+        let taken = groups[..number].iter().any(|(other, ..)| other == name);
         if taken || !document.robots.is_empty() && name.starts_with(ROBOT) {
             return Err(source.wrong(&format!("{path}/name"), format!("`{name}` names something else already")));
         }
@@ -312,29 +312,31 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
         if !document.robots.is_empty() {
             made.name.clone_from(name);
         }
-        let count = found.len().saturating_add(robot.count as usize);
+        let count = robots.len().saturating_add(robot.count as usize);
         let most = source.limits.robots;
         if count > most {
             let why = format!("and those before it are {count} robots; at most {most} in all");
             return Err(source.wrong(path, why));
         }
-        found.resize(count, made);
+        robots.resize(count, made);
     }
-    let groups =
-        Groups::new(all.into_iter().map(|(name, _, robot, _)| (name, robot.count as usize)), document.team.coevolution);
-    Ok((found, groups))
+    let groups = Groups::new(
+        groups.into_iter().map(|(name, _, robot, _)| (name, robot.count as usize)),
+        document.team.coevolution,
+    );
+    Ok((robots, groups))
 }
 
 /// Builds a named robot with the changes of the document.
 fn mobile_robot(robot: &Robot) -> MobileRobot {
-    let mut own = match robot.kind {
+    let mut mobile = match robot.kind {
         // `check` has rejected robots with joints.
         RobotKind::Khepera | RobotKind::ArmAndHand | RobotKind::Model => MobileRobot::khepera(),
         RobotKind::EPuck => MobileRobot::e_puck(),
         RobotKind::Marxbot => MobileRobot::marxbot(),
     };
-    own.radius = robot.radius.unwrap_or(own.radius);
-    own.infrared.range = robot.infrared_range.unwrap_or(own.infrared.range);
-    own.max_wheel_speed = robot.speed.map_or(own.max_wheel_speed, |speed| speed / own.wheel_radius);
-    own
+    mobile.radius = robot.radius.unwrap_or(mobile.radius);
+    mobile.infrared.range = robot.infrared_range.unwrap_or(mobile.infrared.range);
+    mobile.max_wheel_speed = robot.speed.map_or(mobile.max_wheel_speed, |speed| speed / mobile.wheel_radius);
+    mobile
 }

@@ -1,4 +1,4 @@
-//! Sensors of robots in an arena, with their wrappers.
+//! Sensors of robots in an arena.
 
 use std::sync::Arc;
 
@@ -16,11 +16,9 @@ use crate::arena::body_state::{BodyState, BodyStateSensor};
 use crate::arena::field::Forager;
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
-use crate::document::{self, AxesName, InfraredModel, SensorKind};
+use crate::document::{AxesName, InfraredModel, SensorKind};
 use crate::parts::eye::{Eye, eye};
 use crate::parts::files::{Files, measured};
-use crate::parts::sizes::MemoryBudget;
-use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot in a plane.
 #[derive(Clone, Debug)]
@@ -49,7 +47,6 @@ pub(crate) enum Sensing {
     JointSpeed(Vec<JointSpeed>),
     Constant(Signal<1>),
     BodyState(BodyStateSensor),
-    Wrapped(Wrapped<Self>),
 }
 
 /// Calls a method of the sensor of any kind.
@@ -80,7 +77,6 @@ macro_rules! sensor {
             Sensing::JointSpeed($sensor) => $call,
             Sensing::Constant($sensor) => $call,
             Sensing::BodyState($sensor) => $call,
-            Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
     };
 }
@@ -107,14 +103,6 @@ impl<W: PlanarWorld> Sensor<W> for Sensing {
     }
 }
 
-impl Reseed for Sensing {
-    fn reseed(&mut self, streams: &mut NoiseStreams) {
-        if let Self::Wrapped(wrapped) = self {
-            wrapped.reseed(streams);
-        }
-    }
-}
-
 impl Sensing {
     #[inline(never)]
     fn read_other<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
@@ -123,52 +111,49 @@ impl Sensing {
 
     /// Updates a sensor of the robot's own state.
     pub(crate) fn feel(&mut self, forager: &Forager) {
-        match self {
-            Self::BodyState(sensor) => sensor.update(forager),
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().feel(forager)),
-            _ => {}
+        if let Self::BodyState(sensor) = self {
+            sensor.update(forager);
         }
     }
 }
 
-/// Builds the sensor at a path of the document for robot number `robot`, with its wrappers.
+/// Builds the sensor at a path of the document for robot number `robot`.
 ///
 /// # Errors
-/// [`Error::Setting`] for invalid sensors and wrappers, [`Error::Unknown`] for an unknown thing.
+/// [`Error::Setting`] for an invalid sensor, [`Error::Unknown`] for an unknown thing.
 pub(crate) fn sensor(
-    sensor: &document::Sensor,
+    kind: &SensorKind,
     scene: &Scene,
     robot: usize,
     path: &str,
     files: &mut Files<'_>,
-    budget: &mut MemoryBudget,
     source: &Source,
 ) -> Result<Sensing, Error> {
-    let target = match &sensor.kind {
+    let target = match kind {
         SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), source)?),
         _ => None,
     };
-    let tables = match &sensor.kind {
+    let tables = match kind {
         SensorKind::Infrared { model: InfraredModel::Tables, tables: None, .. } => {
             return Err(source.wrong(path, "lacks the key `tables`, which the model `tables` needs"));
         }
         SensorKind::Infrared { model: InfraredModel::Tables, tables: Some(tables), .. } => {
-            let found = measured(tables, files, path, source)?;
-            let (own, wanted) = (found.sensors(), scene.robots[robot].infrared.angles.len());
-            if own != wanted {
-                let why = format!("are of {own} sensors where the {} has {wanted}", scene.robots[robot].name);
+            let tables = measured(tables, files, path, source)?;
+            let (sensors, expected) = (tables.sensors(), scene.robots[robot].infrared.angles.len());
+            if sensors != expected {
+                let why = format!("are of {sensors} sensors where the {} has {expected}", scene.robots[robot].name);
                 return Err(source.wrong(&format!("{path}/tables"), why));
             }
-            Some(found)
+            Some(tables)
         }
         SensorKind::Infrared { tables: Some(_), .. } => {
             return Err(source.wrong(&format!("{path}/tables"), "are for the model `tables`"));
         }
         _ => None,
     };
-    check(&sensor.kind, path, source)?;
+    check(kind, path, source)?;
     let parts = scene.parts(robot);
-    let wheels = match &sensor.kind {
+    let wheels = match kind {
         SensorKind::JointPosition { joints, .. } | SensorKind::JointSpeed { joints } => {
             let named = joints.iter().enumerate();
             named.map(|(index, joint)| wheel(joint, &parts, &format!("{path}/joints/{index}"), source)).collect()
@@ -177,13 +162,8 @@ pub(crate) fn sensor(
     };
     let wheels = wheels?;
     let wheels = if wheels.is_empty() { &parts.wheels[..] } else { &wheels };
-    let made = bare(&sensor.kind, &scene.robots[robot], &parts, target, tables, wheels);
-    let mut made = made.map_err(|error| source.wrong(path, error))?;
-    for (index, wrapper) in sensor.wrappers.iter().enumerate() {
-        let path = format!("{path}/wrappers/{index}");
-        made = Sensing::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
-    }
-    Ok(made)
+    let made = bare(kind, &scene.robots[robot], &parts, target, tables, wheels);
+    made.map_err(|error| source.wrong(path, error))
 }
 
 /// Rejects sensors of robots with joints.
@@ -216,8 +196,8 @@ fn check(kind: &SensorKind, path: &str, source: &Source) -> Result<(), Error> {
 /// Returns a wheel by name.
 fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
     const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
-    let found = WHEELS.iter().position(|known| *known == name);
-    Ok(parts.wheels[found.ok_or_else(|| Error::unknown(&source.of(path), "joint", name, WHEELS))?])
+    let wheel = WHEELS.iter().position(|other| *other == name);
+    Ok(parts.wheels[wheel.ok_or_else(|| Error::unknown(&source.of(path), "joint", name, WHEELS))?])
 }
 
 /// Returns the first items of a list, or all of them for 0.
@@ -227,7 +207,7 @@ fn first<T: Clone>(list: &[T], count: u32) -> Result<Vec<T>, ChannelError> {
     found.map(<[T]>::to_vec).ok_or(ChannelError::Selection { start: 0, end, channels: list.len() })
 }
 
-/// Builds a sensor without wrappers. `target` is the body that it observes, if any, and `wheels` the wheels that it
+/// Builds a sensor. `target` is the body that it observes, if any, and `wheels` the wheels that it
 /// reads.
 fn bare(
     kind: &SensorKind,

@@ -1,10 +1,9 @@
 //! The scene with the sensors, motors and terms of its robots.
 
-use farsa_body::ports::{BodyId, Channels, Motor as _, Sensor as _};
+use farsa_body::ports::{BodyId, Channels as _};
 use farsa_body::robots::MobileRobot;
 use farsa_body::sensors::infrared::InfraredDrawing;
 use farsa_lab::{Error, PlanarWorld};
-use farsa_num::Stream;
 
 use crate::arena::driving::{Driving, motor};
 use crate::arena::field::Field;
@@ -15,11 +14,12 @@ use crate::arena::term::Term;
 use crate::check::source::Source;
 use crate::document::{Document, Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
+use crate::parts::equipment::Equipment;
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
-use crate::parts::network_spec::NetworkSpec;
+use crate::parts::network_spec::{NetworkSpec, Spans};
+use crate::parts::part::Part;
 use crate::parts::sizes::{MemoryBudget, check_parts};
-use crate::parts::wrapping::{NoiseStreams, Reseed as _};
 
 /// A scene with its robots and terms.
 #[derive(Clone, Debug)]
@@ -40,36 +40,16 @@ pub(crate) struct Setup {
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
     pub(crate) parts: farsa_body::robots::MobileParts,
-    pub(crate) sensors: Vec<Sensing>,
-    pub(crate) motors: Vec<Driving>,
+    pub(crate) equipment: Equipment<Sensing, Driving>,
     /// Infrared sensors in recordings, with their first channel.
     pub(crate) drawn: Vec<(usize, InfraredDrawing)>,
 }
 
-/// Names of sensors or motors, with the first channel of each and the one after the last.
-type Spans = [(String, [usize; 2])];
-
 impl Member {
-    /// Reads all sensors into the channels of their spans.
-    #[inline]
-    pub(crate) fn sense<W: PlanarWorld>(&mut self, spans: &Spans, world: &W, x: &mut [f32]) {
-        for (sensor, (_, [first, end])) in self.sensors.iter_mut().zip(spans) {
-            sensor.read(world, &mut x[*first..*end]);
-        }
-    }
-
-    /// Drives all motors by the channels of their spans.
-    #[inline]
-    pub(crate) fn drive<W: PlanarWorld>(&mut self, spans: &Spans, y: &[f32], world: &mut W) {
-        for (motor, (_, [first, end])) in self.motors.iter_mut().zip(spans) {
-            motor.drive(&y[*first..*end], world);
-        }
-    }
-
     /// Stops all motors.
     pub(crate) fn rest<W: PlanarWorld>(&mut self, spans: &Spans, y: &mut [f32], world: &mut W) {
-        for (motor, (_, [first, end])) in self.motors.iter_mut().zip(spans) {
-            motor.rest(&mut y[*first..*end], world);
+        for (motor, (_, [first, end])) in self.equipment.motors.iter_mut().zip(spans) {
+            motor.kind_mut().rest(&mut y[*first..*end], world);
         }
     }
 }
@@ -86,30 +66,17 @@ impl Setup {
         let (mut files, mut budget) = (Files::new(&document.files), MemoryBudget::new(source.limits));
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {
-            let (mut sensors, mut motors) = (Vec::new(), Vec::new());
-            for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-                sensors.push(sensor(
-                    own,
-                    &scene,
-                    robot,
-                    &format!("/sensors/{index}"),
-                    &mut files,
-                    &mut budget,
-                    source,
-                )?);
-            }
-            for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-                motors.push(motor(own, &scene, robot, &format!("/motors/{index}"), &mut budget, source)?);
-            }
+            let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
+            let make = |kind, path: &str| sensor(kind, &scene, robot, path, &mut files, source);
+            let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
+            let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
+            let make = |kind, path: &str| motor(kind, &scene, robot, path, source);
+            let motors = Part::list("motors", motors, make, &mut budget, source)?;
             let drawn = drawn(&document, &scene.robots[robot], &sensors);
-            members.push(Member { parts: scene.parts(robot), sensors, motors, drawn });
+            members.push(Member { parts: scene.parts(robot), equipment: Equipment { sensors, motors }, drawn });
         }
         alike(&members, &scene, &document, source)?;
-        let channels = [
-            members[0].sensors.iter().map(Channels::channels).collect(),
-            members[0].motors.iter().map(Channels::channels).collect(),
-        ];
-        let spec = NetworkSpec::new(&document, channels, source)?;
+        let spec = NetworkSpec::new(&document, members[0].equipment.channels(), source)?;
         budget.take(spec.values().saturating_mul(members.len()), "/network", source)?;
         let term = |(number, reward)| Term::new(reward, number, &spec.sensors, &scene, source);
         let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
@@ -123,26 +90,17 @@ impl Setup {
         let agents = Agents::new(document, spec, ledger, scene.groups.clone());
         Ok((Self { scene, members, foraging, moving, starting, terms }, agents))
     }
-
-    /// Assigns the streams of an episode to all noise.
-    pub(crate) fn reseed(members: &mut [Member], [sensor, motor]: [Stream; 2], steps: u32) {
-        let mut streams = [NoiseStreams::new(sensor, steps), NoiseStreams::new(motor, steps)];
-        for member in members {
-            member.sensors.iter_mut().for_each(|sensor| sensor.reseed(&mut streams[0]));
-            member.motors.iter_mut().for_each(|motor| motor.reseed(&mut streams[1]));
-        }
-    }
 }
 
 /// Rejects sensors with other numbers of channels on other robots, because all robots have one network.
 fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source) -> Result<(), Error> {
     let enabled = document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled);
     for (place, (index, _)) in enabled.enumerate() {
-        let first = members[0].sensors[place].channels();
-        let other = |robot: &usize| members[*robot].sensors[place].channels() != first;
+        let first = members[0].equipment.sensors[place].channels();
+        let other = |robot: &usize| members[*robot].equipment.sensors[place].channels() != first;
         if let Some(robot) = (1..members.len()).find(other) {
             let [one, two] = [0, robot].map(|robot| scene.groups.of(robot));
-            let channels = members[robot].sensors[place].channels();
+            let channels = members[robot].equipment.sensors[place].channels();
             let why = format!("has {first} channels on `{one}` and {channels} on `{two}`: one network has to fit both");
             return Err(source.wrong(&format!("/sensors/{index}"), why));
         }
@@ -163,8 +121,9 @@ fn foraging(
 ) -> Result<Option<(BodyId, Field)>, Error> {
     let Some(foraging) = &document.foraging else {
         let felt = |kind: &SensorKind| matches!(kind, SensorKind::Energy {} | SensorKind::Carried {});
-        let sensor = document.sensors.iter().position(|sensor| felt(&sensor.kind)).map(|own| format!("/sensors/{own}"));
-        let term = terms.iter().position(Term::of_foraging).map(|own| format!("/reward/{own}"));
+        let sensor =
+            document.sensors.iter().position(|sensor| felt(&sensor.kind)).map(|index| format!("/sensors/{index}"));
+        let term = terms.iter().position(Term::of_foraging).map(|index| format!("/reward/{index}"));
         let ending = document.episode.ends.contains(&Ending::Death).then(|| "/episode/ends".into());
         return match sensor.or(term).or(ending) {
             Some(path) => Err(source.wrong(&path, "needs the section `foraging`, which there is not")),
@@ -182,14 +141,14 @@ fn foraging(
 }
 
 /// Returns the infrared sensors of a robot for recordings, with the first channel of each.
-fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Sensing]) -> Vec<(usize, InfraredDrawing)> {
+fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Part<Sensing>]) -> Vec<(usize, InfraredDrawing)> {
     let mut first = 0;
     let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(sensors);
-    let found = enabled.map(|(sensor, made)| {
+    let kinds = enabled.map(|(sensor, made)| {
         first += made.channels();
         (first - made.channels(), &sensor.kind)
     });
-    let infrared = found.filter_map(|(first, kind)| match kind {
+    let infrared = kinds.filter_map(|(first, kind)| match kind {
         SensorKind::Infrared { first: count, groups, .. } => {
             let mut robot = robot.clone();
             let sensors = robot.infrared.angles.len();

@@ -102,21 +102,22 @@ impl Starting {
             let how = match &start.how {
                 Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
                 Placing::Near { of, within, walls, apart } => {
-                    let of = before(of, &format!("{path}/of"), &rules)?;
-                    How::Near { of, within: *within, walls: *walls, apart: *apart }
+                    let thing = before(of, &format!("{path}/of"), &rules)?;
+                    How::Near { of: thing, within: *within, walls: *walls, apart: *apart }
                 }
                 Placing::Around { of, distance } => {
-                    let of = before(of, &format!("{path}/of"), &rules)?;
+                    let thing = before(of, &format!("{path}/of"), &rules)?;
                     if distance[0] > distance[1] {
                         return Err(source.wrong(&format!("{path}/distance"), "runs backwards"));
                     }
-                    How::Around { of, distance: *distance }
+                    How::Around { of: thing, distance: *distance }
                 }
                 Placing::OneOf { points, like } => {
                     let points = points.iter().enumerate();
                     let point = |(index, at): (usize, &Vec<f64>)| at_point(at, &format!("{path}/points/{index}"));
-                    let found = points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
-                    How::OneOf(Choice::new(found?, like.as_ref(), document, index, source)?)
+                    let points_of_rule =
+                        points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
+                    How::OneOf(Choice::new(points_of_rule?, like.as_ref(), document, index, source)?)
                 }
                 Placing::InBox { .. } | Placing::Turned { .. } => {
                     return Err(source.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
@@ -137,9 +138,9 @@ impl Starting {
                 }
                 of_robots(robots[first..end].to_vec(), how)
             } else if let Some(robot) = numbered(&start.place) {
-                let found = robot.checked_sub(1).and_then(|robot| robots.get(robot));
+                let body = robot.checked_sub(1).and_then(|robot| robots.get(robot));
                 let why = || source.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
-                of_robots(vec![*found.ok_or_else(why)?], how)
+                of_robots(vec![*body.ok_or_else(why)?], how)
             } else {
                 let path = format!("{path}/place");
                 let thing = scene.thing(&start.place, &path, source)?;
@@ -246,12 +247,13 @@ fn place<W: PlanarWorld>(
     let (walls, apart, near) = match &rule.how {
         How::Fixed { point, .. } => return Ok(point.map(|x| x as f32)),
         How::OneOf(choice) => {
-            let found = choice.take(chosen, |point| before.is_at(world, *point), |count| stream.below(count));
+            let point_number = choice.take(chosen, |point| before.is_at(world, *point), |count| stream.below(count));
             let (tries, radius) = (choice.points.len() as u32, rule.radius as f32);
-            chosen[number] = found.ok_or(ArenaError::NoFreePlace { tries, radius, short: 0.0 })?;
+            chosen[number] = point_number.ok_or(ArenaError::NoFreePlace { tries, radius, short: 0.0 })?;
             return Ok(choice.points[chosen[number]]);
         }
         How::Around { of, distance: [near, far] } => {
+            // p = c + r (cos a, sin a), with r and a uniform.
             let distance = stream.range(*near as f32, *far as f32);
             let (sine, cosine) = sin_cos(stream.range(-PI, PI));
             let [x, y, _] = world.pose(*of).position;
@@ -263,6 +265,7 @@ fn place<W: PlanarWorld>(
             (walls, apart, Some(([x, y], *within as f32)))
         }
     };
+    // Centers are at least radius + walls from each wall. A margin of more than half the width leaves the middle.
     let margin = rule.radius + walls;
     let low = size.map(|x| margin.min(0.5 * x) as f32);
     let high = size.map(|x| (x - margin).max(0.5 * x) as f32);
@@ -279,6 +282,7 @@ fn place<W: PlanarWorld>(
     let mut short = f32::INFINITY;
     for _ in 0..TRIES {
         let at = [0, 1].map(|k| stream.range(region[0][k], region[1][k]));
+        // The largest overlap: r_i + r_j + apart - |p_i - p_j|.
         let lacks = before.areas.iter().fold(f32::NEG_INFINITY, |most, (other, reach)| {
             let [x, y, _] = world.pose(*other).position;
             Scalar::max(most, (rule.radius + reach + apart) as f32 - length([at[0] - x, at[1] - y]))

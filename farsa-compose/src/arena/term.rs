@@ -143,7 +143,9 @@ impl Term {
         let forager = || rows.field.and_then(|field| field.robots().get(robot));
         match &self.measure {
             Measure::Distance => self.distance(pose),
+            // d(0) - d(t)
             Measure::Approach => self.distance(&rows.started[robot]) - self.distance(pose),
+            // |atan2| of the bearing in the robot's axes, in [0, pi].
             Measure::Angle => {
                 let [ahead, left] = turned(pose, self.way(pose));
                 atan2(left, ahead).abs()
@@ -156,17 +158,21 @@ impl Term {
                 let [u, v] = [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(self.began.position[k]));
                 length([u, v])
             }
+            // |p - p'| / dt, with p' of the previous step.
             Measure::Speed => length(from(rows.before[robot])) / numbers.time_step,
             Measure::Forward => turned(pose, from(rows.before[robot]))[0],
+            // n . (p - p')
             Measure::Progress([u, v]) => {
                 let [x, y] = from(rows.before[robot]);
                 x * u + y * v
             }
             Measure::Position([u, v]) => at[0] * u + at[1] * v,
+            // (|l| + |r|) / 2, with wheel speeds as shares of the greatest.
             Measure::WheelSpeed => {
                 let [left, right] = wheels();
                 0.5 * (left.abs() + right.abs())
             }
+            // 1 - |l - r| / 2
             Measure::StraightOn => {
                 let [left, right] = wheels();
                 1.0 - 0.5 * (left - right).abs()
@@ -184,6 +190,7 @@ impl Term {
                 let [u, v] = turned(&area, [u, v].map(f64::from));
                 u.abs() <= half[0] && v.abs() <= half[1]
             })),
+            // 1 - mean |p - p_j| / diagonal. The sum contains the robot itself at distance 0, the mean does not count it.
             Measure::NearOthers { diagonal } => {
                 let way = |other: &Pose| {
                     let [u, v] = [0, 1].map(|k| pose.position[k] - other.position[k]);
@@ -201,6 +208,7 @@ impl Term {
                 let squares: f64 = y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum();
                 squares / y.len().max(1) as f64
             }
+            // Mean of (2 y - 1)^2, because a motor rests at y = 1/2.
             Measure::Control => {
                 let y = Rows::of(rows.y, rows.outputs, robot);
                 let squares = y.iter().map(|y| 2.0 * f64::from(*y) - 1.0).map(|u| u * u);

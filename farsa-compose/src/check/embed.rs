@@ -20,15 +20,15 @@ fn named(document: &Document) -> Vec<(String, &str)> {
         document.robot.as_ref().and_then(|robot| robot.file.as_deref()).map(|name| ("/robot/file".to_owned(), name));
     let network = if let NetworkKind::Evonet(evonet) = &document.network.kind { evonet.file.as_deref() } else { None };
     let network = network.map(|name| ("/network/file".to_owned(), name));
-    let mut found: Vec<(String, &str)> = scene.into_iter().chain(model).chain(network).collect();
+    let mut files: Vec<(String, &str)> = scene.into_iter().chain(model).chain(network).collect();
     for (index, sensor) in document.sensors.iter().enumerate() {
         let SensorKind::Infrared { tables: Some(tables), .. } = &sensor.kind else { continue };
         let path = format!("/sensors/{index}/tables");
-        found.push((format!("{path}/walls"), tables.walls.as_str()));
+        files.push((format!("{path}/walls"), tables.walls.as_str()));
         let bodies = tables.bodies.iter().enumerate();
-        found.extend(bodies.map(|(index, body)| (format!("{path}/bodies/{index}/file"), body.file.as_str())));
+        files.extend(bodies.map(|(index, body)| (format!("{path}/bodies/{index}/file"), body.file.as_str())));
     }
-    found
+    files
 }
 
 /// Returns a text with the contents of the files that its document names, unless it has them already. The files are
@@ -51,8 +51,8 @@ pub(crate) fn embedded(
     if !document.files.is_empty() {
         for (path, name) in named {
             if !document.files.contains_key(name) {
-                let known = document.files.keys().map(String::as_str);
-                return Err(Error::unknown(&source.of(&path), "file", name, known));
+                let names = document.files.keys().map(String::as_str);
+                return Err(Error::unknown(&source.of(&path), "file", name, names));
             }
         }
         return Ok(None);
@@ -72,20 +72,20 @@ pub(crate) fn embedded(
         if contents.len() == MOST_FILES {
             return Err(source.wrong(&path, format!("is one file more than {MOST_FILES}, which are the most")));
         }
-        let own = Path::new(name);
-        let within = own.components().all(|part| matches!(part, Component::Normal(_)));
+        let relative = Path::new(name);
+        let within = relative.components().all(|part| matches!(part, Component::Normal(_)));
         if !within || name.is_empty() || name.contains('\\') {
             return Err(source.wrong(&path, format!("`{name}` is no file in the folder of {file} or below it")));
         }
-        let found = folder.join(own);
+        let target = folder.join(relative);
         // Links may lead anywhere. A missing file is reported when it is read.
         let root = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let ends = found.canonicalize().and_then(|found| Ok((found, root.canonicalize()?)));
-        let inside = ends.is_ok_and(|(found, root)| found.starts_with(root)) || !found.exists();
+        let ends = target.canonicalize().and_then(|target| Ok((target, root.canonicalize()?)));
+        let inside = ends.is_ok_and(|(target, root)| target.starts_with(root)) || !target.exists();
         if !inside {
             return Err(source.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
         }
-        contents.push((name, read_text_file(&found, MOST_BYTES)?));
+        contents.push((name, read_text_file(&target, MOST_BYTES)?));
     }
     if contents.is_empty() {
         return Ok(None);

@@ -95,8 +95,8 @@ impl<'s> Part<'s> {
     }
 
     fn branches(self, name: &str) -> impl Iterator<Item = Self> + use<'s> {
-        let found = self.word(name).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        found.iter().filter_map(move |value| self.at(value))
+        let branches = self.word(name).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        branches.iter().filter_map(move |value| self.at(value))
     }
 
     /// Returns the part without the alternative `null`.
@@ -211,8 +211,8 @@ impl<'s> Part<'s> {
         let keys = self.keys(&|_| None);
         let items = keys.named.iter().find(|(name, _)| *name == list).and_then(|(_, part)| part.items());
         let Some(items) = items else { return "" };
-        let found = items.branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word));
-        found.map_or("", |branch| {
+        let branch = items.branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word));
+        branch.map_or("", |branch| {
             branch.own.get("description").map_or_else(
                 || branch.description(),
                 |text| text.as_str().and_then(|text| text.split("\n\n").next()).unwrap_or_default(),
@@ -222,8 +222,8 @@ impl<'s> Part<'s> {
 
     /// Returns the key and the word that select a branch.
     fn tag(self) -> Option<(&'s str, &'s str)> {
-        let found = self.word("properties")?.as_object()?;
-        found.iter().find_map(|(name, value)| Some((name.as_str(), value.get("const")?.as_str()?)))
+        let properties = self.word("properties")?.as_object()?;
+        properties.iter().find_map(|(name, value)| Some((name.as_str(), value.get("const")?.as_str()?)))
     }
 }
 

@@ -21,11 +21,11 @@ pub(crate) struct Entry {
 
 /// Returns the settings of a valid document, in its order.
 pub(crate) fn entries(document: &Value, schema: &Value) -> Vec<Entry> {
-    let mut found = Vec::new();
+    let mut entries_of_document = Vec::new();
     if let (Some(part), Some(table)) = (Part::root(schema), document.as_object()) {
-        collect(part, table, ["", ""], &mut found);
+        collect(part, table, ["", ""], &mut entries_of_document);
     }
-    found
+    entries_of_document
 }
 
 fn collect(part: Part<'_>, table: &Map<String, Value>, [key, path]: [&str; 2], found: &mut Vec<Entry>) {
@@ -92,22 +92,22 @@ pub(crate) fn names(items: &[Value]) -> Vec<String> {
     let mut taken = BTreeSet::new();
     // The number that is tried next for each name. Taken names stay taken.
     let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-    let one = |(index, item): (usize, &Value)| {
-        let own = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
-        let own = own.map_or_else(|| (index + 1).to_string(), str::to_owned);
-        if taken.insert(own.clone()) {
-            return own;
+    let unique = |(index, item): (usize, &Value)| {
+        let name = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
+        let name = name.map_or_else(|| (index + 1).to_string(), str::to_owned);
+        if taken.insert(name.clone()) {
+            return name;
         }
-        let number = numbers.entry(own.clone()).or_insert(2);
+        let number = numbers.entry(name.clone()).or_insert(2);
         loop {
-            let name = format!("{own}-{number}");
+            let name = format!("{name}-{number}");
             *number += 1;
             if taken.insert(name.clone()) {
                 return name;
             }
         }
     };
-    items.iter().enumerate().map(one).collect()
+    items.iter().enumerate().map(unique).collect()
 }
 
 /// Splits a description into text and unit.

@@ -70,7 +70,7 @@ impl Source {
 
     /// Returns the place of a value, or of the part around it.
     pub(crate) fn of(&self, path: &str) -> String {
-        let within = |own: &str| path.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        let within = |part: &str| path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
         if let Some((_, other)) = self.others.iter().find(|(own, _)| within(own)) {
             return other.of(path);
         }

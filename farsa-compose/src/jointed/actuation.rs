@@ -57,8 +57,8 @@ fn taken(
     let name = scene.joint_name(joint).to_owned();
     let actuator = if let Some((law, word)) = law {
         let called = format!("{name} {word}");
-        let known = scene.robot.actuator(&called);
-        (known.unwrap_or_else(|| scene.robot.add_actuator(&called, joint, law)), law)
+        let existing = scene.robot.actuator(&called);
+        (existing.unwrap_or_else(|| scene.robot.add_actuator(&called, joint, law)), law)
     } else {
         let why = format!("lacks the key {lacking}: `{name}` has no such motor of its own");
         own(scene, joint, kind).ok_or_else(|| source.wrong(path, why))?

@@ -15,10 +15,10 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the joint of a channel, from those named or from all of the kind.
 fn joint(names: &[String], channel: usize, scene: &Scene, fits: impl Fn(JointId) -> bool) -> Option<JointId> {
-    let mut own = scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
+    let mut joints_of_robot = scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
     match names.get(channel) {
-        Some(name) => own.find(|joint| scene.joint_name(*joint) == name),
-        None => own.filter(|joint| fits(*joint)).nth(channel),
+        Some(name) => joints_of_robot.find(|joint| scene.joint_name(*joint) == name),
+        None => joints_of_robot.filter(|joint| fits(*joint)).nth(channel),
     }
 }
 
@@ -47,9 +47,9 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Channe
         SensorKind::Touch { .. } => ChannelQuantity::new("whether something is touched", "1", [0.0, 1.0]),
         SensorKind::ContactForce { .. } => ChannelQuantity::new("force", "N", [0.0, 1.0]),
         SensorKind::TargetPosition { target, scale, body: own, .. } => {
-            let one = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
+            let end = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
             let way = format!("{} of the way from {} to {target}", AXES[channel % 3], body(own));
-            ChannelQuantity::new(way, "m", [0.0, one])
+            ChannelQuantity::new(way, "m", [0.0, end])
         }
         SensorKind::BodyPose { body: name } if channel < 3 => {
             ChannelQuantity::new(format!("{} of {}", AXES[channel], body(name)), "m", [0.0, 1.0])
@@ -81,8 +81,8 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Channe
 /// Returns the quantity of a motor channel.
 pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> ChannelQuantity {
     let joint = |names: &[String], channel, given: bool, is: fn(&Law<f64>) -> bool| {
-        let found = joint(names, channel, scene, |joint| given || actuation::has(scene, joint, is));
-        (found, about(found, scene))
+        let joint = joint(names, channel, scene, |joint| given || actuation::has(scene, joint, is));
+        (joint, about(joint, scene))
     };
     match kind {
         MotorKind::JointVelocity { joints, largest, gain, .. } => {

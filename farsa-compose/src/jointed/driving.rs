@@ -1,4 +1,4 @@
-//! Motors of a robot with joints, with their wrappers.
+//! Motors of a robot with joints.
 
 use farsa_body::ChannelError;
 use farsa_body::actuators::Law;
@@ -7,12 +7,10 @@ use farsa_body::ports::{Channels, JointId, Motor};
 use farsa_lab::Error;
 
 use crate::check::source::Source;
-use crate::document::{self, MotorKind};
+use crate::document::MotorKind;
 use crate::jointed::SpatialWorld;
 use crate::jointed::actuation::{self, is_muscles, is_servo, is_torque, is_velocity};
 use crate::jointed::scene::Scene;
-use crate::parts::sizes::MemoryBudget;
-use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot with joints.
 #[derive(Clone, Debug)]
@@ -21,7 +19,6 @@ pub(crate) enum Driving {
     Torque(Vec<TorqueMotor>),
     Servos(Vec<ServoGroup<Vec<ServoRange>>>),
     Muscles(Vec<Muscles>),
-    Wrapped(Wrapped<Self>),
 }
 
 /// Calls a method of the motor of any kind.
@@ -32,7 +29,6 @@ macro_rules! motor {
             Driving::Torque($motor) => $call,
             Driving::Servos($motor) => $call,
             Driving::Muscles($motor) => $call,
-            Driving::Wrapped(wrapped) => around!(wrapped, $motor => $call),
         }
     };
 }
@@ -53,33 +49,6 @@ impl<W: SpatialWorld> Motor<W> for Driving {
     }
 }
 
-impl Reseed for Driving {
-    fn reseed(&mut self, streams: &mut NoiseStreams) {
-        if let Self::Wrapped(wrapped) = self {
-            wrapped.reseed(streams);
-        }
-    }
-}
-
-/// Builds the motor at a path of the document, with its wrappers. Adds the actuators that the robot lacks.
-///
-/// # Errors
-/// [`Error::Setting`] for a missing actuator and for invalid wrappers, [`Error::Unknown`] for an unknown joint.
-pub(crate) fn motor(
-    motor: &document::Motor,
-    scene: &mut Scene,
-    path: &str,
-    budget: &mut MemoryBudget,
-    source: &Source,
-) -> Result<Driving, Error> {
-    let mut made = bare(&motor.kind, scene, path, source)?;
-    for (index, wrapper) in motor.wrappers.iter().enumerate() {
-        let path = format!("{path}/wrappers/{index}");
-        made = Driving::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
-    }
-    Ok(made)
-}
-
 /// Returns the joints of a motor: those named, or all. Unless the law is `given`, all means those with an actuator of
 /// the kind.
 ///
@@ -97,39 +66,43 @@ pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &So
     scene.joints(joints, |joint| given || actuation::has(scene, joint, of_kind), path, source)
 }
 
-fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, source: &Source) -> Result<Driving, Error> {
+/// Builds the motor at a path of the document. Adds the actuators that the robot lacks.
+///
+/// # Errors
+/// [`Error::Setting`] for a missing actuator, [`Error::Unknown`] for an unknown joint.
+pub(crate) fn motor(kind: &MotorKind, scene: &mut Scene, path: &str, source: &Source) -> Result<Driving, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
     let joints = joints_of(kind, scene, path, source)?;
     Ok(match kind {
         MotorKind::JointVelocity { largest, gain, limit, .. } => {
-            let one = |joint| {
+            let build = |joint| {
                 let (actuator, gain) = actuation::velocity(scene, joint, [*gain, *limit], path, source)?;
                 VelocityMotor::new(actuator, *largest as f32, gain as f32).map_err(wrong)
             };
-            Driving::Velocity(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+            Driving::Velocity(joints.into_iter().map(build).collect::<Result<_, _>>()?)
         }
         MotorKind::JointTorque { largest, .. } => {
-            let one = |joint| {
+            let build = |joint| {
                 let (actuator, largest) = actuation::torque(scene, joint, *largest, path, source)?;
                 TorqueMotor::new(actuator, largest as f32).map_err(wrong)
             };
-            Driving::Torque(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+            Driving::Torque(joints.into_iter().map(build).collect::<Result<_, _>>()?)
         }
         MotorKind::Servo { together, from, to, stiffness, damping, limit, .. } => {
-            let one = |joint| {
+            let build = |joint| {
                 let [low, high] = scene.range(joint);
                 let [from, to] = [from.unwrap_or(low), to.unwrap_or(high)].map(|end| end as f32);
                 let servo = actuation::servo(scene, joint, [*stiffness, *damping, *limit], path, source)?;
                 Ok(ServoRange { servo, from, to })
             };
-            let servos = joints.into_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
+            let servos = joints.into_iter().map(build).collect::<Result<Vec<_>, Error>>()?;
             let groups = if *together { vec![servos] } else { servos.into_iter().map(|servo| vec![servo]).collect() };
             Driving::Servos(groups.into_iter().map(ServoGroup::new).collect::<Result<_, _>>().map_err(wrong)?)
         }
         MotorKind::Muscles { tension, moment_arm, .. } => {
-            let one =
+            let build =
                 |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, source)?));
-            Driving::Muscles(joints.into_iter().map(one).collect::<Result<_, Error>>()?)
+            Driving::Muscles(joints.into_iter().map(build).collect::<Result<_, Error>>()?)
         }
         MotorKind::Wheels {}
         | MotorKind::SpeedAndTurn { .. }

@@ -1,6 +1,6 @@
 //! An episode of a robot with joints.
 
-use farsa_body::ports::{BodyId, Channels as _, Motor as _, Sensor as _};
+use farsa_body::ports::BodyId;
 use farsa_body::robot::{Joint, JointKind, MassProperties, Robot, Segment};
 use farsa_body::{Pose, Recorder};
 use farsa_lab::{Episode, EpisodeId, seconds};
@@ -13,12 +13,10 @@ use crate::composed_task::Body;
 use crate::document::{Ending, MotorKind, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::channel_quantity;
-use crate::jointed::sensing::Sensing;
 use crate::jointed::setup::Setup;
 use crate::parts::agents::Agents;
 use crate::parts::channel_quantity::ChannelQuantity;
-use crate::parts::network_spec::NetworkSpec;
-use crate::parts::wrapping::NOISE;
+use crate::parts::wrapping::NoiseStreams;
 
 /// A robot with its network in a trial.
 #[derive(Clone, Debug)]
@@ -88,8 +86,8 @@ fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
         objects.push(object.on_body(body).with_color(screen_color(marker.color)));
     }
     let mut schema = Schema { objects, ..Schema::from_robot(&robot) };
-    for (sensor, (name, _)) in setup.sensors.iter().zip(sensors) {
-        if let Some(camera) = sensor.camera() {
+    for (sensor, (name, _)) in setup.equipment.sensors.iter().zip(sensors) {
+        if let Some(camera) = sensor.kind().camera() {
             schema = schema.with_image(name, camera.size());
         }
     }
@@ -144,14 +142,10 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let arranged = self.arrange(world, id);
         self.agents.begin(arranged);
-        let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
-        self.setup.reseed(streams, self.agents.document.episode.steps);
-        let Setup { sensors, motors, terms, .. } = &mut self.setup;
-        for sensor in sensors {
-            sensor.reset();
-            sensor.look(&self.markers);
-        }
-        motors.iter_mut().for_each(farsa_body::ports::Channels::reset);
+        let mut streams = NoiseStreams::of_episode(id, self.agents.document.episode.steps);
+        let Setup { equipment, terms, .. } = &mut self.setup;
+        equipment.begin(&mut streams);
+        equipment.sensors.iter_mut().for_each(|sensor| sensor.kind_mut().look(&self.markers));
         for term in terms {
             term.begin(world, &self.markers);
         }
@@ -162,16 +156,11 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     }
 
     fn act(&mut self, world: &mut W) {
-        let Setup { sensors, motors, .. } = &mut self.setup;
+        let equipment = &mut self.setup.equipment;
         let Agents { spec, networks, x, y, .. } = &mut self.agents;
-        let NetworkSpec { sensors: inputs, motors: outputs, .. } = spec;
-        for (sensor, (_, [first, end])) in sensors.iter_mut().zip(inputs) {
-            sensor.read(world, &mut x[*first..*end]);
-        }
+        equipment.sense(&spec.sensors, world, x);
         networks[0].step(x, y);
-        for (motor, (_, [first, end])) in motors.iter_mut().zip(outputs) {
-            motor.drive(&y[*first..*end], world);
-        }
+        equipment.drive(&spec.motors, y, world);
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
@@ -194,7 +183,9 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
-        for (number, camera) in self.setup.sensors.iter().filter_map(Sensing::camera).enumerate() {
+        for (number, camera) in
+            self.setup.equipment.sensors.iter().filter_map(|sensor| sensor.kind().camera()).enumerate()
+        {
             camera.record(number, recorder);
         }
         recorder.neurons(networks[0].controller().activations());

@@ -74,9 +74,9 @@ pub(crate) fn offset(
             NamedPoint::Marker(_) => Err(source.wrong(&path, format!("`{name}` is a marker, which no eye sees"))),
         }
     };
-    let (of, from) = (point(of, "of")?, point(from, "from")?);
+    let (target, from) = (point(of, "of")?, point(from, "from")?);
     // Only the pose and the field of view of the camera matter.
-    Ok(VisualOffset::new(camera(eye, [1, 1], scene, path, source)?, of, from))
+    Ok(VisualOffset::new(camera(eye, [1, 1], scene, path, source)?, target, from))
 }
 
 /// Returns the quantity of an image channel.

@@ -36,10 +36,10 @@ impl Channels for MarkerPosition {
 
 impl<W: SpatialWorld> Sensor<W> for MarkerPosition {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let own = world.pose(self.from.body);
-        let from = own.transform(self.from.at);
+        let pose = world.pose(self.from.body);
+        let from = pose.transform(self.from.at);
         let way = [0, 1, 2].map(|k| self.place[k] - from[k]);
-        let way = if self.axes == Axes::Body { own.rotate_back(way) } else { way };
+        let way = if self.axes == Axes::Body { pose.rotate_back(way) } else { way };
         out.iter_mut().zip(way).for_each(|(o, x)| *o = x * self.scale);
     }
 }

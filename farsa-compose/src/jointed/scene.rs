@@ -51,12 +51,12 @@ impl Scene {
         });
         for (index, object) in document.objects.iter().enumerate() {
             let path = format!("/objects/{index}");
-            let known = |name: &str| {
+            let is_taken = |name: &str| {
                 let of_robot =
                     robot.body(name).is_some() || robot.joint(name).is_some() || robot.collider(name).is_some();
                 of_robot || frames.iter().any(|(own, ..)| own == name)
             };
-            let named = [ROBOT, FLOOR].contains(&object.name.as_str()) || known(&object.name);
+            let named = [ROBOT, FLOOR].contains(&object.name.as_str()) || is_taken(&object.name);
             if named || things.iter().any(|thing: &Thing| thing.name == object.name) {
                 let why = format!("`{}` names something else already", object.name);
                 return Err(source.wrong(&format!("{path}/name"), why));
@@ -84,14 +84,18 @@ impl Scene {
         let movable: Vec<bool> = self.robot.colliders.iter().map(moves).collect();
         let mut pairs = Vec::new();
         if let Some(floor) = self.floor {
-            pairs.extend((0..colliders).filter(|own| movable[*own]).map(|own| ([own, floor], surface(mass, friction))));
+            pairs.extend(
+                (0..colliders)
+                    .filter(|collider| movable[*collider])
+                    .map(|collider| ([collider, floor], surface(mass, friction))),
+            );
         }
         for (number, thing) in self.things.iter().enumerate() {
             let Some(collider) = thing.collider else { continue };
-            let of_robot = (0..colliders).filter(|own| movable[*own] || movable[collider]);
+            let of_robot = (0..colliders).filter(|robot_collider| movable[*robot_collider] || movable[collider]);
             // Against a wall the mass is that of the robot.
             let smaller = if thing.mass > 0.0 { thing.mass } else { mass };
-            pairs.extend(of_robot.map(|own| ([own, collider], surface(smaller, friction))));
+            pairs.extend(of_robot.map(|robot_collider| ([robot_collider, collider], surface(smaller, friction))));
             let floor = self.floor.filter(|_| thing.mass > 0.0);
             pairs.extend(floor.map(|floor| ([collider, floor], surface(thing.mass, thing.friction))));
             for other in &self.things[..number] {
@@ -190,11 +194,11 @@ impl Scene {
                 }
             };
         }
-        let found = self.body(Some(name), path, source).map_err(|_| {
+        let named = self.body(Some(name), path, source).map_err(|_| {
             let names = self.things.iter().map(|thing| thing.name.as_str()).chain(self.body_names());
             Error::unknown(&source.of(path), "object", name, names)
         });
-        let (body, placement) = found?;
+        let (body, placement) = named?;
         Ok((NamedPoint::Body(Point { body, at: placement.position.map(|x| x as f32) }), 0.0))
     }
 
@@ -209,22 +213,22 @@ impl Scene {
         path: &str,
         source: &Source,
     ) -> Result<Vec<JointId>, Error> {
-        let own = || self.robot.joints().filter(|joint| joint.index() < self.own[0]);
-        let found: Vec<JointId> = if names.is_empty() {
-            own().filter(|joint| all(*joint)).collect()
+        let joints_of_robot = || self.robot.joints().filter(|joint| joint.index() < self.own[0]);
+        let joints: Vec<JointId> = if names.is_empty() {
+            joints_of_robot().filter(|joint| all(*joint)).collect()
         } else {
             let named = |(index, name): (usize, &String)| {
-                let joint = own().find(|joint| self.joint_name(*joint) == name);
-                let known = own().map(|joint| self.joint_name(joint));
-                joint.ok_or_else(|| Error::unknown(&source.of(&format!("{path}/joints/{index}")), "joint", name, known))
+                let joint = joints_of_robot().find(|joint| self.joint_name(*joint) == name);
+                let valid = joints_of_robot().map(|joint| self.joint_name(joint));
+                joint.ok_or_else(|| Error::unknown(&source.of(&format!("{path}/joints/{index}")), "joint", name, valid))
             };
             names.iter().enumerate().map(named).collect::<Result<_, _>>()?
         };
-        if found.is_empty() {
+        if joints.is_empty() {
             return Err(source
                 .wrong(path, "is for joints that the robot does not have; name `joints`, and how strong they are"));
         }
-        Ok(found)
+        Ok(joints)
     }
 
     /// Returns the name of a joint.
@@ -257,10 +261,10 @@ impl Scene {
         };
         let thing = match with {
             Some(name) if name != FLOOR => {
-                let found = self.things.iter().find(|thing| thing.name == *name);
+                let named_thing = self.things.iter().find(|thing| thing.name == *name);
                 let names = self.things.iter().map(|thing| thing.name.as_str()).chain([FLOOR]);
                 let place = source.of(&format!("{path}/with"));
-                found.ok_or_else(|| Error::unknown(&place, "object", name, names))?.collider
+                named_thing.ok_or_else(|| Error::unknown(&place, "object", name, names))?.collider
             }
             _ => None,
         };
@@ -277,21 +281,21 @@ impl Scene {
             let [a, b] = pair.colliders;
             feels(a) && met(b) || feels(b) && met(a)
         });
-        let found: Vec<PairId> = pairs.map(|(number, _)| PairId(number as u16)).collect();
-        if found.is_empty() {
+        let ids: Vec<PairId> = pairs.map(|(number, _)| PairId(number as u16)).collect();
+        if ids.is_empty() {
             return Err(source.wrong(path, "can touch nothing: no shape of the robot meets anything there"));
         }
-        Ok(found)
+        Ok(ids)
     }
 
     /// Returns the contact pairs between the robot and things.
     pub(crate) fn collisions(&self) -> Vec<PairId> {
         let things = self.things.iter().filter_map(|thing| thing.collider);
         let things: Vec<usize> = things.collect();
-        let own = |collider: usize| collider < self.own[1];
+        let of_robot = |collider: usize| collider < self.own[1];
         let pairs = self.robot.pairs.iter().enumerate().filter(|(_, pair)| {
             let [a, b] = pair.colliders;
-            own(a) && things.contains(&b) || own(b) && things.contains(&a)
+            of_robot(a) && things.contains(&b) || of_robot(b) && things.contains(&a)
         });
         pairs.map(|(number, _)| PairId(number as u16)).collect()
     }

@@ -1,4 +1,4 @@
-//! Sensors of a robot with joints, with their wrappers.
+//! Sensors of a robot with joints.
 
 use farsa_body::ports::{Channels, PairId, Sensor};
 use farsa_body::sensors::{
@@ -9,15 +9,13 @@ use farsa_body::{ChannelError, Pose};
 use farsa_lab::Error;
 
 use crate::check::source::Source;
-use crate::document::{self, AxesName, SensorKind};
+use crate::document::{AxesName, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
 use crate::parts::eye::{Eye, eye};
-use crate::parts::sizes::MemoryBudget;
-use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot with joints.
 #[derive(Clone, Debug)]
@@ -36,7 +34,6 @@ pub(crate) enum Sensing {
     Blobs(ColorBlobs),
     Offset(VisualOffset),
     Constant(Signal<1>),
-    Wrapped(Wrapped<Self>),
 }
 
 /// Calls a method of the sensor of any kind.
@@ -57,7 +54,6 @@ macro_rules! sensor {
             Sensing::Blobs($sensor) => $call,
             Sensing::Offset($sensor) => $call,
             Sensing::Constant($sensor) => $call,
-            Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
     };
 }
@@ -98,60 +94,34 @@ impl<W: SpatialWorld> Sensor<W> for Sensing {
     }
 }
 
-impl Reseed for Sensing {
-    fn reseed(&mut self, streams: &mut NoiseStreams) {
-        if let Self::Wrapped(wrapped) = self {
-            wrapped.reseed(streams);
-        }
-    }
-}
-
 impl Sensing {
     /// Returns the camera of an image.
     pub(crate) fn camera(&self) -> Option<&farsa_body::sensors::Camera> {
         match self {
             Self::Image(image) => Some(image.camera()),
             Self::Blobs(blobs) => Some(blobs.camera()),
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner().camera()),
             _ => None,
         }
     }
 
     /// Updates the position of a marker from those of all markers [m].
     pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
-        match self {
-            Self::Marker(marker) => marker.look(markers),
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().look(markers)),
-            _ => {}
+        if let Self::Marker(marker) = self {
+            marker.look(markers);
         }
     }
 }
 
-/// Builds the sensor at a path of the document, with its wrappers.
+/// Builds the sensor at a path of the document.
 ///
 /// # Errors
-/// [`Error::Setting`] for invalid sensors and wrappers, [`Error::Unknown`] for an unknown body, joint or thing.
-pub(crate) fn sensor(
-    sensor: &document::Sensor,
-    scene: &Scene,
-    path: &str,
-    budget: &mut MemoryBudget,
-    source: &Source,
-) -> Result<Sensing, Error> {
-    let mut made = bare(&sensor.kind, scene, path, source)?;
-    for (index, wrapper) in sensor.wrappers.iter().enumerate() {
-        let path = format!("{path}/wrappers/{index}");
-        made = Sensing::Wrapped(Wrapped::new(made, wrapper, budget, &path, source)?);
-    }
-    Ok(made)
-}
-
-fn bare(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
+/// [`Error::Setting`] for an invalid sensor, [`Error::Unknown`] for an unknown body, joint or thing.
+pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
     let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);
     Ok(match kind {
         SensorKind::JointPosition { joints, from, to } => {
-            let one = |joint| {
+            let build = |joint| {
                 let [low, high] = scene.range(joint);
                 let ends = [from.unwrap_or(low), to.unwrap_or(high)].map(|end| end as f32);
                 let why = || format!("lacks `from` or `to`: `{}` has no range of its own", scene.joint_name(joint));
@@ -161,7 +131,7 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result
                 Err(source.wrong(path, why()))
             };
             let joints = scene.joints(joints, |_| true, path, source)?;
-            Sensing::JointPosition(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+            Sensing::JointPosition(joints.into_iter().map(build).collect::<Result<_, _>>()?)
         }
         SensorKind::JointSpeed { joints } => {
             let joints = scene.joints(joints, |_| true, path, source)?;

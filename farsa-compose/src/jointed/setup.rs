@@ -1,9 +1,8 @@
 //! The scene with the sensors, motors and terms of its robot.
 
-use farsa_body::ports::{BodyId, Channels as _, JointId, PairId};
+use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::JointKind;
 use farsa_lab::Error;
-use farsa_num::Stream;
 use farsa_physics::articulated::Options;
 
 use crate::check::source::Source;
@@ -14,18 +13,18 @@ use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
+use crate::parts::equipment::Equipment;
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
 use crate::parts::network_spec::NetworkSpec;
+use crate::parts::part::Part;
 use crate::parts::sizes::{MemoryBudget, check_parts};
-use crate::parts::wrapping::{NoiseStreams, Reseed as _};
 
 /// A scene with its robot and terms.
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
     pub(crate) scene: Scene,
-    pub(crate) sensors: Vec<Sensing>,
-    pub(crate) motors: Vec<Driving>,
+    pub(crate) equipment: Equipment<Sensing, Driving>,
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
@@ -44,16 +43,15 @@ impl Setup {
     pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
         refuse(&document, source)?;
         let mut scene = Scene::new(&document, source)?;
-        let (mut sensors, mut motors, mut budget) = (Vec::new(), Vec::new(), MemoryBudget::new(source.limits));
-        for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-            sensors.push(sensor(own, &scene, &format!("/sensors/{index}"), &mut budget, source)?);
-        }
-        for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-            motors.push(motor(own, &mut scene, &format!("/motors/{index}"), &mut budget, source)?);
-        }
-        let channels =
-            [sensors.iter().map(Sensing::channels).collect(), motors.iter().map(Driving::channels).collect()];
-        let spec = NetworkSpec::new(&document, channels, source)?;
+        let mut budget = MemoryBudget::new(source.limits);
+        let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
+        let make = |kind, path: &str| sensor(kind, &scene, path, source);
+        let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
+        let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
+        let make = |kind, path: &str| motor(kind, &mut scene, path, source);
+        let motors = Part::list("motors", motors, make, &mut budget, source)?;
+        let equipment = Equipment { sensors, motors };
+        let spec = NetworkSpec::new(&document, equipment.channels(), source)?;
         budget.take(spec.values(), "/network", source)?;
         let term = |(number, reward): (usize, &crate::document::Reward)| {
             Term::new(&reward.kind, &format!("/reward/{number}"), &spec.sensors, &scene, source)
@@ -68,14 +66,7 @@ impl Setup {
         let floating = floating.map(|(number, _)| BodyId(number as u16)).collect();
         let (joints, collisions) = (scene.robot.joints().collect(), scene.collisions());
         let agents = Agents::new(document, spec, ledger, groups);
-        Ok((Self { scene, sensors, motors, starting, terms, collisions, joints, floating }, agents))
-    }
-
-    /// Assigns the streams of an episode to all noise.
-    pub(crate) fn reseed(&mut self, [sensor, motor]: [Stream; 2], steps: u32) {
-        let mut streams = [NoiseStreams::new(sensor, steps), NoiseStreams::new(motor, steps)];
-        self.sensors.iter_mut().for_each(|sensor| sensor.reseed(&mut streams[0]));
-        self.motors.iter_mut().for_each(|motor| motor.reseed(&mut streams[1]));
+        Ok((Self { scene, equipment, starting, terms, collisions, joints, floating }, agents))
     }
 }
 

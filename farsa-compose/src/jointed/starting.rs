@@ -168,9 +168,9 @@ fn named(name: &String, scene: &Scene, path: &str, source: &Source) -> Result<(P
     }
     let joints = || scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
     let joint = joints().find(|joint| scene.joint_name(*joint) == name);
-    let known = joints().map(|joint| scene.joint_name(joint)).chain([ROBOT]);
-    let known = known.chain(scene.things.iter().map(|thing| thing.name.as_str()));
-    let joint = joint.ok_or_else(|| Error::unknown(&source.of(&path), "joint or object", name, known))?;
+    let names = joints().map(|joint| scene.joint_name(joint)).chain([ROBOT]);
+    let names = names.chain(scene.things.iter().map(|thing| thing.name.as_str()));
+    let joint = joint.ok_or_else(|| Error::unknown(&source.of(&path), "joint or object", name, names))?;
     Ok((Placed::Joint(joint), 0.0))
 }
 
@@ -195,9 +195,8 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Sour
         Placing::OneOf { points, like } => {
             let point = |(index, point): (usize, &Vec<f64>)| {
                 let why = || format!("has {} values where 3 are wanted: x, y and z", point.len());
-                let found = <[f64; 3]>::try_from(point.as_slice());
-                found
-                    .map(|point| point.map(|x| x as f32))
+                let at = <[f64; 3]>::try_from(point.as_slice());
+                at.map(|point| point.map(|x| x as f32))
                     .map_err(|_| source.wrong(&format!("{path}/points/{index}"), why()))
             };
             let points = points.iter().enumerate().map(point).collect::<Result<_, _>>()?;

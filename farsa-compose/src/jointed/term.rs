@@ -108,14 +108,17 @@ impl Term {
                 if distance.is_finite() { yes(distance < *within) } else { f64::NAN }
             }
             Measure::Distance(point_named, point) => distance(point_named, point),
+            // d(0) - d(t)
             Measure::Approach(point_named, point) => self.far - distance(point_named, point),
             Measure::Touch(pairs) => yes(pairs.iter().any(|pair| world.touches(*pair))),
             Measure::Displacement(_) | Measure::Moved(_) => apart(self.place(world, markers), self.began),
             Measure::Speed(body) => length(world.velocity(*body).linear.map(f64::from)),
+            // x component of R^T (p - p'), with p' of the previous step.
             Measure::Forward(body) => {
                 let way = self.way(world, markers);
                 world.pose(*body).cast::<f64>().rotate_back(way)[0]
             }
+            // n . (p - p')
             Measure::Progress(_, [u, v, w]) => {
                 let [x, y, z] = self.way(world, markers);
                 x * u + y * v + z * w
@@ -125,6 +128,7 @@ impl Term {
                 x * u + y * v + z * w
             }
             Measure::Height(point) => place_of(world, point)[2],
+            // z component of the body's z axis in the world.
             Measure::Upright(body) => f64::from(world.pose(*body).rotate([0.0, 0.0, 1.0])[2]),
             Measure::JointSpeed(joints) => {
                 mean(joints.iter().map(|joint| f64::from(world.speed(*joint)).abs()).sum(), joints.len())
@@ -134,6 +138,7 @@ impl Term {
                 channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
             }
             Measure::Effort => mean(agents.y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum(), agents.y.len()),
+            // Mean of (2 y - 1)^2, because a motor rests at y = 1/2.
             Measure::Control => {
                 let off = agents.y.iter().map(|y| 2.0 * f64::from(*y) - 1.0);
                 mean(off.map(|u| u * u).sum(), agents.y.len())
@@ -182,10 +187,10 @@ fn measure(
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
         RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, source)?),
         RewardKind::Sensor { sensor } => {
-            let found = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
+            let channels = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
             let names = sensors.iter().map(|(name, _)| name.as_str());
             let place = source.of(&format!("{path}/sensor"));
-            Measure::Sensor(found.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
+            Measure::Sensor(channels.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
         }
         RewardKind::Effort {} => Measure::Effort,
         RewardKind::Control {} => Measure::Control,

@@ -54,12 +54,12 @@ impl Agents {
     pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
         let ranges = self.groups.ranges();
-        let own = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
-        self.evolving = ranges[own];
+        let tested = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
+        self.evolving = ranges[tested];
         self.ledger.evolve(self.evolving);
         let mut others = opponents.iter().copied();
         let mut loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
-            let given = if population == own { parameters } else { others.next().unwrap_or(parameters) };
+            let given = if population == tested { parameters } else { others.next().unwrap_or(parameters) };
             let Some(all) = self.spec.searched.all(given) else { return false };
             let mut networks = self.networks[first..end].iter_mut();
             networks.all(|network| network.load(normalisation) && network.controller_mut().load(all))

@@ -24,8 +24,8 @@ impl TermBehaviour {
     /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for an empty range.
     pub(crate) fn new(behaviour: &BehaviourOfTerms, names: &[String], source: &Source) -> Result<Option<Self>, Error> {
         let known = |name: &String, path: String| {
-            let found = names.iter().find(|known| *known == name).cloned();
-            found.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))
+            let term = names.iter().find(|known| *known == name).cloned();
+            term.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))
         };
         let objectives = behaviour.objectives.iter().enumerate().map(|(index, objective)| {
             let name = known(&objective.term, format!("/behaviour/objectives/{index}/term"))?;

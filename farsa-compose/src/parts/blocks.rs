@@ -9,7 +9,7 @@ use crate::document::{Blocks, Cluster, ClusterActivation, Link};
 use crate::parts::ends::Ends;
 
 /// A possible end of a link, with its neurons.
-struct Known {
+struct LinkEnd {
     /// Kind of the end, for messages.
     what: &'static str,
     name: String,
@@ -18,7 +18,7 @@ struct Known {
 
 /// A link between neurons.
 #[derive(Clone, Copy)]
-struct Found {
+struct ResolvedLink {
     from: Span,
     to: Span,
     delay: usize,
@@ -29,14 +29,16 @@ struct Found {
 /// # Errors
 /// [`Error::Unknown`] for an unknown end, [`Error::Setting`] for an ambiguous name and for duplicate links.
 pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<BlockLayoutBuf, Error> {
-    let known = known(blocks, ends, source)?;
-    let mut links: Vec<(usize, Found)> = Vec::new();
+    let link_ends = link_ends(blocks, ends, source)?;
+    let mut links: Vec<(usize, ResolvedLink)> = Vec::new();
     for (number, link) in blocks.links.iter().enumerate() {
         let path = format!("/network/links/{number}");
-        let Some(found) = resolved(link, &known, ends, &path, source)? else { continue };
+        let Some(found) = resolved(link, &link_ends, ends, &path, source)? else { continue };
+        // Spans [a, b) overlap if each begins before the other ends.
         let overlap = |a: Span, b: Span| a.first < b.end() && b.first < a.end();
-        let same =
-            |other: Found| overlap(other.from, found.from) && overlap(other.to, found.to) && other.delay == found.delay;
+        let same = |other: ResolvedLink| {
+            overlap(other.from, found.from) && overlap(other.to, found.to) && other.delay == found.delay
+        };
         if let Some((other, _)) = links.iter().find(|(_, other)| same(*other)) {
             let Link { from, to, .. } = link;
             let why = format!("links `{from}` with `{to}`, as link {} does with the same delay", other + 1);
@@ -51,11 +53,12 @@ pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result
     groups.push(Group { leak: blocks.output_leaks, ..biased });
     let (mut list, mut first) = (Vec::new(), 0);
     for group in &groups {
-        let own = Span::new(first, group.neurons);
-        first = own.end();
-        let to_own = links.iter().map(|(_, link)| link).filter(|link| own.contains(link.to.first));
+        let span = Span::new(first, group.neurons);
+        first = span.end();
+        // A link to this group adds to its net inputs before the update. Sources of later groups are one step old.
+        let to_own = links.iter().map(|(_, link)| link).filter(|link| span.contains(link.to.first));
         list.extend(to_own.map(|link| Block::connect(link.from, link.to).delayed(link.delay)));
-        list.push(Block::Update(own));
+        list.push(Block::Update(span));
     }
     Ok(BlockLayoutBuf { inputs, outputs, groups, blocks: list })
 }
@@ -71,67 +74,74 @@ fn group(cluster: &Cluster) -> Group {
 }
 
 /// Returns all ends of links: sensors, clusters, motors, all sensors and all motors.
-fn known(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<Known>, Error> {
+fn link_ends(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<LinkEnd>, Error> {
     let part = |what, (name, [first, end]): &(String, [usize; 2]), before: usize| {
         let span = Span::new(before + first, end - first);
-        Known { what, name: name.clone(), span }
+        LinkEnd { what, name: name.clone(), span }
     };
-    let mut known = vec![Known { what: "all sensors", name: "sensors".into(), span: Span::new(0, ends.inputs.len()) }];
-    known.extend(ends.sensors.iter().map(|sensor| part("a sensor", sensor, 0)));
+    let mut link_ends =
+        vec![LinkEnd { what: "all sensors", name: "sensors".into(), span: Span::new(0, ends.inputs.len()) }];
+    link_ends.extend(ends.sensors.iter().map(|sensor| part("a sensor", sensor, 0)));
     let mut next = ends.inputs.len();
     for (number, cluster) in blocks.clusters.iter().enumerate() {
         let name = &cluster.name;
-        let before = known.iter().map(|known| &known.name);
+        let before = link_ends.iter().map(|end| &end.name);
         let mut taken = before.chain(ends.motors.iter().map(|(name, _)| name));
-        if name == "motors" || taken.any(|known| known == name) {
+        if name == "motors" || taken.any(|other| other == name) {
             let path = format!("/network/clusters/{number}/name");
             return Err(source.wrong(&path, format!("`{name}` names something else already")));
         }
         let span = Span::new(next, cluster.neurons as usize);
         next = span.end();
-        known.push(Known { what: "a cluster", name: name.clone(), span });
+        link_ends.push(LinkEnd { what: "a cluster", name: name.clone(), span });
     }
-    known.push(Known { what: "all motors", name: "motors".into(), span: Span::new(next, ends.outputs.len()) });
-    known.extend(ends.motors.iter().map(|motor| part("a motor", motor, next)));
-    Ok(known)
+    link_ends.push(LinkEnd { what: "all motors", name: "motors".into(), span: Span::new(next, ends.outputs.len()) });
+    link_ends.extend(ends.motors.iter().map(|motor| part("a motor", motor, next)));
+    Ok(link_ends)
 }
 
 /// Resolves the link at a path. Returns `None` if a sensor or motor at its end is disabled.
-fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, source: &Source) -> Result<Option<Found>, Error> {
+fn resolved(
+    link: &Link,
+    link_ends: &[LinkEnd],
+    ends: Ends<'_>,
+    path: &str,
+    source: &Source,
+) -> Result<Option<ResolvedLink>, Error> {
     let inputs = ends.inputs.len();
     let end = |key: &str, name: &str| {
         let path = format!("{path}/{key}");
         // No link leads to a sensor.
-        let valid = || known.iter().filter(|known| key == "from" || known.span.first >= inputs);
-        let mut found = valid().filter(|known| known.name == name);
+        let valid = || link_ends.iter().filter(|end| key == "from" || end.span.first >= inputs);
+        let mut found = valid().filter(|end| end.name == name);
         match (found.next(), found.next()) {
             (Some(one), None) => Ok(one.span),
             (Some(one), Some(other)) => {
                 let why = format!("`{name}` is {} and {}: give one of them another `name`", one.what, other.what);
                 Err(source.wrong(&path, why))
             }
-            (None, _) if known.iter().any(|known| known.name == name) => {
+            (None, _) if link_ends.iter().any(|end| end.name == name) => {
                 Err(source.wrong(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
             }
             (None, _) => {
-                let names = valid().map(|known| known.name.as_str());
+                let names = valid().map(|end| end.name.as_str());
                 Err(Error::unknown(&source.of(&path), "end of a link", name, names))
             }
         }
     };
-    let off = |name: &String| ends.absent.contains(name) && known.iter().all(|known| known.name != *name);
+    let off = |name: &String| ends.absent.contains(name) && link_ends.iter().all(|end| end.name != *name);
     if off(&link.from) || off(&link.to) {
         return Ok(None);
     }
     let (from, to) = (end("from", &link.from)?, end("to", &link.to)?);
     // Names of channels must be unique, because parameters are named after them.
-    let outputs = known.iter().find(|known| known.name == "motors").map_or(0, |known| known.span.first);
+    let outputs = link_ends.iter().find(|end| end.name == "motors").map_or(0, |end| end.span.first);
     let sources = ends.outputs.iter().enumerate().filter(|(output, _)| from.contains(outputs + output));
     if let Some((_, name)) = sources.into_iter().find(|(_, name)| ends.inputs.contains(name)) {
         let why = format!("`{name}` is a sensor and a motor: give one of them another `name`");
         return Err(source.wrong(&format!("{path}/from"), why));
     }
-    Ok(Some(Found { from, to, delay: link.delay as usize }))
+    Ok(Some(ResolvedLink { from, to, delay: link.delay as usize }))
 }
 
 /// Names the neurons of clusters.
@@ -168,11 +178,11 @@ pub(crate) fn parameters(
     for (word, kind, range) in [("bias", BlockParameter::Bias, weights), ("leak", BlockParameter::Leak, leaks)] {
         let mut first = 0;
         for group in layout.groups() {
-            let own = &names[first..first + group.neurons];
+            let names_of_group = &names[first..first + group.neurons];
             first += group.neurons;
             let has = if kind == BlockParameter::Bias { group.bias } else { group.leak };
-            let all = own.iter().filter(|_| has);
-            parameters.extend(all.map(|name| Parameter::new(format!("{word} of {name}"), range)));
+            let named = names_of_group.iter().filter(|_| has);
+            parameters.extend(named.map(|name| Parameter::new(format!("{word} of {name}"), range)));
         }
     }
     parameters

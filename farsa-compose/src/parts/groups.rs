@@ -45,8 +45,8 @@ impl Groups {
 
     /// Returns the group of a robot.
     pub(crate) fn of(&self, robot: usize) -> &str {
-        let found = self.groups.iter().find(|(_, [first, end])| (*first..*end).contains(&robot));
-        found.map_or("", |(name, _)| name)
+        let group = self.groups.iter().find(|(_, [first, end])| (*first..*end).contains(&robot));
+        group.map_or("", |(name, _)| name)
     }
 
     /// Returns the names of the populations, empty if all robots have one genome.
@@ -74,7 +74,7 @@ mod tests {
             (groups.populations(), groups.ranges()),
             (vec!["hunter".into(), "prey".into()], vec![[0, 2], [2, 5]])
         );
-        let one = Groups::new(sizes(), false);
-        assert_eq!((one.populations(), one.ranges()), (Vec::<String>::new(), vec![[0, 5]]));
+        let single = Groups::new(sizes(), false);
+        assert_eq!((single.populations(), single.ranges()), (Vec::<String>::new(), vec![[0, 5]]));
     }
 }

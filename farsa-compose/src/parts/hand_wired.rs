@@ -41,9 +41,9 @@ impl HandWired {
             return Err(source.wrong("/network/bias", why));
         }
         let end = |name: &str, list: &[String], what, path: String| {
-            let found = list.iter().position(|known| known == name);
+            let index = list.iter().position(|other| other == name);
             let names = list.iter().map(String::as_str);
-            found.ok_or_else(|| Error::unknown(&source.of(&path), what, name, names))
+            index.ok_or_else(|| Error::unknown(&source.of(&path), what, name, names))
         };
         let made = wires.iter().enumerate().map(|(number, wire)| {
             let path = format!("/network/wires/{number}");

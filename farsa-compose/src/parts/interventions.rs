@@ -12,14 +12,14 @@ use crate::parts::network_spec::NetworkSpec;
 /// inputs.
 pub(crate) fn interventions(network: &Network, spec: &NetworkSpec) -> Interventions {
     let NetworkSpec { sensors, inputs, outputs, network: own, .. } = spec;
-    let all = Interventions::default();
-    let all = if own.neurons() == 0 {
-        all
+    let interventions = Interventions::default();
+    let interventions = if own.neurons() == 0 {
+        interventions
     } else {
         let sensors = sensors.iter().map(|(name, [first, end])| (name, *first..*end));
-        all.with_lesions(sensors, neurons(network, own, inputs.len(), outputs))
+        interventions.with_lesions(sensors, neurons(network, own, inputs.len(), outputs))
     };
-    all.with_noise(&Interventions::NOISE)
+    interventions.with_noise(&Interventions::NOISE)
 }
 
 /// Names the neurons that can be silenced. Neurons of inputs are excluded, because a cut sensor silences them.

@@ -49,8 +49,8 @@ impl Ledger {
             return Err(source.wrong("/reward", "has no term: nothing is earned"));
         }
         let conditions = |list: &str, all: &[Condition]| {
-            let one = |(index, own)| Wanted::new(own, &format!("/{list}/{index}"), rewards, source);
-            all.iter().enumerate().map(one).collect::<Result<Vec<_>, Error>>()
+            let condition = |(index, text)| Wanted::new(text, &format!("/{list}/{index}"), rewards, source);
+            all.iter().enumerate().map(condition).collect::<Result<Vec<_>, Error>>()
         };
         let (success, failure) = (conditions("success", &document.success)?, conditions("failure", &document.failure)?);
         let ends_with_success = document.episode.ends.contains(&Ending::Success);
@@ -162,12 +162,12 @@ impl Ledger {
         let of_trial = |outcome: &Outcome| -> f64 {
             if self.product { outcome.terms.iter().product() } else { outcome.terms.iter().sum() }
         };
-        let each = trials.iter().map(of_trial);
+        let rewards = trials.iter().map(of_trial);
         match self.trials {
-            Trials::Mean => each.sum::<f64>() / trials.len().max(1) as f64,
-            Trials::Sum => each.sum(),
+            Trials::Mean => rewards.sum::<f64>() / trials.len().max(1) as f64,
+            Trials::Sum => rewards.sum(),
             // NaN is the worst.
-            Trials::Worst => each.fold(f64::INFINITY, |worst, own| {
+            Trials::Worst => rewards.fold(f64::INFINITY, |worst, own| {
                 if own.is_nan() || worst.is_nan() { f64::NAN } else { Scalar::min(worst, own) }
             }),
         }
@@ -177,11 +177,11 @@ impl Ledger {
 /// Leaks the name of a note, once for equal ones.
 fn lasting(name: &str) -> &'static str {
     static KEPT: Mutex<BTreeSet<&str>> = Mutex::new(BTreeSet::new());
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = kept.get(name) {
+    let mut names = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name) {
         return known;
     }
     let name: &'static str = String::leak(name.to_owned());
-    kept.insert(name);
+    names.insert(name);
     name
 }

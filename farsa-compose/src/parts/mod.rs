@@ -12,6 +12,8 @@ pub(crate) mod channel_quantity;
 pub(crate) mod choice;
 /// The inputs and outputs between which a network is built.
 pub(crate) mod ends;
+/// The sensors and motors of a robot.
+pub(crate) mod equipment;
 /// The network of the 2013 program, with genes in its order.
 pub(crate) mod evonet;
 /// Cameras with sectors.
@@ -30,6 +32,8 @@ pub(crate) mod ledger;
 pub(crate) mod network;
 /// The channels of a robot, and the network between them.
 pub(crate) mod network_spec;
+/// A sensor or motor with its wrappers.
+pub(crate) mod part;
 /// The parameters of a search, and those of the network.
 pub(crate) mod searched;
 /// Checks of sizes by the limits of a reader.

@@ -314,8 +314,8 @@ impl Ablatable for AnyNetwork {
 
 /// Names the wires.
 fn wire_names(wires: &[Wire]) -> Vec<String> {
-    let own = |(number, wire): (usize, &Wire)| wire.name.clone().unwrap_or_else(|| format!("wire {}", number + 1));
-    wires.iter().enumerate().map(own).collect()
+    let name = |(number, wire): (usize, &Wire)| wire.name.clone().unwrap_or_else(|| format!("wire {}", number + 1));
+    wires.iter().enumerate().map(name).collect()
 }
 
 /// Reorders parameters from biases and weights output by output to weights input by input and biases.
@@ -383,6 +383,6 @@ fn searched(layout: &CtrnnLayout) -> usize {
 /// Returns all parameters of a CTRNN from the searched ones, with gains of 1.
 fn ctrnn_parameters(layout: &CtrnnLayout, searched: &[f32]) -> Vec<f32> {
     let mut searched = searched.iter().copied();
-    let own = |kind| if kind == CtrnnParameter::Gain { 1.0 } else { searched.next().unwrap_or(0.0) };
-    layout.kinds().map(own).collect()
+    let parameter = |kind| if kind == CtrnnParameter::Gain { 1.0 } else { searched.next().unwrap_or(0.0) };
+    layout.kinds().map(parameter).collect()
 }

@@ -77,6 +77,7 @@ impl Searched {
                 first[own] = leader;
             }
         }
+        // A shared list has the place of its first parameter in the search.
         let mut count = 0;
         let mut places_of: Vec<Option<usize>> = vec![None; all.len()];
         let mut kept = vec![false; all.len()];

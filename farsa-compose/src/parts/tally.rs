@@ -60,13 +60,13 @@ impl Tally {
         }
         let during = reward.during.as_ref().map(|name| {
             let path = format!("{path}/during");
-            let found = names.iter().position(|known| known == name);
-            let found = found
+            let index = names.iter().position(|other| other == name);
+            let index = index
                 .ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))?;
-            if found >= number {
+            if index >= number {
                 return Err(source.wrong(&path, format!("`{name}` has to stand before this term")));
             }
-            Ok(found)
+            Ok(index)
         });
         Ok(Self {
             name: names[number].clone(),
@@ -112,6 +112,7 @@ impl Tally {
     pub(crate) fn evolve(&mut self, [first, end]: [usize; 2]) {
         self.range = self.about.unwrap_or([first, end]);
         self.count = (self.range[1] - self.range[0]) as f64;
+        // The ranges [a, b) and [first, end) intersect.
         self.earns = self.range[0] < end && first < self.range[1];
     }
 
@@ -119,6 +120,7 @@ impl Tally {
     #[inline]
     pub(crate) fn count(&mut self, value: f64, others: &[Self]) {
         let value = self.clip.map_or(value, |[low, high]| Scalar::clamp(value, low, high));
+        // Conditions look at the last value, even in steps that do not count.
         self.last = value;
         if self.during.is_none_or(|other| others.get(other).is_some_and(|other| other.last > 0.0)) {
             self.sum += value;
@@ -136,6 +138,7 @@ impl Tally {
     /// Returns the total before the weight.
     pub(crate) fn measured(&self, steps: u32) -> f64 {
         match self.over {
+            // Divided by the greatest number of steps, so that steps after an early end count as 0.
             Over::Mean => self.sum / f64::from(steps),
             Over::Sum => self.sum,
             Over::End => self.last,

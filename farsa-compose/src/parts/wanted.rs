@@ -23,8 +23,8 @@ impl Wanted {
         let Condition { term, above, below } = condition;
         let names_of = names.iter().map(String::as_str);
         let place = source.of(&format!("{path}/term"));
-        let found = names.iter().position(|name| name == term);
-        let term = found.ok_or_else(|| Error::unknown(&place, "term", term, names_of))?;
+        let number = names.iter().position(|name| name == term);
+        let term = number.ok_or_else(|| Error::unknown(&place, "term", term, names_of))?;
         if above.is_none() && below.is_none() {
             return Err(source.wrong(path, "lacks `above` and `below`: one of them at least"));
         }

@@ -5,7 +5,7 @@ use std::ops::Bound;
 use farsa_body::ChannelError;
 use farsa_body::ports::Channels;
 use farsa_body::wrappers::{Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded};
-use farsa_lab::Error;
+use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Stream};
 
 use crate::check::source::Source;
@@ -89,9 +89,6 @@ macro_rules! around {
 }
 pub(crate) use around;
 
-/// Domains of the noise of sensors and of motors.
-pub(crate) const NOISE: [Domain; 2] = [Domain::Sensor, Domain::Motor];
-
 /// Streams for the noise of an episode: consecutive sections of one stream, each long enough for all draws of a
 /// wrapper.
 pub(crate) struct NoiseStreams {
@@ -102,32 +99,24 @@ pub(crate) struct NoiseStreams {
 }
 
 impl NoiseStreams {
+    /// Returns the streams of sensors and of motors for an episode of this number of steps.
+    pub(crate) fn of_episode(id: EpisodeId, steps: u32) -> [Self; 2] {
+        let stream = |domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation);
+        [Domain::Sensor, Domain::Motor].map(|domain| Self::new(stream(domain), steps))
+    }
+
     /// Starts at the beginning of a stream, for episodes of this number of steps.
-    pub(crate) fn new(stream: Stream, steps: u32) -> Self {
+    fn new(stream: Stream, steps: u32) -> Self {
         // A normal number takes two words on average, and sometimes more.
         Self { stream, next: 0, words: 8 * u64::from(steps) }
     }
 
     /// Returns the stream of the next noise, for the given number of channels.
     pub(crate) fn take(&mut self, channels: usize) -> Stream {
+        // Sections are disjoint, so a draw of one wrapper never shifts those of another.
         let mut stream = self.stream;
         stream.seek(self.next);
         self.next += self.words * channels as u64;
         stream
-    }
-}
-
-/// A part whose noise takes its streams from outside.
-pub(crate) trait Reseed {
-    fn reseed(&mut self, streams: &mut NoiseStreams);
-}
-
-impl<T: Channels + Reseed> Reseed for Wrapped<T> {
-    fn reseed(&mut self, streams: &mut NoiseStreams) {
-        if let Self::Noisy(noisy) = self {
-            let stream = streams.take(noisy.channels());
-            noisy.reseed(stream);
-        }
-        around!(self, part => part.inner_mut().reseed(streams));
     }
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a file is refused with its line and key, and with the nearest word that there is.
+//! Errors of a file have its line and key, and the nearest valid word.
 
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{Experiment as _, Settings};
@@ -192,7 +192,7 @@ fn parts_that_do_not_go_together_are_refused() {
 fn files_of_more_than_anybody_writes_are_refused() {
     let nested = format!("{RIGHT}[a{}]\n", ".a".repeat(100_000));
     assert!(error(&nested).ends_with("recursion limit"), "{}", error(&nested));
-    // Each is checked as an experiment of its own.
+    // Each condition is checked as a separate experiment.
     let conditions =
         |count| (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect::<Vec<_>>().concat();
     assert_eq!(error(&format!("{RIGHT}{}", conditions(100))), "nothing is wrong");
@@ -230,7 +230,7 @@ fn robots_are_limited_with_all_that_they_carry() {
         wide.replace("kind = \"e-puck\"", &format!("kind = \"e-puck\"\ncount = {count}"))
     };
     let sensors = |count: usize| "[[sensors]]\nkind = \"touch\"\n".repeat(count);
-    // Beside these there are a sensor and a motor: a hundred parts each.
+    // In addition there are a sensor and a motor: a hundred parts each.
     assert_eq!(error(&format!("{}{}", robots(1000), sensors(98))), "nothing is wrong");
     let found = plain(&error(&format!("{}{}", robots(1000), sensors(99))));
     let parts = "sensors: and motors are 101 on each of 1000 robots; at most 100000 in all";
@@ -262,7 +262,7 @@ fn what_robots_keep_is_limited_for_all_of_them() {
         let network = many.replace("hidden = 2", &format!("hidden = {hidden}"));
         network.replace("amplitude = 0.05 }]", &format!("amplitude = 0.05 }}{wrappers}]"))
     };
-    // Eight lights, two wheels, and the noise of the lights, which lies in the place of 32 values itself.
+    // Eight lights, two wheels, and the noise of the lights, which counts as 32 values itself.
     let kept = |hidden| {
         let layout = LeakyLayout::new(8, hidden, 2);
         1000 * (8 + 8 + 32 + 2 + layout.parameter_count() + layout.state_len())
@@ -283,7 +283,7 @@ fn what_robots_keep_is_limited_for_all_of_them() {
     assert!(found.starts_with("look.toml line 14: sensors.1.wrappers") && found.contains("32"), "{found}");
 }
 
-/// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
+/// A file with a changed byte, a missing line or a cut is a valid file or an error. None panics.
 #[test]
 fn no_damage_panics() {
     let mut refused = 0;
@@ -320,7 +320,7 @@ fn robots_are_named_alone() {
     }
 }
 
-/// What is done to a line of `key = value`.
+/// A change of a line of `key = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Damage {
     UnknownKey,

@@ -29,7 +29,7 @@ fn evaluator(text: &str) -> Box<dyn Evaluator> {
     made(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// An individual of this number, who drives with all outputs at the largest or the smallest, among others that do.
+/// Evaluates an individual whose outputs are all at one end, among others with their outputs at one end.
 fn driven(evaluator: &mut dyn Evaluator, individual: u32, own: f32, others: f32) -> Outcome {
     let count = evaluator.info().parameters.len();
     let (own, others) = (vec![20.0 * own; count], vec![20.0 * others; count]);
@@ -216,7 +216,7 @@ fn a_thing_follows_the_choice_of_another() {
         let trial = |trial| {
             let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
             let terms = evaluator.evaluate(Evaluation::new(&still, id), None).terms;
-            // Where each stands, from 0, by how far it is from the robot.
+            // Index of each robot's point, from 0, by its distance from the robot.
             let number = |squared: f64| ((squared.sqrt() - 0.5) as f32).round() as i64;
             [number(terms[0] * terms[0] - 1.0), number(terms[1] * terms[1] - 4.0)]
         };
@@ -228,6 +228,6 @@ fn a_thing_follows_the_choice_of_another() {
     }
     assert!(together.iter().all(|[sign, goal]| sign == goal), "{together:?}");
     assert!(alone.iter().any(|[sign, goal]| sign != goal), "{alone:?}");
-    // What it follows is drawn as before.
+    // The choice that it follows is drawn as without it.
     assert!(alone.iter().zip(&together).all(|(alone, together)| alone[0] == together[0]));
 }

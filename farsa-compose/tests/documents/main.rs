@@ -1,4 +1,4 @@
-//! Documents of experiments: what they say, and what is wrong with them.
+//! Documents of experiments: meaning and errors.
 
 #[path = "../drawn/mod.rs"]
 mod drawn;

@@ -79,7 +79,7 @@ links = [
 ]
 "#;
 
-/// Which neurons hear which, so many steps later, in the order of a step.
+/// Links between neurons, with their delays, in the order of a step.
 fn heard(neuron: &str) -> Vec<(&'static str, usize)> {
     let infrared = [1, 2, 3, 4, 5, 6, 7, 8].map(|number| &*format!("infrared {number}").leak());
     let hidden = ["hidden 1", "hidden 2", "hidden 3"];
@@ -94,7 +94,7 @@ fn heard(neuron: &str) -> Vec<(&'static str, usize)> {
     }
 }
 
-/// What a robot does is what its links say, computed one by one by the names of parameters.
+/// A robot acts as its links determine, computed one by one from the names of parameters.
 #[test]
 fn clusters_and_links_do_what_they_say() {
     let mut blocks = evaluator(BLOCKS);
@@ -147,7 +147,7 @@ fn clusters_and_links_do_what_they_say() {
     assert!(sensed > 1.0 && gates == [true; 2], "{sensed} {gates:?}");
 }
 
-/// Elman's network as clusters and links has its bits; `fixed` and `shared` take the names of clusters.
+/// Elman's network as clusters and links has the same bits. `fixed` and `shared` take the names of clusters.
 #[test]
 fn elmans_network_is_one_of_blocks() {
     let links = "[[network.clusters]]\nname = \"hidden\"\nneurons = 3\n\
@@ -170,7 +170,7 @@ fn elmans_network_is_one_of_blocks() {
     let searched: Vec<f32> = names(fewer.as_ref()).iter().map(|name| full[of(name)]).collect();
     assert_eq!(searched.len(), all.len() - 2);
     assert_eq!(recorded(fewer.as_mut(), &searched, 1), recorded(blocks.as_mut(), &full, 1));
-    // What is switched off has no links.
+    // Disabled sensors and motors have no links.
     let extra =
         "[[sensors]]\nkind = \"constant\"\nvalue = 0.7\n[[network.links]]\nfrom = \"constant\"\nto = \"hidden\"\n";
     let text = format!("{REST}[network]\nkind = \"blocks\"\n{links}{extra}");
@@ -247,7 +247,7 @@ fn clusters_and_links_that_cannot_be_are_refused() {
     evaluator(&format!("{signals}[network]\nkind = \"blocks\"\nlinks = [{{ from = \"sensors\", to = \"signal\" }}]\n"));
 }
 
-/// Eight inputs, two logistic neurons of which one has a leak, that hear each other, and two outputs.
+/// Eight inputs, two logistic neurons with links to each other, one of them with a leak, and two outputs.
 const NET: &str = "ARCHITECTURE\nnneurons 12\nnsensors 8\nnmotors 2\nnblocks 6\n1 0 8 0 0 0 // inputs\n\
     0 8 2 0 8 0\n0 8 2 8 2 0\n1 8 2 0 0 0\n0 10 2 8 2 0\n1 10 2 0 0 0\nneurons bias, delta, gain, xy position, display\n\
     0 0 0 10 400 1\n0 0 0 20 400 1\n0 0 0 30 400 1\n0 0 0 40 400 1\n0 0 0 50 400 1\n0 0 0 60 400 1\n0 0 0 70 400 1\n\
@@ -260,7 +260,7 @@ fn with_file(network: &str, content: &str) -> String {
     format!("{EVONET}file = \"own.net\"\n{network}\n[files]\n\"own.net\" = '''\n{content}'''\n")
 }
 
-/// A file says what flags say, and the bits are the same.
+/// A file and the equivalent flags give the same bits.
 #[test]
 fn a_file_of_the_original_is_a_network() {
     let net = format!("{NET}END\n");
@@ -274,7 +274,7 @@ fn a_file_of_the_original_is_a_network() {
         let expected = recorded(flags.as_mut(), &parameters, trial);
         assert_eq!(recorded(file.as_mut(), &parameters, trial), expected);
     }
-    // A gain of the first input: its own parameter, as large as the range says.
+    // A gain of the first input is a separate parameter with the range of the file.
     let gain = net.replacen("0 0 0 10", "0 0 1 10", 1);
     let [mut one, mut two] = ["", "largest_gain = 10.0\n"].map(|range| evaluator(&with_file(range, &gain)));
     assert_eq!(names(one.as_ref())[0], "gain 1");
@@ -372,7 +372,7 @@ fn a_text_has_the_network_that_it_names() {
     }
 }
 
-/// The guide's clusters and links are a network as they stand there.
+/// The guide's clusters and links are a valid network.
 #[test]
 fn the_guides_blocks_are_a_network() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/experiment-file.md");

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-/// What a public name of a library is called in a file: the list and the word. Without a word: why it has none.
+/// The list and the word of a public name of a library in a file. Without a word: the reason.
 const NAMED: [(&str, &str, &str); 65] = [
     // Sensors.
     ("InfraredFormula", "sensors", "infrared"),
@@ -86,7 +86,7 @@ fn exported(path: &str) -> Vec<String> {
     words.filter(|word| word.starts_with(|c: char| c.is_ascii_uppercase())).map(str::to_owned).collect()
 }
 
-/// The words that may stand as the kind of a part, of a list of the schema or of a definition.
+/// Returns the valid kinds of a part, of a list of the schema or of a definition.
 fn kinds(schema: &Value, list: &str) -> Vec<String> {
     let name = match list {
         "sensors" => "Sensor",
@@ -124,7 +124,7 @@ fn every_part_of_the_libraries_has_a_name_or_a_reason() {
     }
 }
 
-/// What the guide lists is what there is.
+/// The guide lists all kinds, and no others.
 #[test]
 fn the_guide_lists_every_kind() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/experiment-file.md");

@@ -14,7 +14,7 @@ use farsa_num::{Domain, Instructions, Stream};
 
 use crate::steps::{Steps, drawn};
 
-/// A robot that feels itself move and is told a number, so that every input says something.
+/// A robot that senses its motion and a constant, so that every input matters.
 const REST: &str = r#"[world]
 size = [1.0, 1.0]
 [robot]
@@ -92,7 +92,7 @@ fn of(network: &str) -> Box<dyn Evaluator> {
 
 const ID: EpisodeId = EpisodeId { seed: 4, generation: 2, individual: 3, trial: 1 };
 
-/// What the first robot sensed and did.
+/// Returns the sensor and motor values of the first robot.
 fn recorded(evaluator: &mut dyn Evaluator, case: Option<CaseId>) -> (Outcome, Vec<[Vec<f32>; 2]>) {
     let parameters = drawn(evaluator);
     let mut steps = Steps::default();
@@ -120,7 +120,8 @@ fn controller(export: NetworkExport) -> Box<dyn Controller> {
     }
 }
 
-/// The network whose neuron, numbered from the first that is no input, is heard by none; and the output that it is.
+/// Returns a network without the links from one neuron, numbered from the first after the inputs, and the output of
+/// that neuron.
 fn unheard(export: &NetworkExport, neuron: usize) -> (Box<dyn Controller>, Option<usize>) {
     let mut export = export.clone();
     let output = match &mut export {
@@ -228,7 +229,7 @@ fn sensors_are_cut_and_disturbed() {
     }
 }
 
-/// What the first robot sensed and did with changes of this list.
+/// Returns the sensor and motor values of the first robot under these changes.
 fn changed(evaluator: &mut dyn Evaluator, list: &str) -> Vec<[Vec<f32>; 2]> {
     let change = evaluator.info().anatomy.expect("parts").intervention(list).expect("a change");
     let (parameters, mut steps) = (drawn(evaluator), Steps::default());
@@ -359,7 +360,7 @@ impl Recorder for First {
     }
 }
 
-/// Of populations that meet, the case is about the one that is tested.
+/// The case of a test with several populations applies to the tested one.
 #[test]
 fn opponents_are_intact() {
     let mut evaluator = prepared(&shown("chase.toml"));

@@ -1,4 +1,4 @@
-//! What the rules of a file mean: parameters that are fixed or shared, wires, places, food, behaviours.
+//! Rules of a file: fixed and shared parameters, wires, placements, food, behaviors.
 
 use farsa_body::Recorder;
 use farsa_compose::ComposedExperiment;
@@ -25,7 +25,7 @@ fn names(evaluator: &dyn Evaluator) -> Vec<String> {
     evaluator.info().parameters.into_iter().map(|parameter| parameter.name).collect()
 }
 
-/// What was sensed and done in each step, and where bodies were.
+/// Sensor and motor values in each step, and places of bodies.
 #[derive(Default)]
 struct Steps {
     x: Vec<f32>,
@@ -175,7 +175,7 @@ fn wires_do_what_they_say() {
     );
 }
 
-/// What wrappers do is told in the order in which they do it, and those without channels change all.
+/// Descriptions list wrappers in the order of their application. Wrappers without channels change all of them.
 #[test]
 fn wrappers_are_told_as_they_act() {
     let rest = format!("{WORLD}{REWARD}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 40\ntrials = 1\n");
@@ -239,7 +239,7 @@ fn places_are_near_and_apart() {
         [[start]]\nplace = \"b\"\nat = \"anywhere\"\nwalls = 0.1\napart = 0.15\n\
         [[start]]\nplace = \"robot\"\nat = \"near\"\nof = \"b\"\nwithin = 0.25\napart = 0.01\n";
     let world = WORLD.replace("kind = \"marxbot\"", "kind = \"khepera\"\ncount = 3");
-    // Motors at rest: nobody moves.
+    // Motors at rest: no robot moves.
     let network = "[network]\nkind = \"wired\"\nbias = [0.5, 0.5]\nwires = []\n[episode]\nsteps = 1\ntrials = 1\n";
     let text = format!("{world}{}{REWARD}{objects}{start}{network}", PARTS.replace("groups = 8\n", ""));
     let mut still = evaluator(&text);
@@ -278,7 +278,7 @@ const FORAGING: &str = "[[objects]]\nname = \"nest\"\nkind = \"disc\"\nradius = 
     [[reward]]\nkind = \"food\"\nover = \"end\"\n[[reward]]\nkind = \"energy\"\nover = \"end\"\nweight = 0.0\n\
     [[reward]]\nkind = \"alive\"\nover = \"sum\"\nweight = 0.0\n";
 
-/// Without the nest a robot lives twenty steps, feels it, and stands still then.
+/// Without the nest a robot is alive for twenty steps, senses its energy, and stops then.
 #[test]
 fn who_has_no_energy_is_dead() {
     let network = "[network]\nkind = \"wired\"\nbias = [0.7, 0.7]\nwires = []\n";
@@ -302,7 +302,7 @@ fn who_has_no_energy_is_dead() {
     assert!(refused(&text.replace("nest = \"nest\"", "nest = \"robot\"")).contains("unknown object `robot`"));
 }
 
-/// What has no weight is measured: it is no term of the fitness, and a product is not 0 because of it.
+/// A term without weight is measured only. It is not part of the fitness, and a product is not 0 because of it.
 #[test]
 fn fitness_is_made_of_terms_with_a_weight() {
     let text = format!("{WORLD}{FORAGING}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 30\ntrials = 1\n");
@@ -325,7 +325,7 @@ fn fitness_is_made_of_terms_with_a_weight() {
     assert_eq!((terms.len(), fitness, outcome.notes.len()), (3, 0.0, 3), "where none has a weight");
 }
 
-/// What archives look at are the means of what terms measure, before their weights.
+/// Archives use the means of terms before their weights.
 #[test]
 fn behaviours_are_measures_of_terms() {
     let behaviour = "[behaviour]\nobjectives = [{ term = \"energy\", less = true }]\n\
@@ -360,7 +360,7 @@ fn behaviours_are_measures_of_terms() {
 const TABLE: &str = "8 4 1 0 50\nTURN 0\n512 512 512 512 512 512 0 0\n0 256 0 256 0 256 0 256\n0 0 0 0 0 0 512 512\n\
     256 0 256 0 256 0 256 0\nEND\n";
 
-/// Measured readings come from files beside the experiment's, and the text that a run keeps has them.
+/// Infrared tables come from files in the folder of the experiment, and the text of a run contains them.
 #[test]
 fn a_text_has_the_files_that_it_names() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("measured");
@@ -383,7 +383,7 @@ fn a_text_has_the_files_that_it_names() {
     let own = read(&text).unwrap_or_else(|error| panic!("{error}"));
     let kept = own.definition().expect("the text").to_owned();
     assert!(kept.starts_with(text.trim_end()) && kept.contains("[files]") && kept.contains("300"), "{kept}");
-    // A text alone reads nothing, not even with the files beside the name that it is given or where the process is.
+    // A text alone reads no file, neither from the folder of its name nor from the working directory.
     for name in [&*folder.join("measured.toml").display().to_string(), "measured.toml"] {
         for (text, word) in
             [(text.clone(), "tables/wall.sam"), (text.replace("tables/wall.sam", "Cargo.toml"), "Cargo.toml")]
@@ -394,7 +394,7 @@ fn a_text_has_the_files_that_it_names() {
             assert!(found.contains("line 8: `sensors.1.tables.walls`") && found.contains(&why), "{found}");
         }
     }
-    // From the text alone, elsewhere.
+    // From the text alone, in another place.
     let again = ComposedExperiment::from_text("elsewhere.toml", &kept, farsa_lab::strategies());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again.definition(), Some(kept.as_str()));
@@ -434,7 +434,7 @@ fn a_text_has_the_files_that_it_names() {
     assert!(found.contains("unknown file `round.sam`; the nearest is `rund.sam`"), "{found}");
 }
 
-/// Objects stand in a file of their own, too, and what is wrong with them is named with that file.
+/// Objects may be in a separate file, and their errors name that file.
 #[test]
 fn a_scene_stands_in_a_file_of_its_own() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene");

@@ -12,7 +12,7 @@ pub(crate) fn drawn(evaluator: &dyn Evaluator) -> Vec<f32> {
     evaluator.info().parameters.into_iter().enumerate().map(own).collect()
 }
 
-/// What was sensed and done in each step.
+/// Returns sensor and motor values in each step.
 #[derive(Default)]
 pub(crate) struct Steps {
     x: Vec<f32>,

@@ -13,7 +13,7 @@ const ARM: &str = r#"<robot name="arm"><link name="base"/>
 <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.2"/><axis xyz="0 1 0"/><limit lower="-1" upper="1.5" effort="10" velocity="3"/></joint>
 <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><origin xyz="0 0 0.2"/><axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="5" velocity="3"/></joint></robot>"#;
 
-/// A leg that hops beside its floor's edge.
+/// A leg that hops near its floor's edge.
 const HOPPER: &str = r#"<mujoco><worldbody><geom name="ground" type="plane" size="5 5 0.1"/>
 <body name="upper" pos="0 0 0.7"><joint name="x" type="slide" axis="1 0 0"/><joint name="z" type="slide" axis="0 0 1"/><joint name="lean" axis="0 1 0"/>
 <geom type="capsule" fromto="0 0 0.2 0 0 -0.2" size="0.05"/>

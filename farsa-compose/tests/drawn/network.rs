@@ -77,7 +77,7 @@ impl Draw {
         made
     }
 
-    /// Clusters, and links between ends that are drawn; what a link says already is left out.
+    /// Draws clusters, and links between drawn ends. Links that an earlier one contains are left out.
     fn blocks(&mut self, text: &str) -> String {
         let mut made = String::from("[network]\nkind = \"blocks\"\n");
         let _ = writeln!(made, "output_biases = {}\noutput_leaks = {}", self.often(0.5), self.often(0.3));
@@ -101,7 +101,7 @@ impl Draw {
             from.push(name.clone());
             to.push(name);
         }
-        // The whole and its parts overlap; with other delays they do not.
+        // The whole and its parts overlap, unless the delays differ.
         let mut known: Vec<[usize; 3]> = Vec::new();
         let part = |list: &[(String, &str)], name: &str| list.iter().any(|(known, _)| known == name);
         let within = |whole: &str, name: &str| match whole {

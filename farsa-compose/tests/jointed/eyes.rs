@@ -1,4 +1,4 @@
-//! What robots with joints see, from files: cameras of a plane and eyes with an image.
+//! Sight of robots with joints: cameras of a plane and eyes with an image.
 
 use farsa_lab::{EpisodeId, Evaluation, ImageChannel, Recording};
 
@@ -19,7 +19,7 @@ fn watching(sight: f64, at: &str) -> String {
 
 #[test]
 fn cameras_see_coloured_things_in_their_plane() {
-    // Rays every 20 / 9 degrees; the ball is 5.7 degrees to each side, in a plane above its middle 3.8.
+    // Rays every 20 / 9 degrees. The ball is 5.7 degrees to each side, and 3.8 in a plane above its center.
     for (sight, share) in [(1.0, 5.0), (1.15, 3.0), (1.25, 0.0)] {
         close(measured(&outcome(&watching(sight, "[2.0, 0.0, 1.0]"), 0.5), "sensor"), share / 9.0, 1e-6);
     }
@@ -43,7 +43,7 @@ fn cameras_see_coloured_things_in_their_plane() {
 
 const EYE: &str = "eye = { body = \"rod\", columns = 9, rows = 7, field_of_view = 60.0, range = 5.0 }";
 
-/// The bar with this eye's sensor instead of its camera; a green ball stands beside the red one.
+/// The bar with this eye's sensor instead of its camera, and a green ball next to the red one.
 fn eyed(sensor: &str) -> String {
     let text = watching(1.0, "[2.0, 0.0, 1.0]");
     let (before, rest) = text.split_once("kind = \"camera\"").expect("a camera");
@@ -53,7 +53,7 @@ fn eyed(sensor: &str) -> String {
     format!("{before}{sensor}\n[[motors]]{}", after.replacen("[files]", &format!("{pear}\n[files]"), 1))
 }
 
-/// What is recorded of the first step of a trial at rest.
+/// Returns the recording of the first step of a trial at rest.
 fn recorded(text: &str) -> Recording {
     let mut evaluator = made(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let mut recording = Recording::new(evaluator.info().schema);

@@ -1,4 +1,4 @@
-//! Robots with joints, from files: motors do what they say, things fall, and what is wrong is said.
+//! Robots with joints, from files: motors, falling things, errors.
 
 mod eyes;
 
@@ -41,7 +41,7 @@ fn outcome(text: &str, y: f64) -> Outcome {
     evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), None)
 }
 
-/// What a term measured at the end.
+/// Returns a term at the end.
 fn measured(outcome: &Outcome, term: &str) -> f64 {
     let found = outcome.notes.iter().find(|(name, _)| *name == format!("measured {term}"));
     match found {
@@ -63,14 +63,14 @@ fn joints_turn_as_fast_as_they_are_told() {
     for (y, speed) in [(0.75, 1.0), (0.25, 1.0), (0.6, 0.4), (0.5, 0.0)] {
         close(measured(&outcome(&text, y), "joint-speed"), speed, 1e-3);
     }
-    // What is lacking of the speed dies out by gain / inertia: after a time constant 1 - 1/e of it is there.
+    // The missing speed decays with the rate gain / inertia. After a time constant 1 - 1/e of the speed is reached.
     let slow = file("", "kind = \"joint-velocity\"\nlargest = 2.0\ngain = 0.26", SPEED);
     close(measured(&outcome(&slow, 0.75), "joint-speed"), 1.0 - farsa_num::exp(-1.0_f64), 5e-3);
 }
 
 #[test]
 fn motors_of_speeds_have_no_more_torque_than_their_limit() {
-    // 0.13 N m on 0.26 kg m2: half a rad/s more in each second, until the wanted speed is there.
+    // 0.13 N m on 0.26 kg m2 add half a rad/s in each second, up to the commanded speed.
     let text = file("", "kind = \"joint-velocity\"\nlargest = 2.0\ngain = 50.0\nlimit = 0.13", SPEED);
     for (steps, speed) in [(50, 0.25), (100, 0.5), (180, 0.9), (300, 1.0)] {
         let text = text.replace("steps = 100", &format!("steps = {steps}"));
@@ -122,7 +122,7 @@ fn muscles_pull_against_each_other() {
     assert_eq!(pulled(-3.0), 0.0);
 }
 
-/// A ball falls by Newton's law and comes to rest on the floor, on a block, beside a wall.
+/// A ball falls by Newton's law, then rests on the floor, on a block, and next to a wall.
 #[test]
 fn things_fall_and_lie() {
     let motor = "kind = \"joint-velocity\"\nlargest = 1.0\ngain = 10.0";
@@ -178,7 +178,7 @@ fn places_and_ways_are_those_of_the_point() {
     close(measured(&still, "slanting"), 0.6 * cosine + 0.8 * sine, 1e-4);
     close(measured(&still, "upright"), 1.0, 1e-6);
     assert_eq!(measured(&still, "near"), 0.0);
-    // It turns to 0 within two thirds of the time, and stops there at no place: it goes on to -0.5.
+    // It passes 0 within two thirds of the time without a stop, and continues to -0.5.
     let turned = outcome(&file("", motor, rest).replace("steps = 100", "steps = 300"), 0.25);
     close(measured(&turned, "distance"), 2.0 * farsa_num::sin_cos(0.25_f64).0, 0.02);
     close(measured(&turned, "near"), 1.0 / 1.5, 0.03);
@@ -209,7 +209,7 @@ fn what_breaks_down_has_failed() {
 
 #[test]
 fn lanes_have_the_same_bits_as_one_world() {
-    // Arms beside balls are among the files of tests/random.rs; here are those that are shown.
+    // Arms with balls are among the files of tests/random.rs. These are the remaining ones.
     for file in ["reaching.toml", "hand-eye.toml"] {
         shown_in_lanes(file);
     }
