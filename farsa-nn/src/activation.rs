@@ -1,4 +1,4 @@
-//! What a neuron makes of its net input.
+//! Activation functions.
 
 use core::fmt;
 use core::str::FromStr;
@@ -8,9 +8,9 @@ use farsa_num::{Scalar, logistic, tanh};
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// The function of a neuron; a slope (or gain) multiplies its argument before.
+/// The activation function of a neuron. A slope or gain multiplies its argument.
 ///
-/// Every one is finite for finite numbers and never falls where its argument rises.
+/// Every function is finite for finite numbers and never falls where its argument rises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -43,7 +43,7 @@ impl Activation {
         }
     }
 
-    /// The value at `x`; of a NaN 0 (step, rectified) or NaN.
+    /// Evaluates the function at `x`. For a NaN the result is 0 (step, rectified) or NaN.
     ///
     /// ```
     /// use farsa_nn::Activation;
@@ -55,7 +55,7 @@ impl Activation {
         self.apply_lanes(x)
     }
 
-    /// The same over the lanes of a scalar.
+    /// Evaluates the function in the lanes of a scalar.
     #[inline(always)]
     pub(crate) fn apply_lanes<S: Scalar>(self, x: S) -> S {
         let zero = x.constant(0.0);
@@ -78,11 +78,14 @@ impl fmt::Display for Activation {
 impl FromStr for Activation {
     type Err = Error;
 
-    /// The function of this name, in any case.
+    /// Finds the function of this name, ignoring case.
     ///
     /// # Errors
-    /// [`Error::UnknownActivation`] when none has this name.
+    /// [`Error::Name`] for an unknown name.
     fn from_str(name: &str) -> Result<Self, Error> {
-        Self::ALL.into_iter().find(|one| same_letters(name, one.name())).ok_or(Error::UnknownActivation)
+        Self::ALL
+            .into_iter()
+            .find(|activation| same_letters(name, activation.name()))
+            .ok_or(Error::Name { of: "activation", names: "logistic, tanh, linear, step, rectified" })
     }
 }

@@ -1,17 +1,17 @@
-//! What the loop asks of anything that turns sensors into commands.
+//! The interface of the loop to controllers.
 
 /// A map from sensor values to motor values, with or without memory, updated once per tick.
 ///
-/// It knows no units: what the numbers mean is the body's business.
+/// The numbers have no units. The body defines their meaning.
 ///
 /// # For implementors
-/// - Construction may fail; `step` may not: it returns no error, does not allocate, and panics on no input.
-/// - The same calls since the last `reset` give the same bits, on every machine.
-/// - Use the shorter length: a missing input is one whose weights do not count, a missing output is not computed, and
-///   what is longer than asked for is neither read nor written. `debug_assert!` names the mistake.
+/// - Construction may fail, `step` may not. It returns no error, does not allocate, and panics on no input.
+/// - The same calls since the last `reset` give the same bits on every machine.
+/// - Use the shorter of two lengths. The weights of a missing input do not count, and a missing output is not computed. Extra
+///   values are neither read nor written. `debug_assert!` reports the fault.
 ///
 /// # For callers
-/// Be generic over `C: Controller`, or take `&mut dyn Controller`; `&mut C` is a controller too.
+/// Be generic over `C: Controller`, or take `&mut dyn Controller`. `&mut C` is a controller too.
 ///
 /// ```
 /// use farsa_nn::{Controller, Perceptron};
@@ -33,7 +33,7 @@ pub trait Controller {
     fn inputs(&self) -> usize;
     /// Number of values that `step` writes.
     fn outputs(&self) -> usize;
-    /// Forgets everything since construction.
+    /// Restores the state after construction.
     fn reset(&mut self);
     /// Advances by one tick from the sensor values `x` [`inputs`](Self::inputs) and overwrites the motor values `y`
     /// [`outputs`](Self::outputs).

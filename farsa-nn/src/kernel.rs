@@ -1,16 +1,15 @@
-//! The loops that take the time: a dense layer and its logistic function, over the lanes of a [`Scalar`].
+//! The inner loops: a dense layer and its logistic function, over the lanes of a [`Scalar`].
 //!
-//! Lanes are targets, which do not depend on each other. So neither the width of the vectors, nor how many of them are
-//! summed side by side, nor a target that is computed twice can change a bit: what is fixed is the order in which one
-//! target adds its sources.
+//! Lanes are targets, which do not depend on each other. Each target adds its sources in a fixed order. So neither the width
+//! of the vectors, nor the number of vectors summed together, nor a target computed twice can change a bit.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, logistic};
 
-/// Number of targets from which on sums are faster source by source, with SSE2 and with AVX2.
+/// Number of targets from which sums are faster source by source, with SSE2 and with AVX2.
 pub(crate) const WIDE: usize = 128;
 
-/// The instructions of [`Instructions::detect`](farsa_num::Instructions::detect), as the loops take them.
+/// The level of [`Instructions::detect`](farsa_num::Instructions::detect).
 pub(crate) fn level() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }
@@ -47,22 +46,22 @@ macro_rules! by_instructions {
     };
 }
 
-/// A step over neurons that may lie in lanes.
+/// A step over neurons in lanes.
 pub(crate) trait Lanes {
-    /// Number of neurons that are computed side by side.
+    /// Number of neurons that are computed together.
     fn widest(&self) -> usize;
-    /// The step, over this scalar and over single lanes for what is left.
+    /// Runs the step over this scalar, and over single lanes for the rest.
     fn run<S: Scalar<Real = f32>>(&mut self, simd: S::Simd);
 }
 
 /// Steps with the instructions of this level.
-// Not inlined, so that a program has each step once for each instruction set, as with layers below.
+// Not inlined, so a program has each step once for each instruction set, as with layers below.
 #[inline(never)]
 pub(crate) fn step(work: &mut impl Lanes, level: Level) {
     by_instructions!(level, simd => in_vectors(work, simd), one_by_one(work));
 }
 
-/// Eight neurons in a vector, with the instructions of the token; fewer one by one.
+/// Runs eight neurons in a vector with the instructions of the token, and fewer than eight one by one.
 #[allow(dead_code, reason = "eight emulated lanes are larger and slower than one")]
 #[inline(always)]
 fn in_vectors<V: Simd>(work: &mut impl Lanes, simd: V) {
@@ -85,24 +84,24 @@ pub(crate) struct Layer<'a, R = f32> {
     /// Number of targets `i`.
     pub(crate) targets: usize,
     pub(crate) slope: R,
-    /// Where the sums start `[targets]`; at zero if this is empty.
+    /// The initial sums `[targets]`, or empty for zeros.
     pub(crate) biases: &'a [R],
-    /// Sources and their weights, source-major `[sources x targets]`, the shorter of both; the second pair is added
-    /// after the first.
+    /// Two pairs of sources and weights, added in this order. Weights are source-major `[sources x targets]`, and the shorter
+    /// of both lengths counts.
     pub(crate) sources: [(&'a [R], &'a [R]); 2],
 }
 
 impl Layer<'_> {
     /// Overwrites the first [`targets`](Self::targets) values of `y`, or as many as there are.
-    // Not inlined and not generic, so that a program has the loops once for each instruction set and not for each kind
-    // of network. AVX-512 would be a third copy for the same time; SSE4.2 has nothing that these loops use.
+    // Not inlined and not generic, so a program has the loops once for each instruction set and not for each kind of network.
+    // AVX-512 would be a third copy without a gain. These loops use nothing of SSE4.2.
     #[inline(never)]
     pub(crate) fn forward(&self, level: Level, y: &mut [f32]) {
         let y = prefix(y, self.targets);
         by_instructions!(level, simd => self.in_vectors(simd, y), self.one_by_one(y));
     }
 
-    /// Eight targets in a vector, with the instructions of the token; fewer one by one.
+    /// Computes eight targets in a vector with the instructions of the token, and fewer than eight one by one.
     #[allow(dead_code, reason = "eight emulated lanes are larger and slower than one")]
     #[inline(always)]
     fn in_vectors<V: Simd>(&self, simd: V, y: &mut [f32]) {
@@ -115,15 +114,15 @@ impl Layer<'_> {
         );
     }
 
-    /// Without vectors, for processors that have none and for fewer targets than a vector has lanes.
+    /// Computes targets without vectors, for other processors and for fewer targets than lanes.
     #[inline(never)]
     fn one_by_one(&self, y: &mut [f32]) {
-        // Sums side by side share a source and the loop around it; as many as there are registers for.
+        // Sums computed together share a source and its loop. Their number is limited by the registers.
         let mut first = 0;
         while first < y.len() {
             first = match y.len() - first {
                 8.. => self.block::<8>(first, y),
-                // The last of many overlaps those before it: a sum made twice costs less than a loop of its own.
+                // The last block overlaps the previous one: a repeated sum costs less than a separate loop.
                 5..8 if y.len() >= 8 => self.block::<8>(y.len() - 8, y),
                 4..8 => self.block::<4>(first, y),
                 2..4 if y.len() >= 4 => self.block::<4>(y.len() - 4, y),
@@ -135,13 +134,13 @@ impl Layer<'_> {
         }
     }
 
-    /// Sums `G` targets from `first` on and writes them to `y`; returns the target after them.
+    /// Sums `G` targets from `first` on, writes them to `y` and returns the next target.
     #[inline(always)]
     fn block<const G: usize>(&self, first: usize, y: &mut [f32]) -> usize {
         let from = |values: &'_ [f32]| values.get(first..).and_then(|values| values.first_chunk::<G>()).copied();
         let mut sums = from(self.biases).unwrap_or([0.0; G]);
         for (x, weights) in self.sources {
-            // Whole rows, so that nothing is asked within the loop.
+            // Whole rows, so the loop has no bounds checks.
             for (x, row) in x.iter().zip(weights.chunks_exact(self.targets.max(1))) {
                 let Some(row) = row.get(first..).and_then(|row| row.first_chunk::<G>()) else { break };
                 for (sum, weight) in sums.iter_mut().zip(row) {
@@ -158,7 +157,7 @@ impl Layer<'_> {
     #[inline(always)]
     fn run<S: Scalar<Real = f32>>(&self, simd: S::Simd, y: &mut [f32]) {
         let Some(end) = self.sums::<S>(simd, y) else { return };
-        // In a loop of its own, so that this long function is not in each of the three below.
+        // A separate loop, so this long function is not inlined in each of the three below.
         let slope = S::splat(simd, self.slope);
         let last = y.len() - S::LANES;
         let mut whole = y.chunks_exact_mut(S::LANES);
@@ -172,17 +171,17 @@ impl Layer<'_> {
 }
 
 impl<R: Real> Layer<'_, R> {
-    /// Overwrites `y` [at most `targets`] with the sums, but for a last vector that is not whole, and returns the last vector
-    /// of them; `None` where there are fewer than one vector's.
+    /// Overwrites `y` [at most `targets`] with the sums and returns the last vector of them. A partial last vector is not
+    /// written. Returns `None` for less than one vector.
     #[inline(always)]
     fn sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) -> Option<S> {
         let last = y.len().checked_sub(S::LANES)?;
-        // With one lane never, so that a processor without vectors has not both ways in its program.
+        // Never with one lane, so a program without vectors contains only one of the two ways.
         if S::LANES > 1 && y.len() >= WIDE {
             self.wide_sums::<S>(simd, y);
             return Some(S::load(simd, &y[last..]));
         }
-        // Side by side, because a sum waits longer for its own last addition than for the next weight.
+        // Several at a time, because a sum waits longer for its last addition than for the next weight.
         let (mut first, mut end) = (0, S::splat(simd, R::from_f64(0.0)));
         while first < y.len() {
             let vectors = (y.len() - first).div_ceil(S::LANES);
@@ -195,27 +194,26 @@ impl<R: Real> Layer<'_, R> {
         Some(end)
     }
 
-    /// Overwrites `y` [at most `targets`] with the sums; does nothing where there are fewer than one vector's.
+    /// Overwrites `y` [at most `targets`] with the sums. Does nothing for less than one vector.
     #[inline(always)]
     pub(crate) fn all_sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) {
         if let Some(end) = self.sums::<S>(simd, y) {
-            // The last vector overlaps the one before it, with the same sums.
+            // The last vector overlaps the previous one, with the same sums.
             let last = y.len() - S::LANES;
             end.store(&mut y[last..]);
         }
     }
 
-    /// Sums `G` vectors of targets from `first` on and writes them to `y`; returns the last of them.
+    /// Sums `G` vectors of targets from `first` on, writes them to `y` and returns the last of them.
     ///
-    /// A vector that would go beyond the targets ends with them instead, at `last`, and is not written: it overlaps the
-    /// one before it.
+    /// A vector beyond the targets starts at `last` instead. It overlaps the previous one and is not written.
     #[inline(always)]
     fn sum<S: Scalar<Real = R>, const G: usize>(&self, simd: S::Simd, first: usize, last: usize, y: &mut [R]) -> S {
         let mut at = [last; G];
         let mut sums = [S::splat(simd, R::from_f64(0.0)); G];
         for k in 0..G {
             at[k] = last.min(first + k * S::LANES);
-            // Never so; but said here, the compiler need not ask in every row below.
+            // Never true, but it removes the bounds checks of every row below.
             if at[k] + S::LANES > self.targets {
                 return sums[k];
             }
@@ -259,7 +257,7 @@ mod tests {
 
     use super::*;
 
-    // On this machine only remainders go one by one; on others everything does.
+    // On this machine only remainders are computed one by one, on others everything.
     #[test]
     fn one_by_one_equals_vectors() {
         let mut stream = Stream::new(1, Domain::Network, 0, 0, 0);

@@ -8,18 +8,18 @@ use farsa_num::{exp, ln, tanh};
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// How a hidden neuron with leak `d` [0..1] forms its activation `H(t)` from its response `y(t) = sigma(net(t))`.
+/// The formula for the activation `H(t)` of a hidden neuron with leak `d` [0..1] and response `y(t) = sigma(net(t))`.
 ///
-/// The source prints one equation and describes another, and its program ran a third; so each reading has a name and a
-/// run records which it used.
+/// The source prints one equation and describes another, and its program used a third. So each reading has a name, and a run
+/// records the one it used.
 ///
 /// Source: `[Ferrauto2010]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Leak {
-    /// `H(t) = d*y(t) + (1-d)*H(t-1)`: the low-pass filter that the source's words describe.
-    // The source calls d the time constant of leaky-integrator neurons; the printed equation has no integrator.
+    /// `H(t) = d*y(t) + (1-d)*H(t-1)`: the low-pass filter of the source's description.
+    // The source calls d the time constant of leaky-integrator neurons. The printed equation has no integrator.
     #[default]
     Filter,
     /// `H(t) = d*y(t) + (1-d)*y(t-1)`: the equation as printed, a memory of one step.
@@ -44,14 +44,14 @@ impl Leak {
 
     /// The time constant [s] of a neuron with leak `d` [0..1] that is updated every `time_step` [s].
     ///
-    /// The share `r` of the old activation that a step leaves, `1-d` or `d`, is `exp(-dt/tau)`: under a constant response the
-    /// neuron is where one of `tau da/dt = -a + y` is. 0 where nothing is left, infinite where all is. `None` for
-    /// [`Leak::TwoTap`], which forgets everything after a step, and for a `d` outside [0, 1].
+    /// A step keeps the share `1-d` or `d` of the old activation, which equals `exp(-dt/tau)`. Under a constant response the
+    /// neuron follows `tau da/dt = -a + y`. The result is 0 for a share of 0 and infinite for a share of 1. It is `None` for
+    /// [`Leak::TwoTap`], whose memory is one step, and for a `d` outside [0, 1].
     ///
     /// ```
     /// use farsa_nn::Leak;
     ///
-    /// // Half of it is left after a step of 10 ms.
+    /// // Half of the activation remains after a step of 10 ms.
     /// let tau = Leak::Filter.time_constant(0.5, 0.01).unwrap_or_default();
     /// assert!((tau - 0.0144270).abs() < 1e-7);
     /// assert_eq!(Leak::Filter.for_time_constant(tau, 0.01), Some(0.5));
@@ -64,7 +64,7 @@ impl Leak {
             Self::Evonet => d,
             Self::TwoTap => return None,
         };
-        // Where all is left, -0 over 0 would be no number.
+        // For a share of 1 the quotient would be NaN.
         Some(if left < 1.0 { (f64::from(time_step) / -ln(left)) as f32 } else { f32::INFINITY })
     }
 
@@ -78,15 +78,15 @@ impl Leak {
         }
         let x = f64::from(time_step) / f64::from(time_constant);
         match self {
-            // Without the difference of 1 and the exponential, which has no digits at small x.
+            // Avoids the difference of 1 and the exponential, which loses its digits at small x.
             Self::Filter => Some((tanh(0.5 * x) * (1.0 + exp(-x))) as f32),
             Self::Evonet => Some(exp(-x) as f32),
             Self::TwoTap => None,
         }
     }
 
-    /// Turns responses into activations [both as many as there are leaks]; `previous` are the responses of the step before
-    /// in [`Leak::TwoTap`].
+    /// Computes activations from responses [both of the length of the leaks]. `previous` has the responses of the previous step
+    /// for [`Leak::TwoTap`].
     #[inline]
     pub(crate) fn apply(self, responses: &[f32], leaks: &[f32], activations: &mut [f32], previous: &mut [f32]) {
         let neurons = activations.iter_mut().zip(responses).zip(leaks);
@@ -110,11 +110,14 @@ impl fmt::Display for Leak {
 impl FromStr for Leak {
     type Err = Error;
 
-    /// The reading of this name, in any case and with or without the hyphen, so that `TwoTap` is `two-tap`.
+    /// Finds the reading of this name, ignoring case and hyphens. `TwoTap` is `two-tap`.
     ///
     /// # Errors
-    /// [`Error::UnknownLeak`] when no reading has this name.
+    /// [`Error::Name`] for an unknown name.
     fn from_str(name: &str) -> Result<Self, Error> {
-        Self::ALL.into_iter().find(|leak| same_letters(name, leak.name())).ok_or(Error::UnknownLeak)
+        Self::ALL
+            .into_iter()
+            .find(|leak| same_letters(name, leak.name()))
+            .ok_or(Error::Name { of: "leak", names: "filter, two-tap, evonet" })
     }
 }

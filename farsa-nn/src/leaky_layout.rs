@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-/// What one parameter of a [`LeakyLayout`] is.
+/// The kind of a parameter of a [`LeakyLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -16,12 +16,12 @@ pub enum LeakyParameter {
     OutputWeight,
     /// `beta_i`: added to the net input of hidden neuron `i`.
     Bias,
-    /// `d_i` [0..1]: the leak of hidden neuron `i`, read as [`Leak`](crate::Leak) says.
+    /// `d_i` [0..1]: the leak of hidden neuron `i` in the reading of a [`Leak`](crate::Leak).
     Leak,
 }
 
 impl LeakyParameter {
-    /// Every kind, in the order in which they lie in the parameters.
+    /// Every kind, in the order of the parameters.
     pub const ALL: [Self; 5] = [Self::SensorWeight, Self::RecurrentWeight, Self::OutputWeight, Self::Bias, Self::Leak];
 }
 
@@ -38,9 +38,9 @@ impl LeakyParameter {
 /// | [`Bias`](LeakyParameter::Bias) | `h` | `n*h + h*h + h*o + i` |
 /// | [`Leak`](LeakyParameter::Leak) | `h` | `n*h + h*h + h*o + h + i` |
 ///
-/// Counts saturate: a layout too large for the machine asks for `usize::MAX` parameters, which no slice has.
+/// Counts saturate. A layout too large for the machine has `usize::MAX` parameters, which no slice has.
 ///
-/// Source: `[Ferrauto2010]` chapter 2, which gives the totals 792 and 756 and not the order.
+/// Source: `[Ferrauto2010]` chapter 2, which has the totals 792 and 756 but not the order.
 ///
 /// ```
 /// use farsa_nn::LeakyLayout;
@@ -51,8 +51,8 @@ impl LeakyParameter {
 /// assert_eq!(NO_LABELS.parameter_count(), 756);
 /// static ZEROS: [f32; LABELS.parameter_count()] = [0.0; LABELS.parameter_count()];
 /// ```
-// Source-major, because then a vector of targets reads neighbouring weights, and every target adds its sources in the
-// same order whether it is computed alone or beside others: the width of the vectors does not show in the bits.
+// In source-major order a vector of targets reads neighboring weights. Every target adds its sources in the same order, so the
+// width of the vectors does not change a bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LeakyLayout {
@@ -62,7 +62,7 @@ pub struct LeakyLayout {
     slope: f32,
 }
 
-/// The parameters of a [`LeakyLayout`] by kind, as [`LeakyLayout::split`] cuts them.
+/// The parameters of a [`LeakyLayout`] by kind, as returned by [`LeakyLayout::split`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LeakyParts<'a> {
@@ -79,17 +79,17 @@ pub struct LeakyParts<'a> {
 }
 
 impl LeakyLayout {
-    /// Slope of the logistic function where none is asked for, 0.2 (`[Ferrauto2010]` chapter 2).
+    /// Default slope of the logistic function, 0.2 (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
-    /// A layout of so many sensors, hidden neurons and outputs, with slope [`LeakyLayout::SLOPE`].
+    /// Builds a layout with slope [`LeakyLayout::SLOPE`].
     pub const fn new(sensors: usize, hidden: usize, outputs: usize) -> Self {
         Self { sensors, hidden, outputs, slope: Self::SLOPE }
     }
 
-    /// The same layout with another slope of `sigma(x) = 1/(1 + exp(-slope*x))`.
+    /// Sets the slope of `sigma(x) = 1/(1 + exp(-slope*x))`.
     ///
-    /// It must be finite, which [`LeakyNetwork::new`](crate::LeakyNetwork::new) checks.
+    /// [`LeakyNetwork::new`](crate::LeakyNetwork::new) checks that it is finite.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { slope, ..self }
     }
@@ -121,14 +121,13 @@ impl LeakyLayout {
 
     /// Length of the state, `3*h`.
     ///
-    /// In this order: the activations `H(t)` `[hidden]`, the responses `y(t)` `[hidden]` that
-    /// [`Leak::TwoTap`](crate::Leak::TwoTap) remembers (zeros in the other readings), and the workspace of the sums
-    /// `[hidden]`.
+    /// The order is: activations `H(t)` `[hidden]`, responses `y(t)` `[hidden]` of [`Leak::TwoTap`](crate::Leak::TwoTap) (zeros
+    /// in the other readings), workspace of the sums `[hidden]`.
     pub const fn state_len(&self) -> usize {
         self.hidden.saturating_mul(3)
     }
 
-    /// Where the parameters of one kind lie.
+    /// The indices of the parameters of one kind.
     pub const fn range(&self, kind: LeakyParameter) -> Range<usize> {
         let h = self.hidden;
         let recurrent = self.sensors.saturating_mul(h);
@@ -144,12 +143,12 @@ impl LeakyLayout {
         }
     }
 
-    /// What the parameter at this index is; `None` beyond the last.
+    /// The kind of the parameter at this index, `None` beyond the last.
     pub fn kind(&self, index: usize) -> Option<LeakyParameter> {
         LeakyParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// What each parameter is, in their order, for decoding a genome.
+    /// The kind of each parameter, in their order, for decoding a genome.
     ///
     /// ```
     /// use farsa_nn::{LeakyLayout, LeakyParameter};
@@ -168,9 +167,9 @@ impl LeakyLayout {
         LeakyParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// Cuts parameters [[`parameter_count`](Self::parameter_count)] into their kinds.
+    /// Splits parameters [[`parameter_count`](Self::parameter_count)] by kind.
     ///
-    /// Where the slice is too short the last kinds are, too; what is longer is left out.
+    /// A slice that is too short truncates the last kinds. Extra parameters are ignored.
     #[inline]
     pub fn split<'a>(&self, parameters: &'a [f32]) -> LeakyParts<'a> {
         let part = |kind| {

@@ -1,18 +1,16 @@
 //! The leaky recurrent network of the manipulation experiment.
 
-use farsa_num::Instructions;
-use farsa_num::fearless_simd::Level;
-
-use crate::controller::Controller;
 use crate::error::Error;
-use crate::kernel::{Layer, level, prefix};
+use crate::fault::LayoutFault;
+use crate::kernel::{Layer, prefix};
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
-use crate::lesion::{Ablatable, Lesion, hold};
+use crate::lesion::{Lesion, hold};
+use crate::network::{Data, Model, Network, check_parameters};
 
-/// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
+/// A network of one recurrent hidden layer with leaks.
 ///
-/// With sensors `I`, `sigma(x) = 1/(1 + exp(-slope*x))` and the reading of the leak that [`Leak`] names:
+/// With sensors `I`, `sigma(x) = 1/(1 + exp(-slope*x))` and the selected reading of the [`Leak`]:
 ///
 /// ```text
 /// y_i(t) = sigma( beta_i + sum_j w_ji I_j(t) + sum_k r_ki H_k(t-1) )
@@ -20,15 +18,17 @@ use crate::lesion::{Ablatable, Lesion, hold};
 /// O_i(t) = sigma( sum_j w_ji H_j(t) )
 /// ```
 ///
-/// The parameters `P` may be a `static` array, a borrowed slice or a `Vec`; the state `S` an array, a mutable slice or a
-/// `Vec`. `H(0)` and `y(0)` are zero, in every reading.
+/// `H(0)` and `y(0)` are zero in every reading.
 ///
-/// A NaN or infinite input is the caller's mistake; what it leaves in the state stays there until
-/// [`reset`](Controller::reset).
+/// A NaN or infinite input is an error of the caller. Its effect on the state lasts until
+/// [`reset`](crate::Controller::reset).
 ///
-/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is the first summand, not the last (the order of rounding
-/// only); the recurrent sum, which the source states in words and proves by its parameter counts, is written out and
-/// reads `H(t-1)`; the initial state, which the source does not give, is zero.
+/// For lesions, hidden neurons are numbered first, then outputs. A held hidden neuron is held before and after the step, so
+/// its recurrent connections carry the held value too.
+///
+/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is the first summand, not the last, which changes the rounding
+/// only. The recurrent sum, which the source describes in words and confirms by its parameter counts, is explicit and reads
+/// `H(t-1)`. The initial state, which the source omits, is zero.
 ///
 /// ```
 /// use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
@@ -45,88 +45,35 @@ use crate::lesion::{Ablatable, Lesion, hold};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
-pub struct LeakyNetwork<P, S> {
-    layout: LeakyLayout,
-    leak: Leak,
-    parameters: P,
-    state: S,
-    level: Level,
+pub type LeakyNetwork<P, S> = Network<LeakyModel, P, S>;
+
+/// The layout of a [`LeakyNetwork`] and the reading of its leaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeakyModel {
+    pub(crate) layout: LeakyLayout,
+    pub(crate) leak: Leak,
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> LeakyNetwork<P, S> {
-    /// A network at rest: checks the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and zeroes the
-    /// state [[`state_len`](LeakyLayout::state_len)].
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<LeakyModel, P, S> {
+    /// Builds a network at rest from parameters [[`parameter_count`](LeakyLayout::parameter_count)] and a state
+    /// [[`state_len`](LeakyLayout::state_len)], which it sets to zero.
     ///
     /// # Errors
-    /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`], [`Error::LeakRange`] or [`Error::StateLen`]:
-    /// the first that applies, and of the parameters the first that is wrong.
-    pub fn new(layout: LeakyLayout, leak: Leak, parameters: P, mut state: S) -> Result<Self, Error> {
-        if !layout.slope().is_finite() {
-            return Err(Error::Slope { value: layout.slope() });
-        }
-        check(&layout, parameters.as_ref())?;
-        let (expected, found) = (layout.state_len(), state.as_mut().len());
-        if expected != found {
-            return Err(Error::StateLen { expected, found });
-        }
-        state.as_mut().fill(0.0);
-        Ok(Self { layout, leak, parameters, state, level: level() })
-    }
-
-    /// Points the network at other parameters [[`parameter_count`](LeakyLayout::parameter_count)] and returns the old
-    /// ones; the state stays as it is.
-    ///
-    /// # Errors
-    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
-    pub fn set_parameters(&mut self, parameters: P) -> Result<P, Error> {
-        check(&self.layout, parameters.as_ref())?;
-        Ok(core::mem::replace(&mut self.parameters, parameters))
-    }
-
-    /// Copies other parameters [[`parameter_count`](LeakyLayout::parameter_count)] over the network's own; the state
-    /// stays as it is.
-    ///
-    /// # Errors
-    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
-    pub fn copy_parameters(&mut self, parameters: &[f32]) -> Result<(), Error>
-    where
-        P: AsMut<[f32]>,
-    {
-        check(&self.layout, parameters)?;
-        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
-            *own = *new;
-        }
-        Ok(())
-    }
-
-    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
-    pub fn parameters(&self) -> &[f32] {
-        self.parameters.as_ref()
+    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
+    pub fn new(layout: LeakyLayout, leak: Leak, parameters: P, state: S) -> Result<Self, Error> {
+        Self::at_rest(LeakyModel { layout, leak }, parameters, state)
     }
 }
 
-impl<P, S> LeakyNetwork<P, S> {
-    /// The same network over these instructions, with the same bits.
-    ///
-    /// By default those of [`Instructions::detect`]; of what the processor lacks, the best that it has.
-    pub fn with_instructions(self, instructions: Instructions) -> Self {
-        Self { level: instructions.level(), ..self }
-    }
-
+impl<P, S> Network<LeakyModel, P, S> {
     /// The layout.
     pub const fn layout(&self) -> LeakyLayout {
-        self.layout
+        self.model.layout
     }
 
     /// The reading of the leak.
     pub const fn leak(&self) -> Leak {
-        self.leak
-    }
-
-    /// Gives parameters and state back.
-    pub fn into_parts(self) -> (P, S) {
-        (self.parameters, self.state)
+        self.model.leak
     }
 
     /// The activations `H(t)` `[hidden]` in [0, 1].
@@ -135,11 +82,11 @@ impl<P, S> LeakyNetwork<P, S> {
         S: AsRef<[f32]>,
     {
         let state = self.state.as_ref();
-        state.get(..self.layout.hidden()).unwrap_or(state)
+        state.get(..self.model.layout.hidden()).unwrap_or(state)
     }
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for LeakyNetwork<P, S> {
+impl Model for LeakyModel {
     fn inputs(&self) -> usize {
         self.layout.sensors()
     }
@@ -148,66 +95,40 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for LeakyNetwork<P, S> {
         self.layout.outputs()
     }
 
-    fn reset(&mut self) {
-        self.state.as_mut().fill(0.0);
-    }
-
-    fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.step_ablated(&[], x, y);
-    }
-}
-
-/// The hidden neurons come first, the outputs after them. A hidden neuron that is held is so before and after the step: what
-/// it sends back to the others is held, too.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for LeakyNetwork<P, S> {
     fn neurons(&self) -> usize {
         self.layout.hidden().saturating_add(self.layout.outputs())
     }
 
-    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
-        let Self { layout, leak, parameters, state, level } = self;
-        debug_assert_eq!(x.len(), layout.sensors(), "sensor values and the layout's sensors");
-        debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
-        let parts = layout.split(parameters.as_ref());
+    fn state_len(&self) -> usize {
+        self.layout.state_len()
+    }
+
+    fn check_model<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error> {
+        LayoutFault::check_slope(self.layout.slope())?;
+        let leaks = self.layout.range(LeakyParameter::Leak);
+        check_parameters(leaks.end, leaks.start, parameters, value)
+    }
+
+    #[inline]
+    fn step(&self, data: Data<'_>, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+        let Self { layout, leak } = self;
+        let Data { parameters, state, level } = data;
+        let parts = layout.split(parameters);
         let (count, slope) = (layout.hidden(), layout.slope());
 
-        let state = state.as_mut();
         let (hidden, state) = state.split_at_mut(count.min(state.len()));
         let (previous, state) = state.split_at_mut(count.min(state.len()));
         let response = prefix(state, count);
         hold(lesions, 0, hidden);
 
         let sources = [(x, parts.sensor_weights), (&*hidden, parts.recurrent_weights)];
-        Layer { targets: count, slope, biases: parts.biases, sources }.forward(*level, response);
+        Layer { targets: count, slope, biases: parts.biases, sources }.forward(level, response);
 
         leak.apply(response, parts.leaks, hidden, previous);
         hold(lesions, 0, hidden);
 
         let sources = [(&*hidden, parts.output_weights), (&[], &[])];
-        Layer { targets: layout.outputs(), slope, biases: &[], sources }.forward(*level, y);
+        Layer { targets: layout.outputs(), slope, biases: &[], sources }.forward(level, y);
         hold(lesions, count, prefix(y, layout.outputs()));
-    }
-}
-
-pub(crate) fn check(layout: &LeakyLayout, parameters: &[f32]) -> Result<(), Error> {
-    check_values(layout, parameters.iter().copied())
-}
-
-/// The same for parameters that are no slice of numbers.
-pub(crate) fn check_values(
-    layout: &LeakyLayout,
-    parameters: impl ExactSizeIterator<Item = f32> + Clone,
-) -> Result<(), Error> {
-    let (expected, found) = (layout.parameter_count(), parameters.len());
-    if expected != found {
-        return Err(Error::ParameterCount { expected, found });
-    }
-    if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
-        return Err(Error::NotFinite { index });
-    }
-    let leaks = parameters.enumerate().skip(layout.range(LeakyParameter::Leak).start);
-    match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(leak)) {
-        Some((index, value)) => Err(Error::LeakRange { index, value }),
-        None => Ok(()),
     }
 }

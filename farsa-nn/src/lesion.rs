@@ -1,14 +1,14 @@
-//! Lesions: what a network does without a neuron.
+//! Lesions: networks with held neurons.
 
 use crate::controller::Controller;
 
-/// A neuron that is held at an activation, whatever drives it.
+/// A neuron held at an activation, independent of its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lesion {
     /// The neuron's number.
     pub neuron: usize,
-    /// What it is held at; 0 is silence.
+    /// The held activation, 0 for silence.
     pub activation: f32,
 }
 
@@ -21,28 +21,28 @@ impl Lesion {
 
 /// A network whose neurons can be held.
 ///
-/// How neurons are numbered is said where the trait is implemented. To cut a link needs no trait: its weight is set to zero.
+/// Each kind of network documents the numbers of its neurons. To cut a link, set its weight to zero.
 pub trait Ablatable: Controller {
     /// Number of neurons that can be held.
     fn neurons(&self) -> usize;
-    /// Steps as [`Controller::step`] does with these neurons held; one that does not exist is passed over.
+    /// Advances as [`Controller::step`] with these neurons held. Missing neurons are ignored.
     fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]);
 }
 
-/// A network with lesions, for studies of what its neurons are for.
+/// A network with lesions, for studies of the roles of its neurons.
 ///
 /// ```
 /// use farsa_nn::{Controller, Ctrnn, CtrnnLayout, Lesion, Lesioned};
 ///
-/// // A neuron drives the next one.
+/// // The first neuron drives the second.
 /// const LAYOUT: CtrnnLayout = CtrnnLayout::new(0, 2, 1);
 /// let parameters = [0.0, 8.0, 0.0, 0.0, 0.0, -2.0, 1.0, 1.0, 1.0, 1.0];
-/// let whole = Ctrnn::new(LAYOUT, 0.1, parameters, [0.0; LAYOUT.state_len()])?;
+/// let intact = Ctrnn::new(LAYOUT, 0.1, parameters, [0.0; LAYOUT.state_len()])?;
 /// let lesions = [Lesion::new(0)];
-/// let mut without = Lesioned::new(whole.clone(), &lesions);
-/// let (mut whole, mut y, mut z) = (whole, [0.0], [0.0]);
+/// let mut without = Lesioned::new(intact.clone(), &lesions);
+/// let (mut intact, mut y, mut z) = (intact, [0.0], [0.0]);
 /// for _ in 0..100 {
-///     whole.step(&[], &mut y);
+///     intact.step(&[], &mut y);
 ///     without.step(&[], &mut z);
 /// }
 /// assert!(y[0] > 0.8 && z[0] < 0.2);
@@ -55,12 +55,12 @@ pub struct Lesioned<'a, N> {
 }
 
 impl<'a, N: Ablatable> Lesioned<'a, N> {
-    /// A network in which these neurons are held from the next step on.
+    /// Holds these neurons from the next step on.
     pub const fn new(network: N, lesions: &'a [Lesion]) -> Self {
         Self { network, lesions }
     }
 
-    /// Other lesions from the next step on.
+    /// Replaces the lesions from the next step on.
     pub const fn set_lesions(&mut self, lesions: &'a [Lesion]) {
         self.lesions = lesions;
     }
@@ -70,7 +70,7 @@ impl<'a, N: Ablatable> Lesioned<'a, N> {
         &self.network
     }
 
-    /// Gives the network back.
+    /// Returns the network.
     pub fn into_network(self) -> N {
         self.network
     }
@@ -94,7 +94,8 @@ impl<N: Ablatable> Controller for Lesioned<'_, N> {
     }
 }
 
-/// Overwrites the values that belong to neurons `first` and following where these are held.
+/// Overwrites the values of held neurons from number `first` on.
+#[inline]
 pub(crate) fn hold(lesions: &[Lesion], first: usize, values: &mut [f32]) {
     for lesion in lesions {
         if let Some(value) = lesion.neuron.checked_sub(first).and_then(|at| values.get_mut(at)) {

@@ -1,6 +1,6 @@
-//! How the names of variants are compared.
+//! Comparison of names.
 
-/// Whether two names are the same but for case and hyphens.
+/// Compares two names, ignoring case and hyphens.
 pub(crate) fn same_letters(name: &str, other: &str) -> bool {
     let plain = |b: &u8| *b != b'-';
     let lower = |b: u8| b.to_ascii_lowercase();

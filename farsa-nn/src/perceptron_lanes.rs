@@ -1,16 +1,18 @@
-//! Many single layers side by side, one in each lane: for the lanes of a batch of worlds.
+//! Single layers in SIMD lanes, for the lanes of a batch of worlds.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Instructions, Scalar, logistic};
 
 use crate::error::Error;
+use crate::fault::LayoutFault;
 use crate::kernel::level;
+use crate::network::check_parameters;
 use crate::perceptron::Perceptron;
 
-/// [`Perceptron`]s of one shape and slope, each with parameters of its own, that step together.
+/// [`Perceptron`]s of one shape and slope that step together, each with its own parameters.
 ///
-/// Everything is `[values x lanes]`: one value of every lane, then the next value of every lane. Each lane has the bits of
-/// the [`Perceptron`] alone.
+/// All slices are `[values x lanes]`: one value of every lane, then the next value of every lane. Each lane has the bits of a
+/// single [`Perceptron`].
 ///
 /// ```
 /// use farsa_nn::{Controller, Perceptron, PerceptronLanes};
@@ -37,26 +39,18 @@ pub struct PerceptronLanes<P> {
 }
 
 impl<P: AsRef<[f32]>> PerceptronLanes<P> {
-    /// Layers over these parameters [[`parameter_count`](Perceptron::parameter_count) x lanes].
+    /// Builds layers from parameters [[`parameter_count`](Perceptron::parameter_count) x lanes].
     ///
     /// # Errors
-    /// [`Error::Slope`], [`Error::ParameterCount`] or [`Error::NotFinite`]: the first that applies.
+    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(inputs: usize, outputs: usize, slope: f32, lanes: usize, parameters: P) -> Result<Self, Error> {
-        if !slope.is_finite() {
-            return Err(Error::Slope { value: slope });
-        }
-        let expected = Perceptron::parameter_count(inputs, outputs).saturating_mul(lanes);
-        let found = parameters.as_ref().len();
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
-        match parameters.as_ref().iter().position(|p| !p.is_finite()) {
-            Some(index) => Err(Error::NotFinite { index }),
-            None => Ok(Self { inputs, outputs, slope, lanes, parameters, level: level() }),
-        }
+        LayoutFault::check_slope(slope)?;
+        let count = Perceptron::parameter_count(inputs, outputs).saturating_mul(lanes);
+        check_parameters(count, count, parameters.as_ref(), |p| p)?;
+        Ok(Self { inputs, outputs, slope, lanes, parameters, level: level() })
     }
 
-    /// The same layers over these instructions, with the same bits.
+    /// The same layers with other instructions. The results have the same bits.
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }
@@ -66,7 +60,7 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         self.lanes
     }
 
-    /// Steps every layer: `x` [inputs x lanes] to `y` [outputs x lanes]; does nothing if one of them is shorter.
+    /// Steps every layer from `x` [inputs x lanes] to `y` [outputs x lanes]. Does nothing if one of them is shorter.
     pub fn step(&self, x: &[f32], y: &mut [f32]) {
         let enough = x.len() >= self.inputs * self.lanes && y.len() >= self.outputs * self.lanes;
         debug_assert!(enough, "{} inputs and {} outputs of {} lanes", self.inputs, self.outputs, self.lanes);
@@ -126,24 +120,19 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
 }
 
 impl<P: AsRef<[f32]> + AsMut<[f32]>> PerceptronLanes<P> {
-    /// Gives one layer its parameters [[`parameter_count`](Perceptron::parameter_count)], in the order of a [`Perceptron`].
+    /// Sets the parameters of one layer [[`parameter_count`](Perceptron::parameter_count)], in the order of a [`Perceptron`].
     ///
-    /// A lane beyond the last changes nothing, which is a mistake.
+    /// A lane beyond the last is an error of the caller and changes nothing.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`] or [`Error::NotFinite`]; nothing is changed then.
+    /// [`Error::Length`] or [`Error::Parameter`]. Then nothing changes.
     pub fn set_lane(&mut self, lane: usize, parameters: &[f32]) -> Result<(), Error> {
         debug_assert!(lane < self.lanes, "lane {lane} of {}", self.lanes);
-        let (expected, found) = (Perceptron::parameter_count(self.inputs, self.outputs), parameters.len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
-        if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
-            return Err(Error::NotFinite { index });
-        }
+        let count = Perceptron::parameter_count(self.inputs, self.outputs);
+        check_parameters(count, count, parameters, |p| p)?;
         if lane < self.lanes {
-            let own = self.parameters.as_mut().iter_mut().skip(lane).step_by(self.lanes);
-            own.zip(parameters).for_each(|(to, x)| *to = *x);
+            let values = self.parameters.as_mut().iter_mut().skip(lane).step_by(self.lanes);
+            values.zip(parameters).for_each(|(to, x)| *to = *x);
         }
         Ok(())
     }

@@ -1,19 +1,19 @@
-//! The sums of a layer of many targets, whose weights no near cache holds.
+//! The sums of a layer of many targets, whose weights exceed the near caches.
 //!
-//! The way of narrow layers, down a few columns of the weights, meets another page at each row. Here the sums lie in `y`, and
-//! a few sources at a time are added to all of them from left to right: the weights are read one after the other, which the
-//! processor foresees. Each target adds its sources in the same order, so both ways have the same bits.
+//! The loops of narrow layers read a few columns of the weights, so each row is on another page. Here the sums are in `y`, and a
+//! few sources at a time are added to all of them. The weights are read sequentially, which the processor prefetches. Each target
+//! adds its sources in the same order, so both ways have the same bits.
 
 use farsa_num::{Real, Scalar};
 
 use crate::kernel::Layer;
 
-/// Number of sources that are added together. With fewer, sums are loaded and stored more often; with more, registers run out.
+/// Number of sources that are added together. Fewer load and store the sums more often, more exceed the registers.
 const ROWS: usize = 8;
 
 impl<R: Real> Layer<'_, R> {
     /// Overwrites `y` [at most `targets`, at least one vector's] with the sums.
-    // Not inlined, so that a program has it once for each instruction set and the other way stays as short as it is.
+    // Not inlined, so a program has it once for each instruction set, and the other way stays short.
     #[inline(never)]
     pub(crate) fn wide_sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) {
         S::vectorize(
@@ -23,8 +23,8 @@ impl<R: Real> Layer<'_, R> {
         );
     }
 
-    /// The sums of the last vector are kept apart until the end: it may overlap the one before it, to which the sources it
-    /// shares would else be added twice.
+    /// Keeps the sums of the last vector separate until the end. It may overlap the previous vector, and shared sources must not
+    /// be added twice.
     #[inline(always)]
     fn add_rows<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) {
         let Some(last) = y.len().checked_sub(S::LANES) else { return };
@@ -47,15 +47,15 @@ impl<R: Real> Layer<'_, R> {
     }
 }
 
-/// A few sources and the weights that leave them.
+/// A few sources and their weights.
 struct Rows<'a, S: Scalar, const N: usize> {
     x: [S; N],
-    /// Of each source those to the targets that are wanted, all of one length.
+    /// The weights of each source to the requested targets, all of one length.
     weights: [&'a [S::Real]; N],
 }
 
 impl<'a, S: Scalar, const N: usize> Rows<'a, S, N> {
-    /// The next sources and rows, of which the first `targets` weights are wanted.
+    /// Takes the next sources and rows, and the first `targets` weights of each.
     #[inline(always)]
     fn next(simd: S::Simd, x: &[S::Real; N], rows: &mut impl Iterator<Item = &'a [S::Real]>, targets: usize) -> Self {
         let (mut sources, mut weights) = ([S::splat(simd, x[0]); N], [&[][..]; N]);
@@ -66,16 +66,16 @@ impl<'a, S: Scalar, const N: usize> Rows<'a, S, N> {
         Self { x: sources, weights }
     }
 
-    /// Adds the sources to the sums in all vectors but the last, and to those of the last, which it takes and returns.
+    /// Adds the sources to the sums in all vectors except the last, and to the last one, which is passed by value.
     #[inline(always)]
     fn add(&self, y: &mut [S::Real], mut end: S) -> S {
         let Some(last) = y.len().checked_sub(S::LANES) else { return end };
-        // Never so; but said here, the compiler need not ask at every vector below.
+        // Never true, but it removes the bounds checks of every vector below.
         if self.weights.iter().any(|row| row.len() != y.len()) {
             return end;
         }
         let mut i = 0;
-        // Side by side, because a sum waits for its own last addition.
+        // Two at a time, because a sum waits for its last addition.
         while i + S::LANES < last {
             self.add_at::<2>(i, y);
             i += 2 * S::LANES;
@@ -136,7 +136,7 @@ mod tests {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
     }
 
-    /// Compares sums and responses of the first `wanted` targets by each instruction set with plain loops.
+    /// Compares sums and responses of the first `wanted` targets with plain loops, by each instruction set.
     fn check(targets: usize, wanted: usize, biases: &[f32], sources: [(&[f32], &[f32]); 2]) {
         let sums: Vec<f32> = (0..wanted)
             .map(|i| {

@@ -1,5 +1,6 @@
 //! The fixed-point network against its equations in wide integers, and against the network of floats.
 
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
 use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Stream};
@@ -118,7 +119,7 @@ proptest! {
         }
     }
 
-    /// What is rounded is off by at most half a unit, and one more fraction bit would not have fitted.
+    /// Rounded values are off by at most half a unit, and one more fraction bit does not fit.
     #[test]
     fn parameters_are_rounded_to_the_finest_units((layout, parameters, input_bits, _) in any_case()) {
         let mut fixed = vec![0; parameters.len()];
@@ -151,7 +152,7 @@ proptest! {
     }
 }
 
-/// Largest and root mean square difference of motor values to the network of floats over so many networks and steps.
+/// Largest and root mean square difference of motor values to the network of floats over a number of networks and steps.
 fn deviation(layout: LeakyLayout, leak: Leak, range: f32, networks: u32, steps: u32) -> (f64, f64) {
     let (mut largest, mut squares, mut count) = (0.0_f64, 0.0_f64, 0_u32);
     for individual in 0..networks {
@@ -215,12 +216,18 @@ fn construction_names_the_mistake() {
     let build = |fixed: &[i16], state: &mut [i32]| QuantizedNetwork::new(TINY, Leak::Filter, scale, fixed, state).err();
     let mut state = [0; 3];
     assert_eq!(build(&[0; 5], &mut state), None);
-    assert_eq!(build(&[0; 4], &mut state), Some(Error::ParameterCount { expected: 5, found: 4 }));
-    assert_eq!(build(&[0; 5], &mut state[..2]), Some(Error::StateLen { expected: 3, found: 2 }));
-    assert_eq!(build(&[0, 0, 0, 0, 16385], &mut state), Some(Error::LeakRange { index: 4, value: 16385.0 / 16384.0 }));
-    assert!(matches!(build(&[0, 0, 0, 0, -1], &mut state), Some(Error::LeakRange { index: 4, .. })));
+    assert_eq!(build(&[0; 4], &mut state), Some(Error::Length { slice: Slice::Parameters, expected: 5, found: 4 }));
+    assert_eq!(build(&[0; 5], &mut state[..2]), Some(Error::Length { slice: Slice::State, expected: 3, found: 2 }));
+    assert_eq!(
+        build(&[0, 0, 0, 0, 16385], &mut state),
+        Some(Error::Parameter { index: 4, fault: ParameterFault::Leak(16385.0 / 16384.0) })
+    );
+    assert!(matches!(
+        build(&[0, 0, 0, 0, -1], &mut state),
+        Some(Error::Parameter { index: 4, fault: ParameterFault::Leak(_) })
+    ));
 
-    let bits = |of, found, least, most| Err(Error::FractionBits { of, found, least, most });
+    let bits = |of, found, least, most| Err(Error::Layout(LayoutFault::FractionBits { of, found, least, most }));
     assert_eq!(QuantizedScale::new(16, 14, 20), bits("inputs", 16, 0, 15));
     assert_eq!(QuantizedScale::new(9, 16, 20), bits("weights", 16, 0, 15));
     assert_eq!(QuantizedScale::new(9, 14, 21), bits("sums", 21, 10, 20));
@@ -235,22 +242,25 @@ fn construction_names_the_mistake() {
         quantize(&TINY.with_slope(f32::NAN), 9, [0.0; 5]).map_err(|e| e.to_string()),
         Err("the slope of the logistic function is NaN: not finite".into())
     );
-    assert_eq!(quantize(&TINY, 9, [0.0, f32::NAN, 0.0, 0.0, 0.0]), Err(Error::NotFinite { index: 1 }));
-    assert_eq!(quantize(&TINY, 9, [0.0, 0.0, 0.0, 0.0, 2.0]), Err(Error::LeakRange { index: 4, value: 2.0 }));
+    assert_eq!(
+        quantize(&TINY, 9, [0.0, f32::NAN, 0.0, 0.0, 0.0]),
+        Err(Error::Parameter { index: 1, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(
+        quantize(&TINY, 9, [0.0, 0.0, 0.0, 0.0, 2.0]),
+        Err(Error::Parameter { index: 4, fault: ParameterFault::Leak(2.0) })
+    );
     let huge = quantize(&TINY.with_slope(1.0), 9, [0.0, 0.0, 40_000.0, 0.0, 0.0]);
-    assert_eq!(huge, Err(Error::WeightRange { index: 2, value: 40_000.0 }));
+    assert_eq!(huge, Err(Error::Parameter { index: 2, fault: ParameterFault::Weight(40_000.0) }));
     let wide = QuantizedScale::quantize(&TINY, 9, &[0.0; 5], &mut [0; 4]);
-    assert_eq!(wide, Err(Error::ParameterCount { expected: 5, found: 4 }));
+    assert_eq!(wide, Err(Error::Length { slice: Slice::Parameters, expected: 5, found: 4 }));
     // A hundred weights of 1.2 and sensors to 32768: 2^15 * 1.2 * 100 = 3.9e6, times 2^10 over 2^31.
     let many = LeakyLayout::new(100, 1, 0);
     let mut fixed = vec![0; many.parameter_count()];
     let parameters: Vec<f32> = many.kinds().map(|kind| if kind == LeakyParameter::Leak { 1.0 } else { 6.0 }).collect();
     let error = QuantizedScale::quantize(&many, 0, &parameters, &mut fixed);
     assert!(
-        matches!(
-            error,
-            Err(Error::SumRange { target: 0, largest: 4_026_000_000..4_027_000_000, limit: 2_147_483_647 })
-        ),
+        matches!(error, Err(Error::Sum { target: 0, largest: 4_026_000_000..4_027_000_000, limit: 2_147_483_647 })),
         "{error:?}"
     );
 }

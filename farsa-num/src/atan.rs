@@ -5,12 +5,12 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
 
-/// What the nearest double of pi / 2 leaves out.
+/// The difference of pi / 2 and its nearest double.
 const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
 
 /// The angle \[rad\] of the point (x, y) from the x axis, in [-pi, pi], to within 1.5 units in the last place.
 ///
-/// Signs of zero and infinities as in IEEE 754 section 9.2.1; NaN with a NaN. `f32` is computed in `f64` and rounded.
+/// Signs of zero and infinities as in IEEE 754 section 9.2.1. NaN with a NaN. `f32` is computed in `f64` and rounded.
 ///
 /// Source: own (one reduction by pi / 4, minimax polynomial on |tan| <= sqrt(2) - 1).
 ///
@@ -25,7 +25,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
     R::from_f64(atan2_f64(y.to_f64(), x.to_f64()))
 }
 
-/// The angle in [-pi/2, pi/2] \[rad\] with this sine, to within 1 unit in the last place; NaN outside [-1, 1].
+/// The angle in [-pi/2, pi/2] \[rad\] with this sine, to within 1 unit in the last place. NaN outside [-1, 1].
 ///
 /// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_asin.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
@@ -33,7 +33,7 @@ pub fn asin<R: Real>(x: R) -> R {
     R::from_f64(asin_f64(x.to_f64()))
 }
 
-/// The angle in [0, pi] \[rad\] with this cosine, to within 1 unit in the last place; NaN outside [-1, 1].
+/// The angle in [0, pi] \[rad\] with this cosine, to within 1 unit in the last place. NaN outside [-1, 1].
 ///
 /// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_acos.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
@@ -48,7 +48,7 @@ fn atan2_f64(y: f64, x: f64) -> f64 {
     let (a, b) = if x.is_infinite() && y.is_infinite() { (1.0, 1.0) } else { (y.abs(), x.abs()) };
     let steep = a > b;
     let (small, large) = if steep { (b, a) } else { (a, b) };
-    // Keeps the sum below from overflowing; what underflows is nothing beside a number so large.
+    // Prevents an overflow of the sum below. An underflow does not matter next to so large a number.
     let (small, large) = if large > 1e300 { (small * 1e-10, large * 1e-10) } else { (small, large) };
     let (t, base, rest) = if small > (core::f64::consts::SQRT_2 - 1.0) * large {
         ((small - large) / (small + large), FRAC_PI_4, 0.5 * FRAC_PI_2_REST)
@@ -92,7 +92,7 @@ fn asin_f64(x: f64) -> f64 {
     if size < 0.5 {
         return x + x * excess(x * x);
     }
-    // pi/2 - 2 asin(sqrt((1 - |x|) / 2)); NaN above 1 by the root.
+    // pi/2 - 2 asin(sqrt((1 - |x|) / 2)). The root makes it NaN above 1.
     let z = 0.5 * (1.0 - size);
     let (high, low) = root(z);
     let small = 2.0 * ((high + low) * excess(z) + low) - FRAC_PI_2_REST;

@@ -1,4 +1,4 @@
-//! Fingerprints of numbers and bytes: for golden tests and for damage, not against forgery.
+//! Fingerprints of numbers and bytes, to detect changes and damage. They do not protect against forgery.
 
 /// A 64-bit fingerprint of a sequence of values, for comparing runs bit for bit.
 ///
@@ -22,14 +22,14 @@ impl Digest {
         }
     }
 
-    /// Adds a number's bits; -0.0 differs from 0.0.
+    /// Adds the bits of a number. -0.0 differs from 0.0.
     #[inline]
     pub fn add_f32(&mut self, x: f32) {
         let bits = if x.is_nan() { 0x7FC0_0000 } else { x.to_bits() };
         self.add_bytes(&bits.to_le_bytes());
     }
 
-    /// Adds the bits of every number of a slice.
+    /// Adds the bits of every number in a slice.
     #[inline]
     pub fn add_f32s(&mut self, xs: &[f32]) {
         for &x in xs {
@@ -37,14 +37,14 @@ impl Digest {
         }
     }
 
-    /// Adds a number's bits; -0.0 differs from 0.0.
+    /// Adds the bits of a number. -0.0 differs from 0.0.
     #[inline]
     pub fn add_f64(&mut self, x: f64) {
         let bits = if x.is_nan() { 0x7FF8_0000_0000_0000 } else { x.to_bits() };
         self.add_bytes(&bits.to_le_bytes());
     }
 
-    /// Adds the bits of every number of a slice.
+    /// Adds the bits of every number in a slice.
     #[inline]
     pub fn add_f64s(&mut self, xs: &[f64]) {
         for &x in xs {
@@ -73,13 +73,13 @@ impl Default for Digest {
 
 /// The checksum of files and flash images: CRC-32 of IEEE 802.3.
 ///
-/// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones; no deviation.
+/// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones. No deviation.
 #[inline]
 pub const fn crc32(bytes: &[u8]) -> u32 {
     Crc32::new().with(bytes).finish()
 }
 
-/// [`crc32`] of bytes that come one part after the other.
+/// The [`crc32`] of bytes that arrive in parts.
 ///
 /// ```
 /// use farsa_num::{Crc32, crc32};
@@ -96,7 +96,7 @@ impl Crc32 {
         Self(u32::MAX)
     }
 
-    /// The checksum of the bytes so far and these.
+    /// Adds bytes.
     #[inline]
     #[must_use]
     pub const fn with(self, bytes: &[u8]) -> Self {
@@ -109,7 +109,7 @@ impl Crc32 {
         Self(crc)
     }
 
-    /// The checksum of all bytes so far, after which more may follow.
+    /// The checksum of the bytes so far. More may follow.
     #[inline]
     pub const fn finish(self) -> u32 {
         !self.0

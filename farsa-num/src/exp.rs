@@ -1,4 +1,4 @@
-//! The exponential function and the two squashing functions made of it.
+//! The exponential function and the two squashing functions based on it.
 
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
@@ -12,8 +12,8 @@ use crate::scalar::{Real, Scalar};
 /// assert_eq!([-104.0_f32, 89.0].map(farsa_num::exp), [0.0, f32::INFINITY]);
 /// ```
 ///
-/// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table; the polynomial
-/// is our own minimax fit on |r| <= 0.347; 2^k is applied as two factors, so that neither leaves the normal exponents.
+/// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table. The polynomial
+/// is our minimax fit on |r| <= 0.347. 2^k is applied as two factors, so both stay within the normal exponents.
 #[inline(always)]
 pub fn exp<S: Scalar>(x: S) -> S {
     let double = S::Real::DIGITS > 24;
@@ -42,7 +42,7 @@ pub fn exp<S: Scalar>(x: S) -> S {
     } else {
         polynomial!(r; 0.5, 0.166_665_763, 0.041_666_373_6, 0.008_363_237_6, 0.001_394_121_56)
     };
-    // `high` and `low` once more, not `r`: its rounding then counts only in the second order.
+    // `high` and `low` again, not `r`, so that the rounding of `r` counts only in the second order.
     let p = (high + (r * r * q - low)) + x.constant(1.0);
     let half = (k * x.constant(0.5)).round_small();
     p * half.exp2_integer() * (k - half).exp2_integer()
@@ -50,7 +50,7 @@ pub fn exp<S: Scalar>(x: S) -> S {
 
 /// The logistic function 1 / (1 + e^-x), to within 2.5 units in the last place.
 ///
-/// In [0, 1] for every number, NaN for NaN; in `f32` never falling. Below -ln of the largest number, where it would be
+/// In [0, 1] for every number, NaN for NaN. In `f32` it never falls. Below -ln of the largest number, where it would be
 /// subnormal, it is 0.
 ///
 /// ```
@@ -62,15 +62,15 @@ pub fn exp<S: Scalar>(x: S) -> S {
 #[inline(always)]
 pub fn logistic<S: Scalar>(x: S) -> S {
     let one = x.constant(1.0);
-    // Rounded sums and quotients of what never rises never fall. e^x / (1 + e^x), which would keep the subnormal results, does.
+    // This form never falls. e^x / (1 + e^x) would have subnormal results, but it can fall.
     one / (one + exp(-x))
 }
 
 /// The hyperbolic tangent, to within 1.5 units in the last place.
 ///
-/// In [-1, 1] for every number, exactly odd, NaN for NaN; tanh(-0.0) is 0.0.
+/// In [-1, 1] for every number, exactly odd, NaN for NaN. tanh(-0.0) is 0.0.
 ///
-/// Source: own minimax polynomial in x^2 for |x| < 0.5625; 1 - 2 / (e^2x + 1) beyond.
+/// Source: own minimax polynomial in x^2 for |x| < 0.5625, and 1 - 2 / (e^2x + 1) beyond.
 #[inline(always)]
 pub fn tanh<S: Scalar>(x: S) -> S {
     let size = x.abs();

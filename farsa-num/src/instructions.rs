@@ -1,4 +1,4 @@
-//! The instruction sets that lane code runs on.
+//! Instruction sets of lane code.
 
 use core::fmt;
 
@@ -6,8 +6,8 @@ use fearless_simd::Level;
 
 /// An instruction set with vectors, or none.
 ///
-/// It changes how long lane code takes, never its bits. This is a plain name: one may be chosen that the processor lacks, and
-/// callers of lane code then take the best that there is.
+/// It changes the time of lane code, never its bits. This is a plain name. If the processor lacks the chosen set, lane code
+/// uses the best available one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Instructions {
@@ -32,20 +32,20 @@ impl Instructions {
     pub const ALL: [Self; 7] =
         [Self::Fallback, Self::Sse2, Self::Sse4_2, Self::Avx2, Self::Avx512, Self::Neon, Self::WasmSimd128];
 
-    /// The best of this processor with the feature `std`, else what the program is compiled for.
+    /// The best set of this processor with the feature `std`, else the set that the program is compiled for.
     ///
     /// ```
     /// use farsa_num::Instructions;
     ///
     /// let best = Instructions::detect();
-    /// assert!(Instructions::available().eq(Instructions::available().filter(|one| *one <= best)));
+    /// assert!(Instructions::available().eq(Instructions::available().filter(|set| *set <= best)));
     /// assert_eq!(Instructions::available().last(), Some(best));
     /// ```
     pub fn detect() -> Self {
         Self::widest(best())
     }
 
-    /// What the program is compiled for, which every processor that runs it has.
+    /// The set that the program is compiled for.
     pub fn baseline() -> Self {
         Self::widest(Level::baseline())
     }
@@ -69,16 +69,16 @@ impl Instructions {
         }
     }
 
-    /// The level at which `fearless_simd` runs these instructions: the best that there is where they are not there.
+    /// The level of `fearless_simd` for these instructions, or the best available one.
     ///
-    /// For `fearless_simd::dispatch!`; not part of what this crate promises to keep.
+    /// For `fearless_simd::dispatch!`. This function may change in a minor release.
     #[doc(hidden)]
     pub fn level(self) -> Level {
         let best = best();
         self.within(best).unwrap_or(best)
     }
 
-    /// The widest of a level.
+    /// The widest set of a level.
     fn widest(level: Level) -> Self {
         Self::ALL.into_iter().rev().find(|one| one.within(level).is_some()).unwrap_or(Self::Fallback)
     }
@@ -117,7 +117,7 @@ impl fmt::Display for Instructions {
     }
 }
 
-/// The best level that is known to run here.
+/// The best level that runs here.
 fn best() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }

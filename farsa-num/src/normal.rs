@@ -7,12 +7,12 @@ use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f64x4};
 use crate::logarithm::ln_of_unit;
 use crate::sin_cos::sin_cos;
 
-/// Pairs that are computed side by side. Each takes a block of the generator.
+/// Pairs in a batch. Each takes a block of the generator.
 pub(crate) const PAIRS: usize = 32;
 
 /// Pairs of standard normal numbers from as many blocks of the generator, the first of this counter, in the bits of
 /// [`Stream::normal_pair_f64`](crate::Stream::normal_pair_f64), and the words of those blocks.
-// Not inlined, so that a program has the loops once for each instruction set.
+// Not inlined, so a program has the loops once for each instruction set.
 #[inline(never)]
 pub(crate) fn normal_pairs(
     level: Level,
@@ -26,7 +26,7 @@ pub(crate) fn normal_pairs(
     ))
 }
 
-/// Loops over pairs, which the compiler makes vectors of, with the instructions of the token.
+/// Loops over pairs, which the compiler vectorizes with the instructions of the token.
 #[inline(always)]
 fn in_vectors<V: Simd>(simd: V, counter: [u32; 4], key: [u32; 2], row: &mut [f64; 2 * PAIRS]) -> [[u32; PAIRS]; 4] {
     let words = philox_of_many(counter, key);
@@ -36,7 +36,7 @@ fn in_vectors<V: Simd>(simd: V, counter: [u32; 4], key: [u32; 2], row: &mut [f64
         radii[i] = -2.0 * ln_of_unit(1.0 - uniform(a[i], b[i]));
         angles[i] = uniform(c[i], d[i]) * TAU;
     }
-    // A loop over `sqrt` of libm stays one of single numbers.
+    // The compiler does not vectorize a loop over `sqrt` of libm.
     for radii in radii.chunks_exact_mut(4) {
         SimdFloat::sqrt(f64x4::<V>::from_slice(simd, radii)).store_slice(radii);
     }

@@ -1,4 +1,4 @@
-//! The one random generator: streams addressed by what they are for, not by the order of draws.
+//! The random generator: streams addressed by their purpose, independent of the order of draws.
 
 use fearless_simd::Level;
 
@@ -6,10 +6,10 @@ use crate::logarithm::ln;
 use crate::normal::{PAIRS, normal_pairs};
 use crate::sin_cos::sin_cos;
 
-/// The least numbers of a row that are computed many at a time: half of what is then computed.
+/// The shortest row that is computed with vectors: half of a batch.
 const LEAST: usize = PAIRS;
 
-/// What a stream's numbers are for; the number of each is part of every recorded run and never changes.
+/// The purpose of a stream. The number of each purpose is part of every recorded run and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Domain {
@@ -31,7 +31,7 @@ pub enum Domain {
 
 /// Four 32-bit random words from a counter and a key: Philox4x32-10.
 ///
-/// Source: \[Salmon2011\] section 3.3 with the constants of its `Random123` code; no deviation (known answers in the tests).
+/// Source: \[Salmon2011\] section 3.3 with the constants of its `Random123` code. No deviation (the tests have the published answers).
 #[inline]
 pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     let [mut a, mut b, mut c, mut d] = counter;
@@ -46,12 +46,12 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     [a, b, c, d]
 }
 
-/// A stream of random numbers, fixed by the run's seed and by what it is for.
+/// A stream of random numbers, determined by the seed of the run and by its purpose.
 ///
-/// Plain data of 44 bytes: copying it copies its place. Two streams that differ in any argument of [`Stream::new`] share
+/// Plain data of 44 bytes. A copy has the same position. Two streams that differ in any argument of [`Stream::new`] share
 /// no block. It repeats after 2^34 words.
 ///
-/// The key is the seed's two halves (low first); the counter is (block, domain << 24 | trial, individual, generation).
+/// The key is the two halves of the seed (low first). The counter is (block, domain << 24 | trial, individual, generation).
 ///
 /// ```
 /// use farsa_num::{Domain, Stream};
@@ -69,14 +69,14 @@ pub struct Stream {
     /// The counter of the block to draw next.
     counter: [u32; 4],
     words: [u32; 4],
-    /// How many of `words` are drawn already.
+    /// Number of `words` already drawn.
     drawn: u8,
 }
 
 impl Stream {
     /// The stream of a seed for one purpose, at its first word.
     ///
-    /// `trial` counts to 2^24 - 1; its higher bits are dropped (a debug build panics).
+    /// `trial` counts to 2^24 - 1. Higher bits are dropped, and a debug build panics.
     #[inline]
     pub const fn new(seed: u64, domain: Domain, trial: u32, individual: u32, generation: u32) -> Self {
         debug_assert!(trial < 1 << 24, "a trial's number has 24 bits");
@@ -89,7 +89,7 @@ impl Stream {
         }
     }
 
-    /// The stream of a seed for whatever has no place in a run, at its first word.
+    /// The stream of a seed for purposes outside a run, at its first word.
     ///
     /// It is `Stream::new(seed, Domain::General, 0, 0, 0)` and shares no block with the streams of a run of the same seed.
     ///
@@ -112,7 +112,7 @@ impl Stream {
         words.wrapping_sub(4) & 0x3_FFFF_FFFF
     }
 
-    /// Goes to where `position` words are drawn, modulo 2^34.
+    /// Moves to the position after `position` words, modulo 2^34.
     #[inline]
     pub fn seek(&mut self, position: u64) {
         self.counter[0] = (position >> 2) as u32;
@@ -167,13 +167,13 @@ impl Stream {
         (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform in [low, high), never `high` itself; `low` where the interval is empty or a bound is NaN. Draws one word.
+    /// Uniform in [low, high). `low` if the interval is empty or a bound is NaN. Draws one word.
     ///
     /// `high - low` must not overflow, or the result is always the largest number below `high`.
     #[inline]
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
         let x = low + (high - low) * self.uniform();
-        // The sum rounds up to `high` now and then.
+        // The sum can round up to `high`.
         if low < high { if x < high { x } else { high.next_down() } } else { low }
     }
 
@@ -184,14 +184,14 @@ impl Stream {
         if low < high { if x < high { x } else { high.next_down() } } else { low }
     }
 
-    /// Uniform in 0..n without bias; 0 for n = 0. Draws one word, seldom more.
+    /// Uniform in 0..n without bias, and 0 for n = 0. Draws one word, rarely more.
     ///
-    /// Source: \[Lemire2019\] algorithm 5; no deviation.
+    /// Source: \[Lemire2019\] algorithm 5. No deviation.
     #[inline]
     pub fn below(&mut self, n: u32) -> u32 {
         let mut product = u64::from(self.next_u32()) * u64::from(n);
         if (product as u32) < n {
-            // 2^32 mod n: so many of the lowest fractions would be drawn once too often.
+            // 2^32 mod n: this number of the lowest fractions has one word too many.
             let excess = n.wrapping_neg() % n;
             while (product as u32) < excess {
                 product = u64::from(self.next_u32()) * u64::from(n);
@@ -232,15 +232,14 @@ impl Stream {
         [radius * c, radius * s]
     }
 
-    /// Fills a row with independent standard normal numbers, two of [`normal_pair_f64`](Self::normal_pair_f64) at a time; an odd
-    /// last one leaves its partner unused.
+    /// Fills a row with independent standard normal numbers, two of [`normal_pair_f64`](Self::normal_pair_f64) at a time. In an
+    /// odd row the last partner is unused.
     ///
-    /// Long rows are computed many numbers at a time, with the vector instructions of the processor (feature `std`, else of the
-    /// program) and the same bits.
+    /// Long rows use vector instructions of the processor (feature `std`, else of the program), with the same bits.
     pub fn fill_normal(&mut self, row: &mut [f64]) {
         let mut rest = row;
         let level = Level::try_detect().unwrap_or(Level::baseline());
-        // A pair is a block where no words of a block are left over.
+        // Without unused words of a block, a pair is a block.
         while self.drawn > 3 && rest.len() >= LEAST {
             let count = PAIRS.min(rest.len() / 2);
             let (now, later) = rest.split_at_mut(2 * count);
@@ -261,12 +260,12 @@ impl Stream {
         }
     }
 
-    /// How many failures come before the next success, given ln(1 - p) of the probability p of a success. Draws two words.
+    /// Number of failures before the next success, given ln(1 - p) of the probability p of a success. Draws two words.
     ///
-    /// For skip sampling: visiting only the genes that mutate. `u64::MAX` where ln(1 - p) is not below 0 (p = 0, or NaN);
-    /// 0 for negative infinity (p = 1).
+    /// For skip sampling, which visits only the genes that mutate. `u64::MAX` if ln(1 - p) is not below 0 (p = 0, or NaN), and 0 for
+    /// negative infinity (p = 1).
     ///
-    /// Source: inversion, \[Devroye1986\] chapter X.2; the uniform is in (0, 1], a multiple of 2^-53.
+    /// Source: inversion, \[Devroye1986\] chapter X.2. The uniform is in (0, 1], a multiple of 2^-53.
     #[inline]
     pub fn geometric(&mut self, log_one_minus_p: f64) -> u64 {
         let u = ((self.next_u64() >> 11) + 1) as f64 * (1.0 / 9_007_199_254_740_992.0);

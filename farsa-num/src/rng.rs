@@ -6,7 +6,7 @@ use rand_core::{SeedableRng, TryRng};
 
 use crate::philox::Stream;
 
-/// Words are those of [`Stream::next_u32`] and [`Stream::next_u64`]; bytes are words in little endian, the last one cut.
+/// Words are those of [`Stream::next_u32`] and [`Stream::next_u64`]. Bytes are words in little endian, the last one truncated.
 ///
 /// Not for cryptography.
 impl TryRng for Stream {

@@ -1,19 +1,19 @@
-//! The scalar that all numerical code is generic over: one number, or the same number in several worlds.
+//! The scalar of all generic numerical code: one number, or the same number in several worlds.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// A truth value per lane, the result of a comparison of [`Scalar`]s.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// Whether any lane is true.
+    /// Returns true if any lane is true.
     fn any(self) -> bool;
-    /// Whether every lane is true.
+    /// Returns true if every lane is true.
     fn all(self) -> bool;
-    /// The truth value of one lane; false beyond the last.
+    /// The truth value of one lane, false beyond the last.
     fn lane(self, index: usize) -> bool;
 }
 
-/// What one lane of a [`Scalar`] holds: `f32` or `f64`.
+/// The type of one lane of a [`Scalar`]: `f32` or `f64`.
 pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Default + Send + Sync + 'static {
     /// Binary digits of the significand: 24 for `f32`, 53 for `f64`.
     const DIGITS: u32;
@@ -26,10 +26,9 @@ pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Defau
 
 /// Arithmetic on one value per lane, with the same bits in a lane as alone.
 ///
-/// Implemented by `f32`, `f64` and, for SIMD, `fearless_simd::f32x8` and `f32x16`. Code over it takes no `if` on a
-/// value: it compares to a [`Mask`] and selects. Every operation is one rounded IEEE operation per lane;
-/// nothing is fused or approximated. Functions over it are `#[inline(always)]`, so that they inherit the target
-/// features of the dispatch they are called from.
+/// Implemented by `f32`, `f64` and, for SIMD, `fearless_simd::f32x8` and `f32x16`. Code over it has no `if` on a value. It
+/// compares to a [`Mask`] and selects. Every operation is one rounded IEEE operation per lane, never fused or approximated.
+/// Functions over it are `#[inline(always)]`, so they inherit the target features of the dispatch around them.
 ///
 /// ```
 /// use farsa_num::Scalar;
@@ -62,11 +61,11 @@ pub trait Scalar:
     + SubAssign
     + MulAssign
 {
-    /// What one lane holds.
+    /// The type of one lane.
     type Real: Real;
     /// The result of a comparison.
     type Mask: Mask;
-    /// The proof that the processor has the instructions; `()` for one lane.
+    /// The proof that the processor has the instructions, `()` for one lane.
     type Simd: Copy;
     /// Number of lanes.
     const LANES: usize;
@@ -97,33 +96,33 @@ pub trait Scalar:
     fn set_lane(&mut self, index: usize, x: Self::Real);
     /// Calls a function compiled for the instructions that the token proves.
     ///
-    /// A large piece of lane code is one function of its own this way, compiled once, and not a part of each caller. The
-    /// closure is `#[inline(always)]`; otherwise it does not inherit the instructions.
+    /// A large piece of lane code becomes one function this way, compiled once and not in each caller. The closure must be
+    /// `#[inline(always)]` to inherit the instructions.
     fn vectorize<T>(simd: Self::Simd, work: impl FnOnce() -> T) -> T;
 
-    /// Square root, correctly rounded; NaN below zero.
+    /// Square root, correctly rounded. NaN below zero.
     fn sqrt(self) -> Self;
     /// Clears the sign.
     fn abs(self) -> Self;
-    /// `self < other`; false with a NaN.
+    /// `self < other`, false with a NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`; false with a NaN.
+    /// `self <= other`, false with a NaN.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self > other`; false with a NaN.
+    /// `self > other`, false with a NaN.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
-    /// `self >= other`; false with a NaN.
+    /// `self >= other`, false with a NaN.
     #[inline(always)]
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
     }
-    /// `if_true` where the mask is true, `if_false` elsewhere.
+    /// `if_true` where the mask is true, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
     /// The nearest integer, ties to even, for magnitudes below 2^22 (`f32`) or 2^51 (`f64`).
     fn round_small(self) -> Self;
-    /// 2 to the power of an integer-valued number within the normal exponents [-126, 127] or [-1022, 1023]; unspecified beyond.
+    /// 2 to the power of an integer-valued number within the normal exponents [-126, 127] or [-1022, 1023]. Unspecified beyond.
     fn exp2_integer(self) -> Self;
 
     /// A constant in every lane, rounded once to the lane's type.
@@ -136,17 +135,17 @@ pub trait Scalar:
     fn like(self, x: Self::Real) -> Self {
         Self::splat(self.simd(), x)
     }
-    /// The smaller; `other` where `self` is NaN.
+    /// The smaller one, or `other` where `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// The larger; `other` where `self` is NaN.
+    /// The larger one, or `other` where `self` is NaN.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.gt(other), self, other)
     }
-    /// `self` brought into [low, high]; `low` where `self` is NaN.
+    /// `self` clamped to [low, high], or `low` where `self` is NaN.
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)

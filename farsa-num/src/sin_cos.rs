@@ -5,8 +5,8 @@ use crate::scalar::{Real, Scalar};
 
 /// Sine and cosine of `x` \[rad\], each to within 1.5 units in the last place for |x| <= 10000.
 ///
-/// Beyond, the error grows to about the distance between neighbouring arguments; NaN above 2^22 (`f32`) or 2^45 (`f64`),
-/// for infinities and for NaN. sin(-0.0) is 0.0.
+/// Beyond, the error grows to about the distance between neighboring arguments. The results are NaN above 2^22 (`f32`) or 2^45
+/// (`f64`), for infinities and for NaN. sin(-0.0) is 0.0.
 ///
 /// ```
 /// let (sine, cosine) = farsa_num::sin_cos(core::f64::consts::FRAC_PI_6);
@@ -17,14 +17,14 @@ use crate::scalar::{Real, Scalar};
 #[inline(always)]
 pub fn sin_cos<S: Scalar>(x: S) -> (S, S) {
     let double = S::Real::DIGITS > 24;
-    // Out there the quadrant is lost: NaN says so, where a wrong number would go on unseen.
+    // The quadrant is lost for such arguments. NaN reports it, a wrong number would not.
     let limit = x.constant(if double { 35_184_372_088_832.0 } else { 4_194_304.0 });
     let x = S::select(x.abs().le(limit), x, x.constant(f64::NAN));
 
     let k = (x * x.constant(core::f64::consts::FRAC_2_PI)).round_small();
-    // All but the last part are short enough for their products with k to be exact up to |x| = 10000, and more of pi/2
-    // follows than the closest that such an x comes to a multiple of it.
-    // The first differences are exact; `rest` is what rounding the last one to `high` loses, and the parts to come.
+    // The products of k with all parts except the last are exact up to |x| = 10000. The parts have more digits of pi/2 than the
+    // smallest distance of such an x from a multiple of it.
+    // The first differences are exact. `rest` is the rounding error of `high` plus the remaining parts.
     let (high, rest) = if double {
         let (h, t) = (x - k * x.constant(1.570_796_326_734_125_6), k * x.constant(6.077_100_506_303_966e-11));
         let high = h - t;
@@ -58,7 +58,7 @@ pub fn sin_cos<S: Scalar>(x: S) -> (S, S) {
     };
     let half = x.constant(0.5);
     let one = x.constant(1.0);
-    // `high` and `rest` once more, not `r`: its rounding then counts only in the second order.
+    // `high` and `rest` again, not `r`, so that the rounding of `r` counts only in the second order.
     let sine = high + (rest + r * (z * s));
     let cosine = one - (half * z - z * z * c);
 

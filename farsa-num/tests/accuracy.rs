@@ -1,8 +1,8 @@
 //! The accuracy table of the README, as code: every bound is checked on a dense scan, edges included.
 //!
-//! `f32` is measured against `libm` in `f64`, which is exact for the purpose. `f64` is measured against `libm` itself, which
-//! is within 1 unit of the truth, so the bounds there allow that much more than the documentation promises; the promises
-//! were measured against a multiple-precision library, of whose results 2600 are a fixture.
+//! The reference of `f32` is `libm` in `f64`, which is exact enough. The reference of `f64` is `libm` itself, which is within 1
+//! unit of the exact result. So the bounds are wider by this unit than the documented ones, which come from a
+//! multiple-precision library. 2600 of its results are a fixture.
 
 use farsa_num::{acos, asin, atan2, exp, ln, logistic, sin_cos, tanh};
 
@@ -168,8 +168,8 @@ fn double_precision() {
     });
 }
 
-/// Results of a multiple-precision library, to a ten-thousandth of the last place; the bounds are those that the
-/// documentation tells of a hundred times as many.
+/// Results of a multiple-precision library, to a ten-thousandth of the last place. The bounds are the documented ones, which
+/// hold for a hundred times as many results.
 #[test]
 fn double_precision_beyond_the_last_place() {
     let number = |bits: &str| u64::from_str_radix(bits, 16).map(f64::from_bits);
@@ -209,7 +209,7 @@ fn double_precision_beyond_the_last_place() {
         ("asin", 0.78),
         ("acos", 0.78),
         ("atan2", 1.37),
-        // Of these alone, as they are.
+        // The measured error of these results only.
         ("atan2 behind", 0.694),
     ];
     assert_eq!(largest.len(), bounds.len());

@@ -74,7 +74,7 @@ fn edges<R: Real + core::fmt::Debug>() {
 #[test]
 fn edges_of_single_precision() {
     edges::<f32>();
-    // The last finite and the first that is not; the last that is not zero.
+    // The last finite result, the first infinite one, and the last above zero.
     assert!(exp(88.722_83_f32).is_finite() && exp(88.722_84_f32).is_infinite());
     assert!(exp(-103.972_f32) > 0.0 && exp(-103.973_f32) == 0.0);
     assert_eq!(logistic(f32::MAX), 1.0);

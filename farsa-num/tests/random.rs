@@ -53,7 +53,7 @@ fn a_seed_alone_is_a_stream_of_its_own() {
     assert_eq!(stream, Stream::new(0x1111_2222_3333_4444, Domain::General, 0, 0, 0));
     let words = philox([0, 6 << 24, 0, 0], [0x3333_4444, 0x1111_2222]);
     assert_eq!([(); 4].map(|()| stream.next_u32()), words);
-    // Known answers: they never change.
+    // Fixed answers, which never change.
     let mut stream = Stream::from_seed(2007);
     assert_eq!([(); 4].map(|()| stream.next_u32()), [1458365785, 247510452, 2115945908, 3279009575]);
 }
@@ -73,7 +73,7 @@ fn below_by_division(stream: &mut Stream, n: u32) -> (u32, u32) {
 
 #[test]
 fn below_refuses_what_would_be_drawn_too_often() {
-    // Of 2^32 words a quarter is refused.
+    // A quarter of 2^32 words is rejected.
     let n = 3 << 30;
     let (mut stream, mut refused) = (stream(), 0);
     for _ in 0..1000 {
@@ -84,7 +84,7 @@ fn below_refuses_what_would_be_drawn_too_often() {
         refused += words - 1;
     }
     assert!((200..500).contains(&refused), "{refused} of a thousand");
-    // Known answers; a word is refused before the second number.
+    // Fixed answers. A word is rejected before the second number.
     let mut stream = Stream::from_seed(1);
     let drawn = [(); 4].map(|()| (stream.below(n), stream.position()));
     assert_eq!(drawn, [(1794326589, 1), (1116488581, 3), (2470284264, 4), (291767875, 5)]);
@@ -179,7 +179,7 @@ fn chi_square(cells: &[u32]) -> f64 {
     cells.iter().map(|&c| (f64::from(c) - expected) * (f64::from(c) - expected) / expected).sum()
 }
 
-/// The square of `cells - 1` normal numbers has this mean and spread; five spreads are never seen by chance.
+/// The square of `cells - 1` normal numbers has this mean and spread. Five spreads do not occur by chance.
 fn assert_even(cells: &[u32]) {
     let freedom = (cells.len() - 1) as f64;
     let chi = chi_square(cells);

@@ -4,7 +4,7 @@
 use farsa_num::{Domain, Stream};
 use rand_core::{Rng, SeedableRng};
 
-/// What other code draws.
+/// Draws as other code does.
 fn draw(rng: &mut impl Rng) -> (u32, u64) {
     (rng.next_u32(), rng.next_u64())
 }

@@ -1,4 +1,4 @@
-//! What the scalar trait promises of one lane: powers of two, rounding, and where a NaN goes.
+//! The promises of the scalar trait for one lane: powers of two, rounding and NaN.
 
 use farsa_num::{Mask, Real, Scalar};
 use proptest::prelude::*;

@@ -1,12 +1,12 @@
-//! The usual architectures as blocks.
+//! Common architectures as blocks.
 
 use crate::activation::Activation;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
-/// What connects inputs, hidden neurons and outputs: the named architectures, and each of their connections by itself.
+/// The connections of inputs, hidden neurons and outputs: a named architecture with optional changes.
 ///
-/// Neurons are logistic with slope 1 and biases, without gains and leaks, unless something else is asked for.
+/// By default neurons are logistic with slope 1 and biases, without gains and leaks.
 ///
 /// ```
 /// use farsa_nn::block::{Architecture, BlockPlan};
@@ -28,7 +28,7 @@ pub struct Architecture {
     outputs_to_hidden: bool,
     among_outputs: bool,
     inputs_to_outputs: bool,
-    /// Hidden neurons and outputs are one layer.
+    /// Joins hidden neurons and outputs in one layer.
     together: bool,
 }
 
@@ -43,7 +43,7 @@ pub struct BlockPlan {
 }
 
 impl Architecture {
-    /// Inputs to hidden neurons to outputs, without memory; inputs to outputs where there are no hidden neurons.
+    /// A network of inputs, hidden neurons and outputs without memory. Without hidden neurons, inputs connect to outputs.
     pub const fn feed_forward(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self {
             inputs,
@@ -58,34 +58,35 @@ impl Architecture {
         }
     }
 
-    /// The same, and hidden neurons hear each other's activations of the step before (`[Elman1990]`).
+    /// A feed-forward network with connections among hidden neurons from the previous step (`[Elman1990]`).
     pub const fn elman(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { among_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// The same as feed-forward, and hidden neurons hear the outputs of the step before (`[Jordan1986]`).
+    /// A feed-forward network with connections from the outputs of the previous step to hidden neurons (`[Jordan1986]`).
     ///
-    /// Deviation: the source's context also keeps a share of what it was; here it is the outputs alone.
+    /// Deviation: the context of the source also keeps a share of its old value. Here it is the outputs only.
     pub const fn jordan(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { outputs_to_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// Hidden neurons and outputs hear the inputs and all of them, themselves too, of the step before.
+    /// A single layer of hidden neurons and outputs, with connections from the inputs and, from the previous step, from the whole
+    /// layer.
     pub const fn fully_recurrent(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { together: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// The same, and outputs hear the inputs.
+    /// Adds connections from inputs to outputs.
     pub const fn with_inputs_to_outputs(self) -> Self {
         Self { inputs_to_outputs: true, ..self }
     }
 
-    /// The same, and outputs hear each other's activations of the step before.
+    /// Adds connections among outputs from the previous step.
     pub const fn with_recurrent_outputs(self) -> Self {
         Self { among_outputs: true, ..self }
     }
 
-    /// The same with another function of the hidden neurons and of the outputs.
+    /// Sets the functions of hidden neurons and outputs.
     pub const fn with_activations(self, hidden: Activation, outputs: Activation) -> Self {
         Self {
             hidden: Group { activation: hidden, ..self.hidden },
@@ -94,42 +95,42 @@ impl Architecture {
         }
     }
 
-    /// The same with another slope of hidden neurons and outputs.
+    /// Sets the slope of hidden neurons and outputs.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { hidden: self.hidden.with_slope(slope), outputs: self.outputs.with_slope(slope), ..self }
     }
 
-    /// The same with leaks of the hidden neurons.
+    /// Adds leaks to the hidden neurons.
     pub const fn with_leaks(self) -> Self {
         Self { hidden: self.hidden.with_leaks(), ..self }
     }
 
-    /// The same with leaks of the outputs.
+    /// Adds leaks to the outputs.
     pub const fn with_output_leaks(self) -> Self {
         Self { outputs: self.outputs.with_leaks(), ..self }
     }
 
-    /// The same with gains of the hidden neurons.
+    /// Adds gains to the hidden neurons.
     pub const fn with_gains(self) -> Self {
         Self { hidden: self.hidden.with_gains(), ..self }
     }
 
-    /// The same without biases of the outputs.
+    /// Removes the biases of the outputs.
     pub const fn without_output_biases(self) -> Self {
         Self { outputs: Group { bias: false, ..self.outputs }, ..self }
     }
 
-    /// The same without biases of the hidden neurons.
+    /// Removes the biases of the hidden neurons.
     pub const fn without_hidden_biases(self) -> Self {
         Self { hidden: Group { bias: false, ..self.hidden }, ..self }
     }
 
-    /// The same with inputs that arrive so many steps later.
+    /// Delays the inputs by a number of steps.
     pub const fn with_input_delay(self, steps: usize) -> Self {
         Self { delay: steps, ..self }
     }
 
-    /// Its groups and blocks, in the order in which the original lists them.
+    /// Builds groups and blocks, in the order of the original.
     pub const fn plan(&self) -> BlockPlan {
         let inputs = Span::new(0, self.inputs);
         let hidden = Span::new(inputs.end(), self.hidden.neurons);
@@ -164,7 +165,7 @@ impl Architecture {
 }
 
 impl BlockPlan {
-    /// The most blocks that an architecture has.
+    /// The largest number of blocks of an architecture.
     const MOST: usize = 9;
 
     /// The layout over these groups and blocks.

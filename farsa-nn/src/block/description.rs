@@ -1,4 +1,4 @@
-//! What a block-wise network is described by: groups of alike neurons, and blocks that are worked through in their order.
+//! The description of a network of blocks: groups of alike neurons, and blocks in the order of their evaluation.
 
 use crate::activation::Activation;
 
@@ -8,7 +8,7 @@ use crate::activation::Activation;
 pub struct Span {
     /// The first neuron.
     pub first: usize,
-    /// How many there are.
+    /// Number of neurons.
     pub count: usize,
 }
 
@@ -18,67 +18,66 @@ impl Span {
         Self { first, count }
     }
 
-    /// One more than the last neuron; saturates.
+    /// The end of the span, one after the last neuron. Saturates.
     pub const fn end(self) -> usize {
         self.first.saturating_add(self.count)
     }
 
-    /// Whether a neuron is one of them.
+    /// Returns true if the span contains a neuron.
     pub const fn contains(self, neuron: usize) -> bool {
         self.first <= neuron && neuron < self.end()
     }
 }
 
-/// Neurons that follow each other and are alike: one activation function, and each of bias, gain and leak as a parameter for
-/// all of them or for none.
+/// A range of alike neurons. They have one activation function, and all or none of them have a bias, a gain and a leak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Group {
-    /// How many neurons there are.
+    /// Number of neurons.
     pub neurons: usize,
-    /// Their function; inputs have none, their response is the input.
+    /// Their function. The response of an input is the input itself.
     pub activation: Activation,
-    /// What multiplies the net input before.
+    /// The factor of the net input.
     pub slope: f32,
-    /// Whether each has a bias, where its net input starts; else at 0.
+    /// Gives each a bias as the start of its net input, else 0.
     pub bias: bool,
-    /// Whether each has a gain, which multiplies its activation wherever that goes; else 1.
+    /// Gives each a gain as the factor of its activation at all targets, else 1.
     pub gain: bool,
-    /// Whether each has a leak, read as [`Leak`](crate::Leak) says; else its activation is its response.
+    /// Gives each a leak in the reading of a [`Leak`](crate::Leak). Without it the activation is the response.
     pub leak: bool,
 }
 
 impl Group {
-    /// Neurons of this function with slope 1, without bias, gain and leak.
+    /// Builds a group of this function with slope 1, without biases, gains and leaks.
     pub const fn new(neurons: usize, activation: Activation) -> Self {
         Self { neurons, activation, slope: 1.0, bias: false, gain: false, leak: false }
     }
 
-    /// The same with another slope.
+    /// Sets the slope.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { slope, ..self }
     }
 
-    /// The same with biases.
+    /// Adds biases.
     pub const fn with_biases(self) -> Self {
         Self { bias: true, ..self }
     }
 
-    /// The same with gains.
+    /// Adds gains.
     pub const fn with_gains(self) -> Self {
         Self { gain: true, ..self }
     }
 
-    /// The same with leaks.
+    /// Adds leaks.
     pub const fn with_leaks(self) -> Self {
         Self { leak: true, ..self }
     }
 }
 
-/// One piece of a step. A step works through the blocks in their order.
+/// One part of a step. A step evaluates the blocks in their order.
 ///
-/// A connection from neurons that are updated further on reads their activation of the step before: so the order of the
-/// blocks says which connections are recurrent.
+/// A connection from neurons with a later update reads their activation of the previous step. So the order of the blocks
+/// determines the recurrent connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -90,29 +89,29 @@ pub enum Block {
         from: Span,
         /// The targets.
         to: Span,
-        /// How many steps earlier the sources are read; 0 before there were any.
+        /// Delay of the sources [steps]. They are 0 before the first step.
         delay: usize,
     },
-    /// Makes new activations of the net inputs.
+    /// Computes new activations from the net inputs.
     Update(Span),
-    /// Gives all of a span the gain of its first neuron.
+    /// Copies the gain of the first neuron to the whole span.
     Gain(Span),
-    /// Gives all of a span the activation of a neuron as their gain.
+    /// Copies the activation of a neuron to the gains of a span.
     ModulatedGain {
-        /// Whose gain it becomes.
+        /// The neurons with this gain.
         neurons: Span,
-        /// Whose activation it is.
+        /// The neuron of the activation.
         by: usize,
     },
 }
 
 impl Block {
-    /// Connections without a delay.
+    /// Builds connections without a delay.
     pub const fn connect(from: Span, to: Span) -> Self {
         Self::Connect { from, to, delay: 0 }
     }
 
-    /// The same block, with connections that read their sources so many steps earlier.
+    /// Increases the delay of connections by a number of steps.
     pub const fn delayed(self, steps: usize) -> Self {
         match self {
             Self::Connect { from, to, delay } => Self::Connect { from, to, delay: delay.saturating_add(steps) },
@@ -128,7 +127,7 @@ impl Block {
         }
     }
 
-    /// What a delay needs of the state: the values on their way, and which of them is the oldest.
+    /// Length of the state for a delay: the delayed values and the index of the oldest one.
     pub(crate) const fn memory(&self) -> usize {
         match self {
             Self::Connect { from, delay, .. } if *delay > 0 => from.count.saturating_mul(*delay).saturating_add(1),
@@ -136,7 +135,7 @@ impl Block {
         }
     }
 
-    /// The spans that must be neurons of the network.
+    /// The spans of neurons that must exist.
     pub(crate) fn spans(&self) -> [Span; 2] {
         match *self {
             Self::Connect { from, to, .. } => [from, to],

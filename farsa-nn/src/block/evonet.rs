@@ -1,12 +1,13 @@
-//! The order in which the original's Evonet keeps its parameters, and what it reads in them.
+//! The parameter order of the original's Evonet, and its decoding of parameters.
 
 use crate::block::description::Block;
 use crate::block::layout::{BlockLayout, BlockParameter};
 use crate::error::Error;
+use crate::fault::Slice;
 
-/// The ranges of Evonet's parameters: each is kept as a number `p` in [-weight, weight].
+/// The ranges of Evonet's parameters. Each parameter is stored as a number `p` in [-weight, weight].
 ///
-/// Source: `[FARSA2]`, where they are `weightRange`, `biasRange` and `gainRange`.
+/// Source: `[FARSA2]`, with the names `weightRange`, `biasRange` and `gainRange`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvonetRanges {
@@ -26,7 +27,7 @@ impl Default for EvonetRanges {
 }
 
 impl EvonetRanges {
-    /// The number `p` of a gene [0..255]: `weight - 2*weight*gene/255`, so that 0 is the largest.
+    /// Decodes a gene [0..255] to the number `p`: `weight - 2*weight*gene/255`. Gene 0 is the largest.
     ///
     /// ```
     /// use farsa_nn::block::EvonetRanges;
@@ -37,10 +38,10 @@ impl EvonetRanges {
         self.weight - f32::from(gene) / 255.0 * self.weight * 2.0
     }
 
-    /// The parameter of a number `p`: a weight is `p`, a bias `p/weight*bias`, a gain `|p|/weight*gain`, a leak `|p|/weight`
+    /// Decodes a number `p` to a parameter: a weight is `p`, a bias `p/weight*bias`, a gain `|p|/weight*gain`, a leak `|p|/weight`
     /// clamped to [0, 1].
     ///
-    /// Deviation: the source clamps the activations that a leak beyond 1 leads to, and not the leak.
+    /// Deviation: the source clamps the activations that result from a leak beyond 1, instead of the leak.
     pub fn decode(self, kind: BlockParameter, p: f32) -> f32 {
         match kind {
             BlockParameter::Weight => p,
@@ -52,17 +53,18 @@ impl EvonetRanges {
 }
 
 impl<'a> BlockLayout<'a> {
-    /// The indices of the parameters in the original's order: gains, biases; then in the order of the blocks the weights of a
-    /// connection target by target, and the leaks of an update.
+    /// The indices of the parameters in the original's order.
     ///
-    /// Each parameter comes once if each leaky neuron is updated once a step.
+    /// Gains are first, then biases. Then each block has the weights of a connection target by target, or the leaks of an update.
+    ///
+    /// Each parameter occurs once if each leaky neuron is updated once a step.
     ///
     /// Source: Evonet of `[FARSA2]`.
     ///
     /// ```
     /// use farsa_nn::block::{Architecture, BlockPlan};
     ///
-    /// // Discrimination: six sensors, two outputs. The biases first, then the weights of each output.
+    /// // Discrimination: six sensors, two outputs. The biases are first, then the weights of each output.
     /// const PLAN: BlockPlan = Architecture::feed_forward(6, 0, 2).plan();
     /// assert!(PLAN.layout().evonet_order().eq([12, 13, 0, 2, 4, 6, 8, 10, 1, 3, 5, 7, 9, 11]));
     /// ```
@@ -91,8 +93,7 @@ impl<'a> BlockLayout<'a> {
     /// Writes parameters [[`parameter_count`](Self::parameter_count)] from numbers in the original's order.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`] when there are more or fewer numbers than parameters, or another number of parameters than the
-    /// layout has; the parameters are then partly written.
+    /// [`Error::Length`] of the parameters or of the numbers. Then the parameters may be partly written.
     pub fn read_evonet(
         &self,
         ranges: EvonetRanges,
@@ -100,9 +101,7 @@ impl<'a> BlockLayout<'a> {
         parameters: &mut [f32],
     ) -> Result<(), Error> {
         let expected = self.parameter_count();
-        if parameters.len() != expected {
-            return Err(Error::ParameterCount { expected, found: parameters.len() });
-        }
+        Slice::Parameters.check(expected, parameters.len())?;
         let (mut numbers, mut found) = (numbers.into_iter(), 0);
         for (index, p) in self.evonet_order().zip(&mut numbers) {
             if let (Some(to), Some(kind)) = (parameters.get_mut(index), self.kind(index)) {
@@ -111,6 +110,6 @@ impl<'a> BlockLayout<'a> {
             found += 1;
         }
         found += numbers.count();
-        if found == expected { Ok(()) } else { Err(Error::ParameterCount { expected, found }) }
+        Slice::Parameters.check(expected, found)
     }
 }

@@ -1,4 +1,4 @@
-//! The text in which the original keeps its networks: `.net` and `.phe`.
+//! The text formats of the original for networks: `.net` and `.phe`.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,12 +9,13 @@ use crate::block::description::{Block, Group, Span};
 use crate::block::evonet::EvonetRanges;
 use crate::block::layout_buf::BlockLayoutBuf;
 use crate::error::Error;
+use crate::fault::{ParameterFault, Slice};
 
-/// A network of the original FARSA, read from its text; with feature `alloc`.
+/// A network of the original FARSA, read from its text. Requires the feature `alloc`.
 ///
-/// A `.net` file is these lines:
+/// A `.net` file has these lines:
 ///
-/// | lines | what is in them |
+/// | lines | content |
 /// |---|---|
 /// | `ARCHITECTURE` | |
 /// | `nneurons N`, `nsensors n`, `nmotors m`, `nblocks B` | the sensors are the first neurons, the motors the last |
@@ -23,36 +24,33 @@ use crate::error::Error;
 /// | `N` lines of six whole numbers | bias (0, 1), type, gain (0, 1), and three for its display; types are 0 logistic or an input as it is, 1 the same with a leak, 2 step, 3 logistic with slope 0.2 |
 /// | `END` | |
 ///
-/// A `.phe` file has before its `END` a line `FREE PARAMETERS P` and `P` lines, each of a parameter, of its mutation rate, and
-/// of words that name it; `*` is a parameter that evolution draws, or a rate that it sets. In older files there is no rate, and
-/// such parameters are -99. What stands in a line after its numbers is not read, lines without anything are passed over.
+/// A `.phe` file has a line `FREE PARAMETERS P` and `P` more lines before its `END`. Each has a parameter, its mutation rate and
+/// its name. `*` is a parameter that evolution draws, or a rate that it sets. Older files have no rate, and -99 instead of `*`.
+/// Text after the numbers of a line and empty lines are ignored.
 ///
-/// Source: `[FARSA2]`. Deviations: a line that is not as described is an error, where the source reads on.
+/// Source: `[FARSA2]`. Deviation: an unexpected line is an error, where the source continues.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evonet {
     /// The layout.
     pub layout: BlockLayoutBuf,
-    /// The parameters in the original's order; `None` for one that evolution draws. Empty in a `.net` file.
+    /// The parameters in the original's order, `None` if evolution draws them. Empty for a `.net` file.
     pub numbers: Vec<Option<f32>>,
-    /// Their mutation rates, as they stand there; `None` for one that evolution sets.
+    /// Their mutation rates, `None` if evolution sets them.
     pub mutations: Vec<Option<f32>>,
 }
 
 impl Evonet {
-    /// The parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::block::BlockLayout).
+    /// Decodes the parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::block::BlockLayout).
     ///
     /// # Errors
-    /// [`Error::NoValue`] for a parameter that evolution draws, [`Error::ParameterCount`] for a `.net` file.
+    /// [`Error::Parameter`] for a parameter that evolution draws, [`Error::Length`] for a `.net` file.
     pub fn parameters(&self, ranges: EvonetRanges) -> Result<Vec<f32>, Error> {
         if let Some(index) = self.numbers.iter().position(Option::is_none) {
-            return Err(Error::NoValue { index });
+            return Err(ParameterFault::NoValue.at(index));
         }
         let layout = self.layout.layout();
-        let (expected, found) = (layout.parameter_count(), self.numbers.len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
-        let mut parameters = vec![0.0; expected];
+        Slice::Parameters.check(layout.parameter_count(), self.numbers.len())?;
+        let mut parameters = vec![0.0; self.numbers.len()];
         layout.read_evonet(ranges, self.numbers.iter().flatten().copied(), &mut parameters)?;
         Ok(parameters)
     }
@@ -64,8 +62,8 @@ impl FromStr for Evonet {
     /// Reads a `.net` or a `.phe` file.
     ///
     /// # Errors
-    /// [`Error::Text`] with the line; [`Error::Neurons`] or [`Error::Block`] for neurons that are not there;
-    /// [`Error::ParameterCount`] when there are other parameters than the network has.
+    /// [`Error::Text`] with the line, [`Error::Layout`] for missing neurons, [`Error::Length`] for another number of parameters
+    /// than the network has.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut lines = Lines { rest: text, line: 0 };
         lines.begins("ARCHITECTURE")?;
@@ -111,10 +109,7 @@ impl FromStr for Evonet {
         if let Some(found) = last.strip_prefix("FREE PARAMETERS") {
             let found = found.trim().parse().map_err(|_| lines.wrong("`FREE PARAMETERS` and their number"))?;
             network.layout.layout().check()?;
-            let expected = network.layout.layout().parameter_count();
-            if expected != found {
-                return Err(Error::ParameterCount { expected, found });
-            }
+            Slice::Parameters.check(network.layout.layout().parameter_count(), found)?;
             for _ in 0..found {
                 let (number, mutation) = lines.parameter()?;
                 network.numbers.push(number);
@@ -129,10 +124,10 @@ impl FromStr for Evonet {
     }
 }
 
-/// The lines that have something in them.
+/// The lines that are not empty.
 struct Lines<'a> {
     rest: &'a str,
-    /// The number of the line read last; the first is 1.
+    /// The number of the last line read, from 1.
     line: usize,
 }
 
@@ -184,7 +179,7 @@ impl<'a> Lines<'a> {
         let number = word().ok_or_else(|| self.wrong(EXPECTED))?;
         Ok(match word() {
             Some(mutation) => (number, mutation),
-            // An older file: what is given does not mutate.
+            // An older file: given parameters do not mutate.
             None if number == Some(-99.0) => (None, None),
             None => (number, Some(0.0)),
         })

@@ -9,7 +9,7 @@ use crate::kernel::{Lanes, Layer, prefix};
 use crate::leak::Leak;
 use crate::lesion::{Lesion, hold};
 
-/// What a step reads and writes; all but parameters, inputs and delays are `[neurons]`.
+/// The data of a step. All slices except parameters, inputs and delays are `[neurons]`.
 pub(crate) struct Blocks<'a> {
     pub(crate) layout: BlockLayout<'a>,
     pub(crate) leak: Leak,
@@ -17,15 +17,15 @@ pub(crate) struct Blocks<'a> {
     pub(crate) lesions: &'a [Lesion],
     pub(crate) x: &'a [f32],
     pub(crate) activations: &'a mut [f32],
-    /// The responses of the step before.
+    /// The responses of the previous step.
     pub(crate) previous: &'a mut [f32],
     pub(crate) net: &'a mut [f32],
     pub(crate) gains: &'a mut [f32],
-    /// What the sources of a connection send.
+    /// The values of the sources of a connection.
     pub(crate) sent: &'a mut [f32],
-    /// Where sums start, and the responses.
+    /// The initial sums, then the responses.
     pub(crate) work: &'a mut [f32],
-    /// Of each delayed connection which of its values is the oldest, and the values on their way.
+    /// The index of the oldest value and the delayed values of each delayed connection.
     pub(crate) delays: &'a mut [f32],
 }
 
@@ -55,7 +55,7 @@ impl Lanes for Blocks<'_> {
 }
 
 impl Blocks<'_> {
-    /// Net inputs begin at the biases, gains at the parameters.
+    /// Initializes net inputs by the biases, and gains by the parameters.
     fn begin(&mut self) {
         hold(self.lesions, 0, self.activations);
         self.net.fill(0.0);
@@ -72,7 +72,7 @@ impl Blocks<'_> {
         }
     }
 
-    /// What the sources send: their activations times their gains, of now or of so many steps ago.
+    /// Stores the values of the sources: activations times gains, current or delayed.
     fn send(&mut self, from: Span, delay: usize, delays: usize) {
         let sources = self.activations.iter().zip(&*self.gains).skip(from.first).take(from.count);
         let sent = self.sent.iter_mut();
@@ -81,7 +81,7 @@ impl Blocks<'_> {
             return;
         }
         let Some((oldest, ring)) = self.delays.get_mut(delays..).and_then(<[f32]>::split_first_mut) else { return };
-        // A ring of `delay` rows: the oldest is sent and makes room for the newest.
+        // A ring of `delay` rows: the newest row replaces the oldest one.
         let place = (*oldest as usize).min(delay - 1);
         let values = ring.iter_mut().skip(place * from.count);
         for ((sent, (activation, gain)), value) in sent.zip(sources).zip(values) {
@@ -96,11 +96,11 @@ impl Blocks<'_> {
         let (Some(weights), Some(net)) = (self.parameters.get(weights..), self.net.get_mut(to.first..to.end())) else {
             return;
         };
-        // Several connections may reach one target: each goes on from the sum of those before it.
+        // Several connections may reach one target. Each starts from the sum of the previous ones.
         let start = prefix(self.work, to.count);
         start.copy_from_slice(net);
         let layer = Layer { targets: to.count, slope: 1.0, biases: start, sources: [(sent, weights), (&[], &[])] };
-        // Fewer targets than lanes are summed one by one; the bits are the same.
+        // Fewer targets than lanes are summed one by one, with the same bits.
         if to.count < S::LANES {
             layer.all_sums::<f32>((), net);
         } else {
@@ -111,14 +111,14 @@ impl Blocks<'_> {
     #[inline(always)]
     fn update<S: Scalar<Real = f32>>(&mut self, simd: S::Simd, span: Span) {
         let leaks = part(self.parameters, &self.layout, BlockParameter::Leak);
-        // A span may cover parts of several groups, which differ in activation and leak.
+        // A span may cover parts of several groups with different activations and leaks.
         for (group, all, [_, _, leak]) in self.layout.places() {
             let first = span.first.max(all.first);
             let own = first..span.end().min(all.end());
             let (Some(net), Some(work)) = (self.net.get(own.clone()), self.work.get_mut(own.clone())) else { continue };
             let inputs = self.x.get(first..).unwrap_or(&[]);
             activate::<S>(simd, group.activation, group.slope, net, work);
-            // An input neuron responds with its input; a missing one is zero.
+            // The response of an input neuron is its input, or zero if the input is missing.
             let neurons = first..self.layout.inputs();
             for ((response, _), x) in work.iter_mut().zip(neurons).zip(inputs.iter().chain(core::iter::repeat(&0.0))) {
                 *response = *x;
@@ -145,19 +145,19 @@ impl Blocks<'_> {
     }
 }
 
-/// The responses of as many neurons as there are net inputs.
+/// Computes the responses to the net inputs.
 #[inline(always)]
 fn activate<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: f32, net: &[f32], y: &mut [f32]) {
     let last = net.len().min(y.len()).checked_sub(S::LANES);
     match (activation, last) {
-        // Apart, because the others need no vectors to be fast.
+        // The other functions are fast without vectors.
         (Activation::Logistic, Some(last)) => {
             let mut i = 0;
             while i < last {
                 logistic(S::splat(simd, slope) * S::load(simd, &net[i..])).store(&mut y[i..]);
                 i += S::LANES;
             }
-            // May overlap the one before it, with the same responses.
+            // May overlap the previous vector, with the same responses.
             logistic(S::splat(simd, slope) * S::load(simd, &net[last..])).store(&mut y[last..]);
         }
         _ => net.iter().zip(y).for_each(|(net, y)| *y = activation.apply(slope * net)),
@@ -169,7 +169,7 @@ fn part<'a>(parameters: &'a [f32], layout: &BlockLayout<'_>, kind: BlockParamete
     parameters.get(layout.range(kind)).unwrap_or(&[])
 }
 
-/// Copies the values from a place on over a span.
+/// Copies values from an index on to a span.
 fn copy(values: &[f32], place: usize, to: &mut [f32], span: Span) {
     let to = to.iter_mut().skip(span.first).take(span.count);
     to.zip(values.iter().skip(place)).for_each(|(to, value)| *to = *value);

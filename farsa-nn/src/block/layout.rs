@@ -4,8 +4,9 @@ use core::ops::Range;
 
 use crate::block::description::{Block, Group, Span};
 use crate::error::Error;
+use crate::fault::LayoutFault;
 
-/// What one parameter of a [`BlockLayout`] is.
+/// The kind of a parameter of a [`BlockLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -22,32 +23,32 @@ pub enum BlockParameter {
 }
 
 impl BlockParameter {
-    /// Every kind, in the order in which they lie in the parameters.
+    /// Every kind, in the order of the parameters.
     pub const ALL: [Self; 4] = [Self::Weight, Self::Bias, Self::Gain, Self::Leak];
 }
 
-/// Groups of neurons, and the blocks that a step of a [`BlockNetwork`](crate::block::BlockNetwork) works through.
+/// The groups of neurons and the blocks of a [`BlockNetwork`](crate::block::BlockNetwork).
 ///
-/// The first neurons are the inputs, the last ones the outputs. The description is borrowed: from constants in flash, or
-/// from what a program put together at run time.
+/// The first neurons are the inputs, the last ones the outputs. The description is borrowed from constants in flash, or from a
+/// layout built at run time.
 ///
-/// The parameters are one slice; what a group does not have takes no place.
+/// The parameters are one slice. Absent biases, gains and leaks take no space.
 ///
 /// | kind | order |
 /// |---|---|
-/// | [`Weight`](BlockParameter::Weight) | connections in the order of the blocks; of one, `j*targets + i`, source `j` to target `i` |
+/// | [`Weight`](BlockParameter::Weight) | connections in the order of the blocks, in each `j*targets + i`, source `j` to target `i` |
 /// | [`Bias`](BlockParameter::Bias) | neurons in their order |
 /// | [`Gain`](BlockParameter::Gain) | neurons in their order |
 /// | [`Leak`](BlockParameter::Leak) | neurons in their order |
 ///
-/// For a [`LeakyLayout`](crate::LeakyLayout) written as blocks that is the order of its own parameters. The original's
-/// order is another, [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
+/// A [`LeakyLayout`](crate::LeakyLayout) written as blocks has the same order. The order of the original is
+/// [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
 ///
 /// ```
 /// use farsa_nn::block::{Block, BlockLayout, Group, Span};
 /// use farsa_nn::Activation;
 ///
-/// // Three inputs; two neurons that hear them, each other two steps later, and themselves; all heard by one output.
+/// // Three inputs, two recurrent neurons with a delay, one output with connections from all of them.
 /// const X: Span = Span::new(0, 3);
 /// const H: Span = Span::new(3, 2);
 /// const O: Span = Span::new(5, 1);
@@ -76,9 +77,9 @@ pub struct BlockLayout<'a> {
 }
 
 impl<'a> BlockLayout<'a> {
-    /// A layout whose first neurons are the inputs and whose last ones are the outputs.
+    /// Builds a layout.
     ///
-    /// [`BlockNetwork::new`](crate::BlockNetwork::new) checks that all are there.
+    /// [`BlockNetwork::new`](crate::block::BlockNetwork::new) checks that all neurons exist.
     pub const fn new(inputs: usize, outputs: usize, groups: &'a [Group], blocks: &'a [Block]) -> Self {
         Self { inputs, outputs, groups, blocks }
     }
@@ -103,7 +104,7 @@ impl<'a> BlockLayout<'a> {
         self.blocks
     }
 
-    /// Number of neurons, inputs and outputs among them.
+    /// Number of neurons, including inputs and outputs.
     pub const fn neurons(&self) -> usize {
         self.count(None)
     }
@@ -113,11 +114,11 @@ impl<'a> BlockLayout<'a> {
         self.range(BlockParameter::Leak).end
     }
 
-    /// Length of the state: six values per neuron, and for each delayed connection its sources times its delay and one.
+    /// Length of the state: six values per neuron, and for each delayed connection its sources times its delay plus one.
     ///
-    /// In this order: the activations `[neurons]`, the responses that [`Leak::TwoTap`](crate::Leak::TwoTap) remembers
-    /// `[neurons]`, four workspaces `[neurons]`, and of each delayed block which of its values is the oldest and the values
-    /// on their way `[delay x sources]`.
+    /// The order is: activations `[neurons]`, stored responses of [`Leak::TwoTap`](crate::Leak::TwoTap) `[neurons]`, four
+    /// workspaces `[neurons]`. Each delayed block adds the index of its oldest value and its delayed values
+    /// `[delay x sources]`.
     pub const fn state_len(&self) -> usize {
         let (mut len, mut b) = (self.neurons().saturating_mul(6), 0);
         while b < self.blocks.len() {
@@ -127,7 +128,7 @@ impl<'a> BlockLayout<'a> {
         len
     }
 
-    /// Where the parameters of one kind lie.
+    /// The indices of the parameters of one kind.
     pub const fn range(&self, kind: BlockParameter) -> Range<usize> {
         let (mut weights, mut b) = (0_usize, 0);
         while b < self.blocks.len() {
@@ -145,20 +146,20 @@ impl<'a> BlockLayout<'a> {
         }
     }
 
-    /// What the parameter at this index is; `None` beyond the last.
+    /// The kind of the parameter at this index, `None` beyond the last.
     pub fn kind(&self, index: usize) -> Option<BlockParameter> {
         BlockParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// What each parameter is, in their order, for decoding a genome.
+    /// The kind of each parameter, in their order, for decoding a genome.
     pub fn kinds(&self) -> impl Iterator<Item = BlockParameter> + use<'a> {
         let layout = *self;
         BlockParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// The indices of the weights from one neuron to another: one for each connection that has both.
+    /// The indices of the weights from one neuron to another, one for each connection with both.
     ///
-    /// To cut a link is to set its weights to zero.
+    /// To cut a link, set its weights to zero.
     pub fn weights(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<'a> {
         self.connections().filter_map(move |(at, sources, targets)| {
             let both = sources.contains(from) && targets.contains(to);
@@ -187,7 +188,7 @@ impl<'a> BlockLayout<'a> {
         groups.zip(self.range(kind))
     }
 
-    /// The groups, each with its neurons and the place of its first bias, gain and leak among those.
+    /// The groups with their neurons, and the index of the first bias, gain and leak among those of their kind.
     pub(crate) fn places(&self) -> impl Iterator<Item = (&'a Group, Span, [usize; 3])> + use<'a> {
         let (mut first, mut places) = (0_usize, [0_usize; 3]);
         self.groups.iter().map(move |group| {
@@ -200,7 +201,7 @@ impl<'a> BlockLayout<'a> {
         })
     }
 
-    /// Number of neurons, of all or of those that have a parameter of this kind.
+    /// Number of all neurons, or of neurons with a parameter of this kind.
     const fn count(&self, kind: Option<BlockParameter>) -> usize {
         let (mut count, mut g) = (0_usize, 0);
         while g < self.groups.len() {
@@ -216,13 +217,13 @@ impl<'a> BlockLayout<'a> {
         count
     }
 
-    /// Whether everything that it names is there.
+    /// Checks that all neurons of the description exist.
     pub(crate) fn check(&self) -> Result<(), Error> {
         check_description(self.inputs, self.outputs, self.groups.iter().copied(), self.blocks.iter().copied())
     }
 }
 
-/// Whether everything that a description names is there, wherever it lies.
+/// Checks that all neurons of a description exist.
 pub(crate) fn check_description(
     inputs: usize,
     outputs: usize,
@@ -231,21 +232,21 @@ pub(crate) fn check_description(
 ) -> Result<(), Error> {
     let neurons = groups.clone().fold(0_usize, |sum, group| sum.saturating_add(group.neurons));
     if let Some(group) = groups.find(|group| !group.slope.is_finite()) {
-        return Err(Error::Slope { value: group.slope });
+        return Err(LayoutFault::Slope(group.slope).into());
     }
     let ends = inputs.saturating_add(outputs);
     if ends > neurons {
-        return Err(Error::Neurons { first: 0, count: ends, neurons });
+        return Err(LayoutFault::Neurons { first: 0, count: ends, neurons }.into());
     }
     for (index, block) in blocks.enumerate() {
         if let Some(span) = block.spans().into_iter().find(|span| span.end() > neurons) {
-            return Err(Error::Block { index, first: span.first, count: span.count, neurons });
+            return Err(LayoutFault::Block { index, first: span.first, count: span.count, neurons }.into());
         }
     }
     Ok(())
 }
 
-/// Whether the neurons of a group have a parameter of this kind.
+/// Returns true if the neurons of a group have a parameter of this kind.
 const fn has(group: &Group, kind: BlockParameter) -> bool {
     match kind {
         BlockParameter::Weight => false,

@@ -1,4 +1,4 @@
-//! Layouts of blocks that are put together at run time.
+//! Layouts of blocks built at run time.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::block::architecture::BlockPlan;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
-/// Groups and blocks that a [`BlockLayout`] borrows, on the heap; with feature `alloc`.
+/// The groups and blocks of a [`BlockLayout`] on the heap. Requires the feature `alloc`.
 ///
 /// ```
 /// use farsa_nn::block::{BlockLayoutBuf, BlockNetwork};
@@ -36,8 +36,8 @@ pub struct BlockLayoutBuf {
 }
 
 impl BlockLayoutBuf {
-    /// Layers of so many neurons each, the inputs first and the outputs last; all but the inputs are logistic with slope 1 and
-    /// biases.
+    /// Builds layers with these numbers of neurons, inputs first and outputs last. All layers except the inputs are logistic with
+    /// slope 1 and biases.
     pub fn feed_forward(layers: &[usize]) -> Self {
         let mut layout = Self {
             inputs: layers.first().copied().unwrap_or(0),

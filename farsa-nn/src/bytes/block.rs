@@ -1,34 +1,34 @@
-//! A trained network of blocks as bytes.
+//! The bytes of a network of blocks.
 
 use farsa_num::Digest;
 
 use crate::activation::Activation;
 use crate::block::description::{Block, Group, Span};
-use crate::block::layout::{BlockLayout, BlockParameter, check_description};
+use crate::block::layout::{BlockLayout, check_description};
 #[cfg(feature = "alloc")]
 use crate::block::layout_buf::BlockLayoutBuf;
-use crate::block::network::check_values;
-use crate::bytes::error::BytesError;
-use crate::bytes::frame::{
-    Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
-};
+use crate::block::network::BlockModel;
+use crate::bytes::error::{BytesError, Field, Table};
+use crate::bytes::frame::{Frame, Kind, SHAPE, check_unused, frame_len, layout_hash, variant, word};
+use crate::bytes::network::{NetworkBytes, Shape};
+use crate::error::Error;
 use crate::leak::Leak;
+use crate::network::{Model as _, check_parameters};
 
-/// Numbers of a group: neurons, slope, and in one word the activation, 256 with biases, 512 with gains, 1024 with leaks.
+/// Words of a group: neurons, slope, and the activation plus 256 with biases, 512 with gains, 1024 with leaks.
 const GROUP: usize = 3;
-/// Numbers of a block: its kind and up to five more.
+/// Words of a block: its kind and up to five more.
 const BLOCK: usize = 6;
 const BIAS: u32 = 1 << 8;
 const GAIN: u32 = 1 << 9;
 const LEAK: u32 = 1 << 10;
 
-/// A [`BlockNetwork`](crate::block::BlockNetwork) of given bytes, as [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a
-/// `LeakyNetwork`: checked, with the description of its groups and blocks, and parameters that are used where they lie.
+/// The checked bytes of a [`BlockNetwork`](crate::block::BlockNetwork), with the description of its groups and blocks.
 ///
-/// A board whose layout is a constant compares it by [`expect`](Self::expect). A program that takes any network copies the
-/// layout into memory of its own ([`copy_layout`](Self::copy_layout)), or onto the heap with feature `alloc` (`layout`). A short
-/// description may ask for a large state, by delays or by neurons without parameters: look at
-/// [`state_len`](BlockLayout::state_len) before so much is allocated for bytes of strangers.
+/// A board with a constant layout compares it by [`expect`](Self::expect). A program for any network copies the layout into
+/// its own memory ([`copy_layout`](Self::copy_layout)), or onto the heap with feature `alloc` (`layout`). A short description
+/// can require a large state, by delays or by neurons without parameters. Check [`state_len`](BlockLayout::state_len) before
+/// you allocate for untrusted bytes.
 ///
 /// ```
 /// use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
@@ -38,11 +38,11 @@ const LEAK: u32 = 1 << 10;
 /// const PLAN: BlockPlan = Architecture::elman(2, 3, 1).plan();
 /// const LAYOUT: BlockLayout = PLAN.layout();
 /// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
-/// // A computer writes,
+/// // A computer writes.
 /// let parameters = [0.5; LAYOUT.parameter_count()];
 /// let mut flash = Aligned([0; BlockNetworkBytes::byte_count(&LAYOUT)]);
 /// BlockNetworkBytes::write(LAYOUT, Leak::Filter, 0, &parameters, &mut flash.0)?;
-/// // a board reads: nothing is copied.
+/// // A board reads and copies nothing.
 /// let bytes = BlockNetworkBytes::read(&flash.0)?;
 /// bytes.expect(LAYOUT, Leak::Filter)?;
 /// let mut network = BlockNetwork::new(LAYOUT, bytes.leak(), bytes.parameters()?, [0.0; LAYOUT.state_len()])?;
@@ -51,30 +51,31 @@ const LEAK: u32 = 1 << 10;
 /// # Ok(())
 /// # }
 /// ```
+pub type BlockNetworkBytes<'a> = NetworkBytes<'a, BlockShape<'a>>;
+
+/// The shape of the bytes of a [`BlockNetwork`](crate::block::BlockNetwork), with its encoded groups and blocks.
 #[derive(Clone, Copy, Debug)]
-pub struct BlockNetworkBytes<'a> {
-    shape: [u32; SHAPE],
+pub struct BlockShape<'a> {
+    words: [u32; SHAPE],
     leak: Leak,
-    channels: u64,
     groups: &'a [[u8; 4 * GROUP]],
     blocks: &'a [[u8; 4 * BLOCK]],
-    parameters: &'a [u8],
 }
 
-impl BlockNetworkBytes<'_> {
-    /// Number of bytes of a network of this layout; saturates.
+impl<'a> NetworkBytes<'a, BlockShape<'a>> {
+    /// Number of bytes of a network of this layout. Saturates.
     pub const fn byte_count(layout: &BlockLayout<'_>) -> usize {
         let description = description_len(layout.groups().len(), layout.blocks().len());
         frame_len(layout.parameter_count().saturating_add(description).saturating_mul(4))
     }
 
-    /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
+    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
+    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as [`BlockNetwork::new`](crate::BlockNetwork::new), [`BytesError::Description`] for a count
-    /// beyond 32 bits, [`BytesError::Buffer`]; then nothing is written.
+    /// [`BytesError::Parameters`] as for [`BlockNetwork::new`](crate::block::BlockNetwork::new), [`BytesError::Word`] for a
+    /// count beyond 32 bits, [`BytesError::Buffer`]. Then nothing is written.
     pub fn write(
         layout: BlockLayout<'_>,
         leak: Leak,
@@ -82,9 +83,8 @@ impl BlockNetworkBytes<'_> {
         parameters: &[f32],
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        layout.check()?;
-        check_values(layout.range(BlockParameter::Leak), parameters.iter().copied())?;
-        // What would not be read is not written.
+        BlockModel { layout, leak }.check_model(parameters, |p| p)?;
+        // A description that cannot be read is not written.
         for (at, group) in layout.groups().iter().enumerate() {
             group_of(words_of_group(group)).map_err(|wrong| wrong.in_description(at * GROUP))?;
         }
@@ -94,137 +94,58 @@ impl BlockNetworkBytes<'_> {
         }
         let count = description_len(layout.groups().len(), layout.blocks().len()).saturating_add(parameters.len());
         let numbers = description(&layout).map(u32::to_le_bytes).chain(parameters.iter().map(|p| p.to_le_bytes()));
-        Frame::write_counted(Kind::BlockNetwork, &shape_of(&layout, leak), channels, count, numbers, out)
+        let words = words_of_layout(&layout, leak);
+        Frame::write(Kind::BlockNetwork, &words, channels, count.saturating_mul(4), numbers.flatten(), out)
     }
 
-    /// The layout hash: of the layout with its groups and blocks, and the reading of the leak.
+    /// The layout hash of the layout with its groups and blocks, and of the reading of the leak.
     pub fn layout_hash(layout: BlockLayout<'_>, leak: Leak) -> u64 {
-        layout_hash(Kind::BlockNetwork, &shape_of(&layout, leak))
+        layout_hash(Kind::BlockNetwork, &words_of_layout(&layout, leak))
     }
-}
 
-impl<'a> BlockNetworkBytes<'a> {
-    /// Checks bytes that should be a network of blocks, all of them: the format, the checksum, every group and block, and
-    /// every parameter.
+    /// Compares layout and reading of the leak with those of the caller.
     ///
     /// # Errors
-    /// As [`LeakyNetworkBytes::read`](crate::LeakyNetworkBytes::read), and [`BytesError::Description`].
-    pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Frame { shape, channels, parameters: content, .. } = Frame::open(Kind::BlockNetwork, bytes)?;
-        let [inputs, outputs, groups, blocks, leak, low, high, unused] = shape;
-        let Some(&reading) = Leak::ALL.get(leak as usize) else {
-            return Err(BytesError::Shape { word: 4, found: leak });
-        };
-        if unused != 0 {
-            return Err(BytesError::Shape { word: 7, found: unused });
-        }
-        let (found, counts) = (bytes.len(), [groups, blocks].map(|count| count as usize));
-        let wrong_length = |numbers: usize| {
-            let description = description_len(counts[0], counts[1]);
-            BytesError::Length { expected: frame_len(description.saturating_add(numbers).saturating_mul(4)), found }
-        };
-        let [groups, blocks] = counts;
-        let (groups, rest) =
-            content.split_at_checked(groups.saturating_mul(4 * GROUP)).ok_or_else(|| wrong_length(0))?;
-        let (blocks, parameters) =
-            rest.split_at_checked(blocks.saturating_mul(4 * BLOCK)).ok_or_else(|| wrong_length(0))?;
-        let mut digest = Digest::new();
-        digest.add_bytes(groups);
-        digest.add_bytes(blocks);
-        let (groups, blocks) = (groups.as_chunks().0, blocks.as_chunks().0);
-        let read = Self { shape, leak: reading, channels, groups, blocks, parameters };
-        for (at, group) in groups.iter().enumerate() {
-            group_of(words(group)).map_err(|wrong| wrong.in_description(at * GROUP))?;
-        }
-        for (at, block) in blocks.iter().enumerate() {
-            block_of(words(block)).map_err(|wrong| wrong.in_description(groups.len() * GROUP + at * BLOCK))?;
-        }
-        if let Some((at, (_, found))) = halves(digest.finish())
-            .into_iter()
-            .zip([low, high])
-            .enumerate()
-            .find(|(_, (expected, found))| expected != found)
-        {
-            return Err(BytesError::Shape { word: 5 + at, found });
-        }
-        check_description(inputs as usize, outputs as usize, read.groups(), read.blocks())?;
-        let [weights, biases, gains, leaks] = read.counts();
-        let first = weights.saturating_add(biases).saturating_add(gains);
-        let leaks = first..first.saturating_add(leaks);
-        if parameters.len() != leaks.end.saturating_mul(4) {
-            return Err(wrong_length(leaks.end));
-        }
-        check_values(leaks, values(parameters))?;
-        Ok(read)
-    }
-
-    /// Numbers of weights, biases, gains and leaks.
-    fn counts(&self) -> [usize; 4] {
-        let weights = self.blocks().fold(0_usize, |sum, block| sum.saturating_add(block.weights()));
-        let of = |has: fn(&Group) -> bool| {
-            self.groups().filter(has).fold(0_usize, |sum, group| sum.saturating_add(group.neurons))
-        };
-        [weights, of(|group| group.bias), of(|group| group.gain), of(|group| group.leak)]
-    }
-
-    /// Nothing, if the network is of this layout and this reading of the leak.
-    ///
-    /// # Errors
-    /// [`BytesError::OtherLayout`].
+    /// [`BytesError::Mismatch`].
     pub fn expect(&self, layout: BlockLayout<'_>, leak: Leak) -> Result<(), BytesError> {
-        let own = layout_hash(Kind::BlockNetwork, &self.shape);
-        same_layout(BlockNetworkBytes::layout_hash(layout, leak), own)
-    }
-
-    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
-    ///
-    /// # Errors
-    /// [`BytesError::OtherChannels`].
-    pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
-        same_channels(expected, self.channels)
+        Field::Layout.check(BlockNetworkBytes::layout_hash(layout, leak), self.shape.hash())
     }
 
     /// Number of inputs.
     pub const fn inputs(&self) -> usize {
-        self.shape[0] as usize
+        self.shape.words[0] as usize
     }
 
     /// Number of outputs.
     pub const fn outputs(&self) -> usize {
-        self.shape[1] as usize
+        self.shape.words[1] as usize
     }
 
     /// The reading of the leak.
     pub const fn leak(&self) -> Leak {
-        self.leak
-    }
-
-    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
-    pub const fn channels(&self) -> u64 {
-        self.channels
+        self.shape.leak
     }
 
     /// The groups in their order.
     pub fn groups(&self) -> impl Iterator<Item = Group> + Clone + use<'a> {
-        // All were read before.
-        self.groups.iter().filter_map(|group| group_of(words(group)).ok())
+        self.shape.groups()
     }
 
     /// The blocks in their order.
     pub fn blocks(&self) -> impl Iterator<Item = Block> + Clone + use<'a> {
-        self.blocks.iter().filter_map(|block| block_of(words(block)).ok())
+        self.shape.blocks()
     }
 
-    /// Copies the groups and the blocks into memory of the caller, which must be as long, for a layout over them.
+    /// Copies groups and blocks into buffers of the same lengths and returns a layout over them.
     ///
     /// # Errors
-    /// [`BytesError::Buffer`] for the first that has another length; then nothing is copied.
+    /// [`BytesError::Buffer`] for the first buffer of another length. Then nothing is copied.
     pub fn copy_layout<'b>(
         &self,
         groups: &'b mut [Group],
         blocks: &'b mut [Block],
     ) -> Result<BlockLayout<'b>, BytesError> {
-        for (expected, found) in [(self.groups.len(), groups.len()), (self.blocks.len(), blocks.len())] {
+        for (expected, found) in [(self.shape.groups.len(), groups.len()), (self.shape.blocks.len(), blocks.len())] {
             if expected != found {
                 return Err(BytesError::Buffer { expected, found });
             }
@@ -234,7 +155,7 @@ impl<'a> BlockNetworkBytes<'a> {
         Ok(BlockLayout::new(self.inputs(), self.outputs(), groups, blocks))
     }
 
-    /// The layout on the heap; with feature `alloc`.
+    /// The layout on the heap. Requires the feature `alloc`.
     #[cfg(feature = "alloc")]
     pub fn layout(&self) -> BlockLayoutBuf {
         BlockLayoutBuf {
@@ -244,25 +165,78 @@ impl<'a> BlockNetworkBytes<'a> {
             blocks: self.blocks().collect(),
         }
     }
+}
 
-    /// The parameters [[`parameter_count`](BlockLayout::parameter_count)] where they lie.
-    ///
-    /// # Errors
-    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
-    pub fn parameters(&self) -> Result<&'a [f32], BytesError> {
-        placed(self.parameters)
+impl<'a> BlockShape<'a> {
+    fn groups(&self) -> impl Iterator<Item = Group> + Clone + use<'a> {
+        // `read` has checked all of them.
+        self.groups.iter().filter_map(|group| group_of(words(group)).ok())
     }
 
-    /// Copies the parameters into `out` [[`parameter_count`](BlockLayout::parameter_count)].
-    ///
-    /// # Errors
-    /// [`BytesError::Buffer`]; then nothing is copied.
-    pub fn copy_parameters(&self, out: &mut [f32]) -> Result<(), BytesError> {
-        copy(values(self.parameters), out)
+    fn blocks(&self) -> impl Iterator<Item = Block> + Clone + use<'a> {
+        self.blocks.iter().filter_map(|block| block_of(words(block)).ok())
+    }
+
+    /// Indices of the first leak and of the end of the parameters.
+    fn leaks(&self) -> [usize; 2] {
+        let sum = |sum: usize, count: usize| sum.saturating_add(count);
+        let weights = self.blocks().map(|block| block.weights()).fold(0, sum);
+        let count = |has: fn(&Group) -> bool| self.groups().filter(has).map(|group| group.neurons).fold(0, sum);
+        let first = [weights, count(|group| group.bias), count(|group| group.gain)].into_iter().fold(0, sum);
+        [first, first.saturating_add(count(|group| group.leak))]
     }
 }
 
-/// A number of a group or block that none has: its place there, and its value.
+impl<'a> Shape<'a> for BlockShape<'a> {
+    type Number = f32;
+
+    const KIND: Kind = Kind::BlockNetwork;
+
+    fn read(shape: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [inputs, outputs, groups, blocks, leak, low, high, _] = shape;
+        let leak = variant(&Leak::ALL, 4, leak)?;
+        check_unused(&shape, 7)?;
+        let [groups, blocks] = [groups, blocks].map(|count| count as usize);
+        let expected = frame_len(description_len(groups, blocks).saturating_mul(4));
+        let short = BytesError::Length { expected, found: frame_len(content.len()) };
+        let (groups, rest) = content.split_at_checked(groups.saturating_mul(4 * GROUP)).ok_or(short)?;
+        let (blocks, parameters) = rest.split_at_checked(blocks.saturating_mul(4 * BLOCK)).ok_or(short)?;
+        let mut digest = Digest::new();
+        digest.add_bytes(groups);
+        digest.add_bytes(blocks);
+        let (groups, blocks) = (groups.as_chunks().0, blocks.as_chunks().0);
+        for (at, group) in groups.iter().enumerate() {
+            group_of(words(group)).map_err(|wrong| wrong.in_description(at * GROUP))?;
+        }
+        for (at, block) in blocks.iter().enumerate() {
+            block_of(words(block)).map_err(|wrong| wrong.in_description(groups.len() * GROUP + at * BLOCK))?;
+        }
+        for ((at, expected), found) in halves(digest.finish()).into_iter().enumerate().zip([low, high]) {
+            if expected != found {
+                return Err(BytesError::shape(5 + at, found));
+            }
+        }
+        let read = Self { words: shape, leak, groups, blocks };
+        check_description(inputs as usize, outputs as usize, read.groups(), read.blocks())?;
+        Ok((read, parameters))
+    }
+
+    fn words(&self) -> [u32; SHAPE] {
+        self.words
+    }
+
+    fn byte_count(&self) -> usize {
+        let [_, count] = self.leaks();
+        frame_len(description_len(self.groups.len(), self.blocks.len()).saturating_add(count).saturating_mul(4))
+    }
+
+    fn check<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error> {
+        let [leaks, count] = self.leaks();
+        check_parameters(count, leaks, parameters, value)
+    }
+}
+
+/// An invalid word of a group or block: its index there, and its value.
 struct Wrong {
     word: usize,
     found: u32,
@@ -270,11 +244,11 @@ struct Wrong {
 
 impl Wrong {
     fn in_description(self, before: usize) -> BytesError {
-        BytesError::Description { word: before + self.word, found: self.found }
+        BytesError::Word { table: Table::Description, word: before + self.word, found: self.found }
     }
 }
 
-/// Numbers of so many groups and blocks; saturates.
+/// Number of words of a description. Saturates.
 const fn description_len(groups: usize, blocks: usize) -> usize {
     groups.saturating_mul(GROUP).saturating_add(blocks.saturating_mul(BLOCK))
 }
@@ -284,7 +258,8 @@ fn description(layout: &BlockLayout<'_>) -> impl Iterator<Item = u32> {
     groups.chain(layout.blocks().iter().flat_map(words_of_block))
 }
 
-fn shape_of(layout: &BlockLayout<'_>, leak: Leak) -> [u32; SHAPE] {
+/// The words of the shape of a network of this layout.
+fn words_of_layout(layout: &BlockLayout<'_>, leak: Leak) -> [u32; SHAPE] {
     let mut digest = Digest::new();
     description(layout).for_each(|word| digest.add_bytes(&word.to_le_bytes()));
     let [low, high] = halves(digest.finish());
@@ -293,12 +268,12 @@ fn shape_of(layout: &BlockLayout<'_>, leak: Leak) -> [u32; SHAPE] {
     [inputs, outputs, groups, blocks, leak as u32, low, high, 0]
 }
 
-/// A number of 64 bits as two, the lower half first.
+/// The halves of a number of 64 bits, the lower one first.
 const fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
 
-/// Bytes as numbers; there are four for each.
+/// Decodes words of four bytes each.
 fn words<const BYTES: usize, const WORDS: usize>(bytes: &[u8; BYTES]) -> [u32; WORDS] {
     let mut words = [0; WORDS];
     for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -353,7 +328,7 @@ fn block_of([kind, first, count, third, fourth, fifth]: [u32; BLOCK]) -> Result<
     })
 }
 
-/// Nothing, if none of these counts is the largest number, which stands for all that are larger.
+/// Rejects the largest word, to which larger counts saturate.
 fn counts<const N: usize>(words: [(usize, u32); N]) -> Result<(), Wrong> {
     match words.into_iter().find(|(_, found)| *found == u32::MAX) {
         Some((word, found)) => Err(Wrong { word, found }),

@@ -1,99 +1,113 @@
-//! What can be wrong with the bytes of a controller before anything of them runs.
+//! Errors of reading and writing the bytes of a controller.
 
 use core::fmt;
 
 use crate::error::Error;
 
-/// Why bytes are not the controller that was asked for.
+/// A field of the head that has to agree with something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Field {
+    /// The version of the format, compared with that of this program.
+    Version,
+    /// The CRC-32 at the end, compared with that of the bytes.
+    Checksum,
+    /// The number of the kind of controller.
+    Kind,
+    /// The stored layout hash, compared with that of kind and shape.
+    LayoutHash,
+    /// The hash of the layout, compared with that of the caller.
+    Layout,
+    /// The hash of the channels, compared with that of the caller.
+    Channels,
+}
+
+/// A table of words in the bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// The eight words of the shape.
+    Shape,
+    /// The description of groups and blocks.
+    Description,
+}
+
+/// An error of reading or writing the bytes of a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BytesError {
-    /// There are fewer bytes, or more, than the format or its head says.
+    /// Fewer or more bytes than the format or the head requires.
     Length {
-        /// How many there should be.
+        /// Required number of bytes.
         expected: usize,
-        /// How many there are.
+        /// Number of bytes.
         found: usize,
     },
-    /// They do not begin as a controller does.
+    /// A beginning that no controller has.
     Magic {
-        /// How they begin.
+        /// The first bytes.
         found: [u8; 8],
     },
-    /// They are of another version of the format.
-    Version {
-        /// The version that this program reads.
-        expected: u32,
-        /// Their version.
-        found: u32,
+    /// Damaged bytes, or bytes of another version, kind, layout or robot.
+    Mismatch {
+        /// The field that differs.
+        field: Field,
+        /// Its expected value.
+        expected: u64,
+        /// Its value.
+        found: u64,
     },
-    /// They are not what was written.
-    Checksum {
-        /// CRC-32 of the bytes.
-        expected: u32,
-        /// CRC-32 that they end with.
-        found: u32,
-    },
-    /// They are a controller of another kind.
-    Kind {
-        /// Number of the kind that was asked for.
-        expected: u32,
-        /// Number of their kind.
-        found: u32,
-    },
-    /// A number of the shape has a value that no such controller has.
-    Shape {
-        /// Its place among the numbers of the shape.
+    /// A word with an invalid value.
+    Word {
+        /// The table of the word.
+        table: Table,
+        /// Its index in the table.
         word: usize,
         /// Its value.
         found: u32,
     },
-    /// A number of the description of groups and blocks has a value that no such controller has.
-    Description {
-        /// Its place among the numbers of the description.
-        word: usize,
-        /// Its value.
-        found: u32,
-    },
-    /// The layout hash is not that of kind and shape.
-    LayoutHash {
-        /// Hash of kind and shape.
-        expected: u64,
-        /// Hash in the head.
-        found: u64,
-    },
-    /// The layout is not the one that was asked for.
-    OtherLayout {
-        /// Hash of the layout that was asked for.
-        expected: u64,
-        /// Hash of theirs.
-        found: u64,
-    },
-    /// The channels are not those that were asked for.
-    OtherChannels {
-        /// Hash of the channels that were asked for.
-        expected: u64,
-        /// Hash of theirs.
-        found: u64,
-    },
-    /// The bytes do not begin where their numbers may lie, so that these cannot be used there.
+    /// Bytes at an address where the processor cannot use their numbers in place.
     Misaligned {
-        /// Remainder of their address.
+        /// Remainder of the address.
         remainder: usize,
-        /// What the address should be a multiple of.
+        /// Required divisor of the address.
         alignment: usize,
     },
-    /// The processor is big-endian, so that their numbers cannot be used where they lie.
+    /// A big-endian processor, which cannot use the numbers in place.
     BigEndian,
-    /// The buffer for numbers or bytes has another length.
+    /// A buffer of the wrong length.
     Buffer {
-        /// Length that is needed.
+        /// Required length.
         expected: usize,
         /// Length of the buffer.
         found: usize,
     },
-    /// The numbers are no parameters of such a network.
+    /// An invalid layout or parameter.
     Parameters(Error),
+}
+
+impl BytesError {
+    /// An invalid word of the shape.
+    pub(crate) const fn shape(word: usize, found: u32) -> Self {
+        Self::Word { table: Table::Shape, word, found }
+    }
+}
+
+impl Field {
+    /// Compares the value of the field with the expected one.
+    pub(crate) fn check(self, expected: u64, found: u64) -> Result<(), BytesError> {
+        if expected == found { Ok(()) } else { Err(BytesError::Mismatch { field: self, expected, found }) }
+    }
+
+    fn fmt_mismatch(self, expected: u64, found: u64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Version => write!(f, "version {found} of the format, this program reads {expected}"),
+            Self::Checksum => write!(f, "damaged: checksum {found:08x} where the bytes have {expected:08x}"),
+            Self::Kind => write!(f, "a controller of kind {found} where {expected} is asked for"),
+            Self::LayoutHash => write!(f, "layout hash {found:016x} where the shape has {expected:016x}"),
+            Self::Layout => write!(f, "a controller of layout {found:016x} where {expected:016x} is asked for"),
+            Self::Channels => write!(f, "a controller for channels {found:016x} where {expected:016x} is asked for"),
+        }
+    }
 }
 
 impl fmt::Display for BytesError {
@@ -103,34 +117,18 @@ impl fmt::Display for BytesError {
             Self::Magic { found } => {
                 write!(f, "no controller: begins with \"{}\", not \"FARSA-NN\"", found.escape_ascii())
             }
-            Self::Version { expected, found } => {
-                write!(f, "version {found} of the format, this program reads {expected}")
+            Self::Mismatch { field, expected, found } => field.fmt_mismatch(expected, found, f),
+            Self::Word { table, word, found } => {
+                let table = match table {
+                    Table::Shape => "shape",
+                    Table::Description => "description",
+                };
+                write!(f, "number {word} of the {table} is {found}, which no such controller has")
             }
-            Self::Checksum { expected, found } => {
-                write!(f, "damaged: checksum {found:08x} where the bytes have {expected:08x}")
-            }
-            Self::Kind { expected, found } => write!(f, "a controller of kind {found} where {expected} is asked for"),
-            Self::Shape { word, found } => {
-                write!(f, "number {word} of the shape is {found}, which no such controller has")
-            }
-            Self::Description { word, found } => {
-                write!(f, "number {word} of the description is {found}, which no such controller has")
-            }
-            Self::LayoutHash { expected, found } => {
-                write!(f, "layout hash {found:016x} where the shape has {expected:016x}")
-            }
-            Self::OtherLayout { expected, found } => {
-                write!(f, "a controller of layout {found:016x} where {expected:016x} is asked for")
-            }
-            Self::OtherChannels { expected, found } => {
-                write!(f, "a controller for channels {found:016x} where {expected:016x} is asked for")
-            }
-            Self::Misaligned { remainder, alignment } => {
-                write!(
-                    f,
-                    "the bytes lie {remainder} beyond a multiple of {alignment}: wrap them in Aligned, or copy the parameters"
-                )
-            }
+            Self::Misaligned { remainder, alignment } => write!(
+                f,
+                "the bytes lie {remainder} beyond a multiple of {alignment}: wrap them in Aligned, or copy the parameters"
+            ),
             Self::BigEndian => f.write_str("the processor is big-endian: copy the parameters"),
             Self::Buffer { expected, found } => write!(f, "a buffer of length {found} where {expected} is needed"),
             Self::Parameters(error) => error.fmt(f),

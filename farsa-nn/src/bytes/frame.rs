@@ -1,18 +1,17 @@
-//! What the bytes of all kinds of controllers have in common: a head, parameters, a checksum.
+//! The frame of all kinds of controllers: a head, the content, a checksum.
 
-use bytemuck::AnyBitPattern;
 use farsa_num::{Digest, crc32};
 
-use crate::bytes::error::BytesError;
+use crate::bytes::error::{BytesError, Field};
 
-/// Bytes that lie where numbers may lie, for [`include_bytes!`].
+/// Bytes at an address where their numbers can be used in place, for [`include_bytes!`].
 ///
 /// ```
 /// # const LAYOUT: farsa_nn::LeakyLayout = farsa_nn::LeakyLayout::new(1, 1, 1);
 /// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::bytes::LeakyNetworkBytes::byte_count(LAYOUT)] } }
 /// use farsa_nn::bytes::{Aligned, LeakyNetworkBytes};
 ///
-/// // Does not compile when the file has another length.
+/// // A file of another length does not compile.
 /// static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,81 +23,69 @@ pub struct Aligned<B>(
 
 /// The first bytes.
 const MAGIC: [u8; 8] = *b"FARSA-NN";
-/// Grows when the meaning of a byte changes.
+/// Increases when the meaning of a byte changes.
 const VERSION: u32 = 1;
-/// Numbers of a shape, the same for all kinds; what is not used is 0.
+/// Number of words of a shape, for all kinds. Unused words are 0.
 pub(crate) const SHAPE: usize = 8;
 /// Magic, version, kind, length, length of the parameters, shape, layout hash, channel hash.
 const HEAD: usize = 8 + 4 * 4 + 4 * SHAPE + 8 + 8;
 const CHECKSUM: usize = 4;
 
-/// The kinds of controllers by their numbers in the bytes.
+/// The kinds of controllers with their numbers in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
+    /// A leaky network.
     LeakyNetwork = 1,
+    /// A leaky network in integers.
     QuantizedNetwork = 2,
+    /// A continuous-time network.
     Ctrnn = 3,
+    /// A layer of logistic units.
     Perceptron = 4,
+    /// A network of blocks.
     BlockNetwork = 5,
 }
 
-/// A controller's bytes taken apart, whole and undamaged; what shape and parameters mean is the kind's business.
+/// The parts of undamaged bytes. The kind defines the meaning of shape and content.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<'a> {
     pub(crate) shape: [u32; SHAPE],
     pub(crate) channels: u64,
-    pub(crate) parameters: &'a [u8],
+    pub(crate) content: &'a [u8],
 }
 
-/// Number of bytes of a controller with so many bytes of parameters; saturates.
+/// Number of bytes of a controller with this number of bytes of parameters. Saturates.
 pub(crate) const fn frame_len(parameters: usize) -> usize {
     parameters.saturating_add(HEAD + CHECKSUM)
 }
 
-/// A count as a number of a shape. Those beyond 32 bits saturate: no slice of parameters is so long.
+/// A count as a word. Counts beyond 32 bits saturate: no slice of parameters is so long.
 pub(crate) fn word(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// Nothing, if the layout hashes are the same.
-pub(crate) fn same_layout(expected: u64, found: u64) -> Result<(), BytesError> {
-    if expected == found { Ok(()) } else { Err(BytesError::OtherLayout { expected, found }) }
-}
-
-/// Nothing, if the channel hashes are the same.
-pub(crate) fn same_channels(expected: u64, found: u64) -> Result<(), BytesError> {
-    if expected == found { Ok(()) } else { Err(BytesError::OtherChannels { expected, found }) }
-}
-
-/// Parameters where they lie, as numbers.
-pub(crate) fn placed<T: AnyBitPattern>(parameters: &[u8]) -> Result<&[T], BytesError> {
-    if cfg!(target_endian = "big") {
-        return Err(BytesError::BigEndian);
+/// Checks that the words from this index on, which the kind does not use, are 0.
+pub(crate) fn check_unused(words: &[u32; SHAPE], first: usize) -> Result<(), BytesError> {
+    match words.iter().enumerate().skip(first).find(|(_, found)| **found != 0) {
+        Some((word, found)) => Err(BytesError::shape(word, *found)),
+        None => Ok(()),
     }
-    let alignment = align_of::<T>();
-    // Their number was checked, so that alignment is all that can be wrong.
-    bytemuck::try_cast_slice(parameters)
-        .map_err(|_| BytesError::Misaligned { remainder: parameters.as_ptr().addr() % alignment, alignment })
 }
 
-/// Copies numbers into `out`, which must be as long.
-pub(crate) fn copy<T>(values: impl ExactSizeIterator<Item = T>, out: &mut [T]) -> Result<(), BytesError> {
-    let (expected, found) = (values.len(), out.len());
-    if expected != found {
-        return Err(BytesError::Buffer { expected, found });
-    }
-    out.iter_mut().zip(values).for_each(|(to, value)| *to = value);
-    Ok(())
+/// A variant by its number in a word of the shape.
+pub(crate) fn variant<T: Copy>(variants: &[T], word: usize, found: u32) -> Result<T, BytesError> {
+    variants.get(found as usize).copied().ok_or(BytesError::shape(word, found))
 }
 
-/// Parameters that are `f32` as numbers, wherever they lie.
-pub(crate) fn values(parameters: &[u8]) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
-    parameters.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
+/// A finite number in a word of the shape.
+pub(crate) fn finite(word: usize, found: u32) -> Result<f32, BytesError> {
+    let value = f32::from_bits(found);
+    if value.is_finite() { Ok(value) } else { Err(BytesError::shape(word, found)) }
 }
 
-/// A fingerprint of what inputs and outputs are, by their names in their order.
+/// A fingerprint of inputs and outputs: a hash of their names in their order.
 ///
-/// A controller for another body, or for the same with its sensors in another order, has another.
+/// A controller for another body, or for sensors in another order, has another fingerprint.
 ///
 /// ```
 /// use farsa_nn::bytes::channel_hash;
@@ -121,7 +108,7 @@ pub fn channel_hash<N: AsRef<str>>(
     digest.finish()
 }
 
-/// The layout hash: of the kind and the shape.
+/// The layout hash: a hash of the kind and the shape.
 pub(crate) fn layout_hash(kind: Kind, shape: &[u32; SHAPE]) -> u64 {
     let mut digest = Digest::new();
     digest.add_bytes(&(kind as u32).to_le_bytes());
@@ -132,19 +119,16 @@ pub(crate) fn layout_hash(kind: Kind, shape: &[u32; SHAPE]) -> u64 {
 }
 
 impl<'a> Frame<'a> {
-    /// Takes bytes apart that are a controller of this kind.
+    /// Splits the bytes of a controller of this kind and checks them.
     pub(crate) fn open(kind: Kind, bytes: &'a [u8]) -> Result<Self, BytesError> {
         let mut reader = Reader { bytes, len: bytes.len() };
-        // Bytes that begin differently are none of ours, however few.
+        // Bytes with another beginning are foreign, however few.
         let magic = reader.array()?;
         if magic != MAGIC {
             return Err(BytesError::Magic { found: magic });
         }
-        let version = reader.word()?;
-        if version != VERSION {
-            return Err(BytesError::Version { expected: VERSION, found: version });
-        }
-        let (found_kind, len, parameters_len) = (reader.word()?, reader.word()? as usize, reader.word()? as usize);
+        Field::Version.check(VERSION.into(), reader.word()?.into())?;
+        let (found_kind, len, content_len) = (reader.word()?, reader.word()? as usize, reader.word()? as usize);
         if len != bytes.len() {
             return Err(BytesError::Length { expected: len, found: bytes.len() });
         }
@@ -153,71 +137,51 @@ impl<'a> Frame<'a> {
             *word = reader.word()?;
         }
         let (hash, channels) = (u64::from_le_bytes(reader.array()?), u64::from_le_bytes(reader.array()?));
-        // `split_last_chunk` checks twice, and not every compiler sees that the second check holds: a panic would be left.
+        // `split_last_chunk` checks twice, and not every compiler proves the second check: a panic would remain.
         let split = reader.bytes.len().checked_sub(CHECKSUM).and_then(|end| reader.bytes.split_at_checked(end));
-        let Some((parameters, checksum)) = split.and_then(|(rest, last)| Some((rest, last.first_chunk::<CHECKSUM>()?)))
+        let Some((content, checksum)) = split.and_then(|(rest, last)| Some((rest, last.first_chunk::<CHECKSUM>()?)))
         else {
             return Err(BytesError::Length { expected: frame_len(0), found: bytes.len() });
         };
-        // Nothing of what follows is believed before this.
+        // The checksum covers the rest, so it comes first.
         let (checked, _) = bytes.split_at(bytes.len().saturating_sub(CHECKSUM));
-        let (expected, found) = (crc32(checked), u32::from_le_bytes(*checksum));
-        if expected != found {
-            return Err(BytesError::Checksum { expected, found });
+        Field::Checksum.check(crc32(checked).into(), u32::from_le_bytes(*checksum).into())?;
+        Field::Kind.check(kind as u64, found_kind.into())?;
+        if content.len() != content_len {
+            return Err(BytesError::Length { expected: frame_len(content_len), found: bytes.len() });
         }
-        if found_kind != kind as u32 {
-            return Err(BytesError::Kind { expected: kind as u32, found: found_kind });
-        }
-        if parameters.len() != parameters_len {
-            return Err(BytesError::Length { expected: frame_len(parameters_len), found: bytes.len() });
-        }
-        let expected = layout_hash(kind, &shape);
-        if hash != expected {
-            return Err(BytesError::LayoutHash { expected, found: hash });
-        }
-        Ok(Self { shape, channels, parameters })
+        Field::LayoutHash.check(layout_hash(kind, &shape), hash)?;
+        Ok(Self { shape, channels, content })
     }
 
-    /// Fills `out`, which must be as long as [`frame_len`] of the parameters says; `parameters` are numbers in their order.
-    pub(crate) fn write<const N: usize>(
+    /// Fills `out`, whose length must be [`frame_len`] of this number of bytes of content.
+    pub(crate) fn write(
         kind: Kind,
         shape: &[u32; SHAPE],
         channels: u64,
-        parameters: impl ExactSizeIterator<Item = [u8; N]>,
+        content_len: usize,
+        content: impl Iterator<Item = u8>,
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        Self::write_counted(kind, shape, channels, parameters.len(), parameters, out)
-    }
-
-    /// The same with so many parameters, for iterators that do not know their length.
-    pub(crate) fn write_counted<const N: usize>(
-        kind: Kind,
-        shape: &[u32; SHAPE],
-        channels: u64,
-        count: usize,
-        parameters: impl Iterator<Item = [u8; N]>,
-        out: &mut [u8],
-    ) -> Result<(), BytesError> {
-        let parameters_len = count.saturating_mul(N);
-        let (expected, found) = (frame_len(parameters_len), out.len());
-        // More than the head can say is more than any buffer of it.
+        let (expected, found) = (frame_len(content_len), out.len());
+        // A length beyond the head's 32 bits exceeds any buffer with such a head.
         let Some(len) = u32::try_from(expected).ok().filter(|_| expected == found) else {
             return Err(BytesError::Buffer { expected, found });
         };
-        let (content, checksum) = out.split_at_mut(expected - CHECKSUM);
+        let (checked, checksum) = out.split_at_mut(expected - CHECKSUM);
         let hash = layout_hash(kind, shape).to_le_bytes();
-        let head = [VERSION, kind as u32, len, parameters_len as u32];
+        let head = [VERSION, kind as u32, len, content_len as u32];
         let words = head.into_iter().chain(*shape).map(u32::to_le_bytes);
         let bytes = MAGIC.into_iter().chain(words.flatten()).chain(hash).chain(channels.to_le_bytes());
-        for (to, byte) in content.iter_mut().zip(bytes.chain(parameters.flatten())) {
+        for (to, byte) in checked.iter_mut().zip(bytes.chain(content)) {
             *to = byte;
         }
-        checksum.copy_from_slice(&crc32(content).to_le_bytes());
+        checksum.copy_from_slice(&crc32(checked).to_le_bytes());
         Ok(())
     }
 }
 
-/// The bytes that are still to be read.
+/// The unread bytes.
 struct Reader<'a> {
     bytes: &'a [u8],
     len: usize,

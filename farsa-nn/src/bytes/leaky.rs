@@ -1,18 +1,18 @@
-//! A trained network as bytes: in flash, in a file, over a wire.
+//! The bytes of a leaky network.
 
 use crate::bytes::error::BytesError;
-use crate::bytes::frame::{
-    Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
-};
+use crate::bytes::frame::{Kind, SHAPE, check_unused, finite, variant, word};
+use crate::bytes::network::{NetworkBytes, Shape, byte_count};
 use crate::error::Error;
 use crate::leak::Leak;
 use crate::leaky_layout::LeakyLayout;
-use crate::leaky_network::{check, check_values};
+use crate::leaky_network::LeakyModel;
+use crate::network::Model as _;
 
-/// A [`LeakyNetwork`](crate::LeakyNetwork) of given bytes: checked, and used where it lies.
+/// The checked bytes of a [`LeakyNetwork`](crate::LeakyNetwork).
 ///
-/// The format is written out in `docs/controller-format.md`: a head with a version, the layout and hashes, the parameters in
-/// the order of the [`LeakyLayout`], a CRC-32. All of it is little-endian.
+/// `docs/controller-format.md` specifies the format: a head with version, layout and hashes, the parameters in the order of
+/// the [`LeakyLayout`], a CRC-32. All numbers are little-endian.
 ///
 /// ```
 /// use farsa_nn::bytes::{Aligned, LeakyNetworkBytes};
@@ -20,41 +20,35 @@ use crate::leaky_network::{check, check_values};
 ///
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 1, 1);
 /// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
-/// // A computer writes,
+/// // A computer writes.
 /// let mut flash = Aligned([0; LeakyNetworkBytes::byte_count(LAYOUT)]);
 /// LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut flash.0)?;
-/// // a board reads: nothing is copied.
+/// // A board reads and copies nothing.
 /// let bytes = LeakyNetworkBytes::read(&flash.0)?;
 /// bytes.expect(LAYOUT, Leak::Filter)?;
 /// let mut network = LeakyNetwork::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?;
 /// let mut y = [0.0];
 /// network.step(&[0.5, 0.2], &mut y);
-/// // Others may come later, as those of another individual.
+/// // The parameters of another individual can replace them later.
 /// network.set_parameters(LeakyNetworkBytes::read(&flash.0)?.parameters()?)?;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Copy, Debug)]
-pub struct LeakyNetworkBytes<'a> {
-    layout: LeakyLayout,
-    leak: Leak,
-    channels: u64,
-    parameters: &'a [u8],
-}
+pub type LeakyNetworkBytes<'a> = NetworkBytes<'a, LeakyModel>;
 
-impl LeakyNetworkBytes<'_> {
-    /// Number of bytes of a network of this layout; saturates.
+impl NetworkBytes<'_, LeakyModel> {
+    /// Number of bytes of a network of this layout. Saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
-        frame_len(layout.parameter_count().saturating_mul(4))
+        byte_count::<f32>(layout.parameter_count())
     }
 
-    /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
+    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`]; 0 says nothing.
+    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as [`LeakyNetwork::new`](crate::LeakyNetwork::new), [`BytesError::Buffer`]; then
-    /// nothing is written.
+    /// [`BytesError::Parameters`] as for [`LeakyNetwork::new`](crate::LeakyNetwork::new), [`BytesError::Buffer`].
+    /// Then nothing is written.
     pub fn write(
         layout: LeakyLayout,
         leak: Leak,
@@ -62,101 +56,58 @@ impl LeakyNetworkBytes<'_> {
         parameters: &[f32],
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        if !layout.slope().is_finite() {
-            return Err(Error::Slope { value: layout.slope() }.into());
-        }
-        check(&layout, parameters)?;
-        let words = parameters.iter().map(|p| p.to_le_bytes());
-        Frame::write(Kind::LeakyNetwork, &shape_of(layout, leak), channels, words, out)
+        Shape::write(&LeakyModel { layout, leak }, channels, parameters, out)
     }
 
-    /// The layout hash: of the layout, its slope and the reading of the leak.
+    /// The layout hash of the layout, its slope and the reading of the leak.
     pub fn layout_hash(layout: LeakyLayout, leak: Leak) -> u64 {
-        layout_hash(Kind::LeakyNetwork, &shape_of(layout, leak))
-    }
-}
-
-impl<'a> LeakyNetworkBytes<'a> {
-    /// Checks bytes that should be a network, all of them: the format, the checksum, the layout and every parameter.
-    ///
-    /// # Errors
-    /// What is wrong first: [`BytesError::Magic`], [`BytesError::Version`], [`BytesError::Length`],
-    /// [`BytesError::Checksum`], [`BytesError::Kind`], [`BytesError::LayoutHash`], [`BytesError::Shape`],
-    /// [`BytesError::Parameters`].
-    pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::LeakyNetwork, bytes)?;
-        let [sensors, hidden, outputs, slope, leak, unused @ ..] = shape;
-        let Some(&reading) = Leak::ALL.get(leak as usize) else {
-            return Err(BytesError::Shape { word: 4, found: leak });
-        };
-        if let Some(at) = unused.iter().position(|word| *word != 0) {
-            return Err(BytesError::Shape { word: SHAPE - unused.len() + at, found: unused[at] });
-        }
-        let (slope, bits) = (f32::from_bits(slope), slope);
-        if !slope.is_finite() {
-            return Err(BytesError::Shape { word: 3, found: bits });
-        }
-        let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
-        let found = bytes.len();
-        if found != Self::byte_count(layout) {
-            return Err(BytesError::Length { expected: Self::byte_count(layout), found });
-        }
-        check_values(&layout, values(parameters))?;
-        Ok(Self { layout, leak: reading, channels, parameters })
+        LeakyModel { layout, leak }.hash()
     }
 
-    /// Nothing, if the network is of this layout and this reading of the leak.
+    /// Compares layout and reading of the leak with those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::OtherLayout`].
+    /// [`BytesError::Mismatch`].
     pub fn expect(&self, layout: LeakyLayout, leak: Leak) -> Result<(), BytesError> {
-        same_layout(
-            LeakyNetworkBytes::layout_hash(layout, leak),
-            LeakyNetworkBytes::layout_hash(self.layout, self.leak),
-        )
-    }
-
-    /// Nothing, if the network is for these channels, by their [`channel_hash`].
-    ///
-    /// # Errors
-    /// [`BytesError::OtherChannels`].
-    pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
-        same_channels(expected, self.channels)
+        self.expect_shape(&LeakyModel { layout, leak })
     }
 
     /// The layout.
     pub const fn layout(&self) -> LeakyLayout {
-        self.layout
+        self.shape.layout
     }
 
     /// The reading of the leak.
     pub const fn leak(&self) -> Leak {
-        self.leak
-    }
-
-    /// The [`channel_hash`] of its inputs and outputs; 0 if nothing is said.
-    pub const fn channels(&self) -> u64 {
-        self.channels
-    }
-
-    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)] where they lie.
-    ///
-    /// # Errors
-    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
-    pub fn parameters(&self) -> Result<&'a [f32], BytesError> {
-        placed(self.parameters)
-    }
-
-    /// Copies the parameters into `out` [[`parameter_count`](LeakyLayout::parameter_count)].
-    ///
-    /// # Errors
-    /// [`BytesError::Buffer`]; then nothing is copied.
-    pub fn copy_parameters(&self, out: &mut [f32]) -> Result<(), BytesError> {
-        copy(values(self.parameters), out)
+        self.shape.leak
     }
 }
 
-fn shape_of(layout: LeakyLayout, leak: Leak) -> [u32; SHAPE] {
-    let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
-    [sensors, hidden, outputs, layout.slope().to_bits(), leak as u32, 0, 0, 0]
+impl<'a> Shape<'a> for LeakyModel {
+    type Number = f32;
+
+    const KIND: Kind = Kind::LeakyNetwork;
+
+    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [sensors, hidden, outputs, slope, leak, ..] = words;
+        let leak = variant(&Leak::ALL, 4, leak)?;
+        check_unused(&words, 5)?;
+        let slope = finite(3, slope)?;
+        let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
+        Ok((Self { layout, leak }, content))
+    }
+
+    fn words(&self) -> [u32; SHAPE] {
+        let layout = self.layout;
+        let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
+        [sensors, hidden, outputs, layout.slope().to_bits(), self.leak as u32, 0, 0, 0]
+    }
+
+    fn byte_count(&self) -> usize {
+        NetworkBytes::<Self>::byte_count(self.layout)
+    }
+
+    fn check<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error> {
+        self.check_model(parameters, value)
+    }
 }

@@ -1,24 +1,29 @@
-//! Trained networks as bytes: in flash, in a file, over a wire. The format is `docs/controller-format.md`.
+//! Trained networks as bytes: in flash, in a file, over a wire. `docs/controller-format.md` specifies the format.
+//!
+//! Reading checks everything before anything runs, allocates nothing and panics on no input. The parameters are used in place.
 
-/// Of a network of blocks.
+/// Networks of blocks.
 mod block;
-/// Of a continuous-time network.
+/// Continuous-time networks.
 mod ctrnn;
-/// What can be wrong with bytes.
+/// Errors.
 mod error;
-/// What the bytes of all kinds have in common: head, channels, parameters, checksum.
+/// The common frame: head, parameters, checksum.
 mod frame;
-/// Of the leaky network.
+/// Leaky networks.
 mod leaky;
-/// Of the single layer.
+/// The reader that all kinds share.
+mod network;
+/// Single layers.
 mod perceptron;
-/// Of the leaky network in integers.
+/// Leaky networks in integers.
 mod quantized;
 
 pub use block::BlockNetworkBytes;
 pub use ctrnn::CtrnnBytes;
-pub use error::BytesError;
+pub use error::{BytesError, Field, Table};
 pub use frame::{Aligned, channel_hash};
 pub use leaky::LeakyNetworkBytes;
+pub use network::NetworkBytes;
 pub use perceptron::PerceptronBytes;
 pub use quantized::QuantizedNetworkBytes;

@@ -1,54 +1,30 @@
-//! A trained layer of logistic units as bytes.
+//! The bytes of a layer of logistic units.
 
 use crate::bytes::error::BytesError;
-use crate::bytes::frame::{
-    Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
-};
-use crate::perceptron::{Perceptron, check};
+use crate::bytes::frame::{Kind, SHAPE, check_unused, finite, word};
+use crate::bytes::network::{NetworkBytes, Shape, byte_count};
+use crate::error::Error;
+use crate::network::Model as _;
+use crate::perceptron::{Perceptron, PerceptronModel};
 
-/// A [`Perceptron`] of given bytes, as [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and
-/// used where it lies.
+/// The checked bytes of a [`Perceptron`].
 ///
-/// ```
-/// use farsa_nn::bytes::{Aligned, PerceptronBytes};
-/// use farsa_nn::{Controller, Perceptron};
-///
-/// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
-/// // A computer writes: weights source by source, then biases;
-/// let mut flash = Aligned([0; PerceptronBytes::byte_count(2, 2)]);
-/// PerceptronBytes::write(2, 2, 1.0, 0, &[0.0, 4.0, 4.0, 0.0, -2.0, -2.0], &mut flash.0)?;
-/// // a board reads: nothing is copied.
-/// let bytes = PerceptronBytes::read(&flash.0)?;
-/// bytes.expect(2, 2, 1.0)?;
-/// let mut vehicle = Perceptron::new(2, 2, bytes.slope(), bytes.parameters()?)?;
-/// let mut wheels = [0.0; 2];
-/// vehicle.step(&[1.0, 0.5], &mut wheels);
-/// assert_eq!(wheels[0], 0.5);
-/// # Ok(())
-/// # }
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct PerceptronBytes<'a> {
-    inputs: usize,
-    outputs: usize,
-    slope: f32,
-    channels: u64,
-    parameters: &'a [u8],
-}
+/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) has an example.
+pub type PerceptronBytes<'a> = NetworkBytes<'a, PerceptronModel>;
 
-impl PerceptronBytes<'_> {
-    /// Number of bytes of a layer of so many inputs and outputs; saturates.
+impl NetworkBytes<'_, PerceptronModel> {
+    /// Number of bytes of a layer of this shape. Saturates.
     pub const fn byte_count(inputs: usize, outputs: usize) -> usize {
-        frame_len(Perceptron::parameter_count(inputs, outputs).saturating_mul(4))
+        byte_count::<f32>(Perceptron::parameter_count(inputs, outputs))
     }
 
-    /// Fills `out` [[`byte_count`](Self::byte_count)] with a layer.
+    /// Writes a layer into `out` [[`byte_count`](Self::byte_count)].
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
+    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as [`Perceptron::new`](crate::Perceptron::new), [`BytesError::Buffer`]; then nothing is
-    /// written.
+    /// [`BytesError::Parameters`] as for [`Perceptron::new`](crate::Perceptron::new), [`BytesError::Buffer`].
+    /// Then nothing is written.
     pub fn write(
         inputs: usize,
         outputs: usize,
@@ -57,95 +33,59 @@ impl PerceptronBytes<'_> {
         parameters: &[f32],
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        check(inputs, outputs, slope, parameters.iter().copied())?;
-        let numbers = parameters.iter().map(|p| p.to_le_bytes());
-        Frame::write(Kind::Perceptron, &shape_of(inputs, outputs, slope), channels, numbers, out)
+        Shape::write(&PerceptronModel { inputs, outputs, slope }, channels, parameters, out)
     }
 
-    /// The layout hash: of the numbers of inputs and outputs, and the slope.
+    /// The layout hash of the numbers of inputs and outputs, and of the slope.
     pub fn layout_hash(inputs: usize, outputs: usize, slope: f32) -> u64 {
-        layout_hash(Kind::Perceptron, &shape_of(inputs, outputs, slope))
-    }
-}
-
-impl<'a> PerceptronBytes<'a> {
-    /// Checks bytes that should be a layer, all of them: the format, the checksum, the shape and every parameter.
-    ///
-    /// # Errors
-    /// As [`LeakyNetworkBytes::read`](crate::LeakyNetworkBytes::read).
-    pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::Perceptron, bytes)?;
-        let [inputs, outputs, bits, unused @ ..] = shape;
-        if let Some(at) = unused.iter().position(|word| *word != 0) {
-            return Err(BytesError::Shape { word: SHAPE - unused.len() + at, found: unused[at] });
-        }
-        let slope = f32::from_bits(bits);
-        if !slope.is_finite() {
-            return Err(BytesError::Shape { word: 2, found: bits });
-        }
-        let (inputs, outputs, found) = (inputs as usize, outputs as usize, bytes.len());
-        let expected = Self::byte_count(inputs, outputs);
-        if found != expected {
-            return Err(BytesError::Length { expected, found });
-        }
-        check(inputs, outputs, slope, values(parameters))?;
-        Ok(Self { inputs, outputs, slope, channels, parameters })
+        PerceptronModel { inputs, outputs, slope }.hash()
     }
 
-    /// Nothing, if the layer has so many inputs and outputs, and this slope.
+    /// Compares shape and slope with those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::OtherLayout`].
+    /// [`BytesError::Mismatch`].
     pub fn expect(&self, inputs: usize, outputs: usize, slope: f32) -> Result<(), BytesError> {
-        let own = PerceptronBytes::layout_hash(self.inputs, self.outputs, self.slope);
-        same_layout(PerceptronBytes::layout_hash(inputs, outputs, slope), own)
-    }
-
-    /// Nothing, if the layer is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
-    ///
-    /// # Errors
-    /// [`BytesError::OtherChannels`].
-    pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
-        same_channels(expected, self.channels)
+        self.expect_shape(&PerceptronModel { inputs, outputs, slope })
     }
 
     /// Number of inputs.
     pub const fn inputs(&self) -> usize {
-        self.inputs
+        self.shape.inputs
     }
 
     /// Number of outputs.
     pub const fn outputs(&self) -> usize {
-        self.outputs
+        self.shape.outputs
     }
 
     /// The slope of the logistic function.
     pub const fn slope(&self) -> f32 {
-        self.slope
-    }
-
-    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
-    pub const fn channels(&self) -> u64 {
-        self.channels
-    }
-
-    /// The parameters [[`parameter_count`](Perceptron::parameter_count)] where they lie.
-    ///
-    /// # Errors
-    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
-    pub fn parameters(&self) -> Result<&'a [f32], BytesError> {
-        placed(self.parameters)
-    }
-
-    /// Copies the parameters into `out` [[`parameter_count`](Perceptron::parameter_count)].
-    ///
-    /// # Errors
-    /// [`BytesError::Buffer`]; then nothing is copied.
-    pub fn copy_parameters(&self, out: &mut [f32]) -> Result<(), BytesError> {
-        copy(values(self.parameters), out)
+        self.shape.slope
     }
 }
 
-fn shape_of(inputs: usize, outputs: usize, slope: f32) -> [u32; SHAPE] {
-    [word(inputs), word(outputs), slope.to_bits(), 0, 0, 0, 0, 0]
+impl<'a> Shape<'a> for PerceptronModel {
+    type Number = f32;
+
+    const KIND: Kind = Kind::Perceptron;
+
+    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [inputs, outputs, slope, ..] = words;
+        check_unused(&words, 3)?;
+        let (inputs, outputs, slope) = (inputs as usize, outputs as usize, finite(2, slope)?);
+        Ok((Self { inputs, outputs, slope }, content))
+    }
+
+    fn words(&self) -> [u32; SHAPE] {
+        [word(self.inputs), word(self.outputs), self.slope.to_bits(), 0, 0, 0, 0, 0]
+    }
+
+    fn byte_count(&self) -> usize {
+        NetworkBytes::<Self>::byte_count(self.inputs, self.outputs)
+    }
+
+    fn check<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error> {
+        self.check_model(parameters, value)
+    }
 }

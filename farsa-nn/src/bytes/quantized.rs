@@ -1,17 +1,18 @@
-//! A trained network of integers as bytes.
+//! The bytes of a leaky network in integers.
 
-use crate::bytes::error::BytesError;
-use crate::bytes::frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
+use crate::bytes::error::{BytesError, Field};
+use crate::bytes::frame::{Kind, SHAPE, layout_hash, variant, word};
+use crate::bytes::network::{NetworkBytes, Shape, byte_count};
+use crate::error::Error;
 use crate::leak::Leak;
 use crate::leaky_layout::LeakyLayout;
 use crate::quantized::network::check;
 use crate::quantized::scale::QuantizedScale;
 
-/// A [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) of given bytes, as
-/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and used where it lies.
+/// The checked bytes of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork).
 ///
-/// The scale lies beside the parameters: each individual has its own, and only the fraction bits of the sensor values are the
-/// board's business. The slope of the logistic function is in the weights.
+/// The scale is stored next to the parameters, because it differs between individuals. A board only fixes the fraction bits
+/// of the sensor values. The weights include the slope of the logistic function.
 ///
 /// ```
 /// use farsa_nn::bytes::{Aligned, QuantizedNetworkBytes};
@@ -20,46 +21,47 @@ use crate::quantized::scale::QuantizedScale;
 ///
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 1, 1);
 /// # fn main() -> Result<(), farsa_nn::bytes::BytesError> {
-/// // A computer writes,
+/// // A computer writes.
 /// let mut fixed = [0; LAYOUT.parameter_count()];
 /// let scale = QuantizedScale::quantize(&LAYOUT, 9, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut fixed)?;
 /// let mut flash = Aligned([0; QuantizedNetworkBytes::byte_count(LAYOUT)]);
 /// QuantizedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &fixed, &mut flash.0)?;
-/// // a board without floating-point arithmetic reads: nothing is copied.
+/// // A board without floating-point arithmetic reads and copies nothing.
 /// let bytes = QuantizedNetworkBytes::read(&flash.0)?;
 /// bytes.expect(LAYOUT, Leak::Filter, 9)?;
 /// let state = [0; LAYOUT.state_len()];
 /// let mut network = QuantizedNetwork::new(LAYOUT, Leak::Filter, bytes.scale(), bytes.parameters()?, state)?;
 /// let mut y = [0];
 /// network.step_quantized(&[256, 102], &mut y);
-/// // Others may come later, with a scale of their own.
+/// // Another individual with another scale can replace it later.
 /// let others = QuantizedNetworkBytes::read(&flash.0)?;
 /// network.set_parameters(others.scale(), others.parameters()?)?;
 /// # Ok(())
 /// # }
 /// ```
+pub type QuantizedNetworkBytes<'a> = NetworkBytes<'a, QuantizedShape>;
+
+/// The shape of the bytes of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork).
 #[derive(Clone, Copy, Debug)]
-pub struct QuantizedNetworkBytes<'a> {
+pub struct QuantizedShape {
     layout: LeakyLayout,
     leak: Leak,
     scale: QuantizedScale,
-    channels: u64,
-    parameters: &'a [u8],
 }
 
-impl QuantizedNetworkBytes<'_> {
-    /// Number of bytes of a network of this layout; saturates.
+impl NetworkBytes<'_, QuantizedShape> {
+    /// Number of bytes of a network of this layout. Saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
-        frame_len(layout.parameter_count().saturating_mul(2))
+        byte_count::<i16>(layout.parameter_count())
     }
 
-    /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
+    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
     ///
-    /// `channels` says what inputs and outputs are, by [`channel_hash`](crate::bytes::channel_hash); 0 says nothing.
+    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as [`QuantizedNetwork::new`](crate::QuantizedNetwork::new), [`BytesError::Buffer`];
-    /// then nothing is written.
+    /// [`BytesError::Parameters`] as for [`QuantizedNetwork::new`](crate::quantized::QuantizedNetwork::new), [`BytesError::Buffer`].
+    /// Then nothing is written.
     pub fn write(
         layout: LeakyLayout,
         leak: Leak,
@@ -68,108 +70,68 @@ impl QuantizedNetworkBytes<'_> {
         parameters: &[i16],
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        check(&layout, scale, parameters, |fixed| fixed)?;
-        let numbers = parameters.iter().map(|p| p.to_le_bytes());
-        Frame::write(Kind::QuantizedNetwork, &shape_of(layout, leak, bits(scale)), channels, numbers, out)
+        Shape::write(&QuantizedShape { layout, leak, scale }, channels, parameters, out)
     }
 
-    /// The layout hash: of the layout but for its slope, the reading of the leak and the scale.
+    /// The layout hash of the layout without its slope, the reading of the leak and the scale.
     pub fn layout_hash(layout: LeakyLayout, leak: Leak, scale: QuantizedScale) -> u64 {
-        hash_of(layout, leak, bits(scale))
-    }
-}
-
-impl<'a> QuantizedNetworkBytes<'a> {
-    /// Checks bytes that should be a network of integers, all of them: the format, the checksum, the layout, the scale, every
-    /// parameter, and that no sum can overflow.
-    ///
-    /// # Errors
-    /// As [`LeakyNetworkBytes::read`](crate::LeakyNetworkBytes::read).
-    pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::QuantizedNetwork, bytes)?;
-        let [sensors, hidden, outputs, slope, leak, inputs, weights, sums] = shape;
-        if slope != 0 {
-            return Err(BytesError::Shape { word: 3, found: slope });
-        }
-        let Some(&reading) = Leak::ALL.get(leak as usize) else {
-            return Err(BytesError::Shape { word: 4, found: leak });
-        };
-        let scale = QuantizedScale::new(inputs, weights, sums)?;
-        let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize);
-        let found = bytes.len();
-        if found != Self::byte_count(layout) {
-            return Err(BytesError::Length { expected: Self::byte_count(layout), found });
-        }
-        check(&layout, scale, parameters.as_chunks().0, i16::from_le_bytes)?;
-        Ok(Self { layout, leak: reading, scale, channels, parameters })
+        QuantizedShape { layout, leak, scale }.hash()
     }
 
-    /// Nothing, if the network is of this layout, whatever its slope, this reading of the leak and sensor values of so many
-    /// fraction bits.
+    /// Compares the layout without its slope, the reading of the leak and the fraction bits of sensor values with those of
+    /// the caller.
     ///
     /// # Errors
-    /// [`BytesError::OtherLayout`].
+    /// [`BytesError::Mismatch`].
     pub fn expect(&self, layout: LeakyLayout, leak: Leak, input_bits: u32) -> Result<(), BytesError> {
-        let [_, weights, sums] = bits(self.scale);
-        let own = hash_of(self.layout, self.leak, bits(self.scale));
-        same_layout(hash_of(layout, leak, [input_bits, weights, sums]), own)
+        let mut words = QuantizedShape { layout, leak, scale: self.shape.scale }.words();
+        words[5] = input_bits;
+        Field::Layout.check(layout_hash(Kind::QuantizedNetwork, &words), self.shape.hash())
     }
 
-    /// Nothing, if the network is for these channels, by their [`channel_hash`](crate::bytes::channel_hash).
-    ///
-    /// # Errors
-    /// [`BytesError::OtherChannels`].
-    pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
-        same_channels(expected, self.channels)
-    }
-
-    /// The layout, with a slope that says nothing.
+    /// The layout. Its slope has no meaning.
     pub const fn layout(&self) -> LeakyLayout {
-        self.layout
+        self.shape.layout
     }
 
     /// The reading of the leak.
     pub const fn leak(&self) -> Leak {
-        self.leak
+        self.shape.leak
     }
 
-    /// Where the binary points lie.
+    /// The positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
-        self.scale
-    }
-
-    /// The [`channel_hash`](crate::bytes::channel_hash) of its inputs and outputs; 0 if nothing is said.
-    pub const fn channels(&self) -> u64 {
-        self.channels
-    }
-
-    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)] where they lie.
-    ///
-    /// # Errors
-    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
-    pub fn parameters(&self) -> Result<&'a [i16], BytesError> {
-        placed(self.parameters)
-    }
-
-    /// Copies the parameters into `out` [[`parameter_count`](LeakyLayout::parameter_count)].
-    ///
-    /// # Errors
-    /// [`BytesError::Buffer`]; then nothing is copied.
-    pub fn copy_parameters(&self, out: &mut [i16]) -> Result<(), BytesError> {
-        copy(self.parameters.as_chunks().0.iter().map(|bytes| i16::from_le_bytes(*bytes)), out)
+        self.shape.scale
     }
 }
 
-/// Fraction bits of inputs, weights and sums.
-const fn bits(scale: QuantizedScale) -> [u32; 3] {
-    [scale.input_bits(), scale.weight_bits(), scale.sum_bits()]
-}
+impl<'a> Shape<'a> for QuantizedShape {
+    type Number = i16;
 
-fn hash_of(layout: LeakyLayout, leak: Leak, bits: [u32; 3]) -> u64 {
-    layout_hash(Kind::QuantizedNetwork, &shape_of(layout, leak, bits))
-}
+    const KIND: Kind = Kind::QuantizedNetwork;
 
-fn shape_of(layout: LeakyLayout, leak: Leak, [inputs, weights, sums]: [u32; 3]) -> [u32; SHAPE] {
-    let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
-    [sensors, hidden, outputs, 0, leak as u32, inputs, weights, sums]
+    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [sensors, hidden, outputs, slope, leak, inputs, weights, sums] = words;
+        if slope != 0 {
+            return Err(BytesError::shape(3, slope));
+        }
+        let leak = variant(&Leak::ALL, 4, leak)?;
+        let scale = QuantizedScale::new(inputs, weights, sums)?;
+        let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize);
+        Ok((Self { layout, leak, scale }, content))
+    }
+
+    fn words(&self) -> [u32; SHAPE] {
+        let Self { layout, leak, scale } = self;
+        let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
+        [sensors, hidden, outputs, 0, *leak as u32, scale.input_bits(), scale.weight_bits(), scale.sum_bits()]
+    }
+
+    fn byte_count(&self) -> usize {
+        NetworkBytes::<Self>::byte_count(self.layout)
+    }
+
+    fn check<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> i16 + Copy) -> Result<(), Error> {
+        check(&self.layout, self.scale, parameters, value)
+    }
 }

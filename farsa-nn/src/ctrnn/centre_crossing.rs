@@ -1,17 +1,18 @@
-//! Biases with which every neuron of a continuous-time network works where its function is steepest.
+//! Biases that place every neuron of a continuous-time network where its function is steepest.
 
 use farsa_num::Stream;
 
 use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
+use crate::fault::Slice;
 
 impl CtrnnLayout {
-    /// Sets the biases to `theta_i = - sum_j w_ji / 2`: the nullclines of all neurons cross at the centres of their
-    /// functions, where the network is most likely to do something.
+    /// Sets the biases to `theta_i = - sum_j w_ji / 2`: the nullclines of all neurons cross at the centers of their
+    /// functions, where rich dynamics are most likely.
     ///
-    /// For the logistic function; with tanh, whose centre is 0, the biases are 0. Inputs are taken to be at rest.
+    /// This holds for the logistic function and inputs at rest. With tanh, whose center is 0, the biases are 0.
     ///
-    /// Source: `[Mathayomchan2002]`; no deviation for the logistic function.
+    /// Source: `[Mathayomchan2002]`. No deviation for the logistic function.
     ///
     /// ```
     /// use farsa_nn::CtrnnLayout;
@@ -24,18 +25,15 @@ impl CtrnnLayout {
     /// ```
     ///
     /// # Errors
-    /// [`Error::ParameterCount`]; then the parameters are unchanged.
+    /// [`Error::Length`]. Then the parameters are unchanged.
     pub fn centre_crossing(&self, parameters: &mut [f32]) -> Result<(), Error> {
-        let (expected, found) = (self.parameter_count(), parameters.len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
+        Slice::Parameters.check(self.parameter_count(), parameters.len())?;
         let middle = self.activation().apply(0.0);
         let (weights, rest) = parameters.split_at_mut(self.range(CtrnnParameter::Bias).start);
         let weights = weights.get(self.range(CtrnnParameter::Weight)).unwrap_or(&[]);
         for (i, bias) in rest.iter_mut().take(self.neurons()).enumerate() {
             let sum: f32 = weights.iter().skip(i).step_by(self.neurons()).sum();
-            // 0 and not -0 without weights.
+            // 0 instead of -0 without weights.
             *bias = 0.0 - sum * middle;
         }
         Ok(())
@@ -44,10 +42,10 @@ impl CtrnnLayout {
     /// Draws a centre-crossing network: weights, and those of inputs, in `[-weight, weight)`, gains of 1, time constants in
     /// `[shortest, longest)`, and the biases of [`centre_crossing`](Self::centre_crossing).
     ///
-    /// Draws one word for each weight and each time constant, in their order.
+    /// Draws one number for each weight and each time constant, in their order.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`]; then the parameters are unchanged and nothing is drawn.
+    /// [`Error::Length`]. Then the parameters are unchanged and nothing is drawn.
     pub fn draw_centre_crossing(
         &self,
         stream: &mut Stream,
@@ -55,10 +53,7 @@ impl CtrnnLayout {
         time_constants: [f32; 2],
         parameters: &mut [f32],
     ) -> Result<(), Error> {
-        let (expected, found) = (self.parameter_count(), parameters.len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
+        Slice::Parameters.check(self.parameter_count(), parameters.len())?;
         let [shortest, longest] = time_constants;
         for (p, kind) in parameters.iter_mut().zip(self.kinds()) {
             *p = match kind {

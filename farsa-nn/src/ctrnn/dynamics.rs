@@ -1,7 +1,7 @@
 //! One step of a continuous-time network, over the lanes of a [`Scalar`].
 //!
-//! Lanes are neurons, which depend on each other only through the outputs of the step before: as in the kernel of layers,
-//! the width of the vectors does not show in the bits.
+//! Lanes are neurons, which depend on each other only through the outputs of the previous step. As in the kernel of layers, the
+//! width of the vectors does not change a bit.
 
 use core::f64::consts::LN_2;
 
@@ -12,46 +12,45 @@ use crate::ctrnn::integrator::Integrator;
 use crate::kernel::{Lanes, Layer};
 use crate::lesion::Lesion;
 
-/// What a step reads and writes; all but the weights and inputs are `[neurons]`.
+/// The data of a step. All slices except weights and inputs are `[neurons]`.
 pub(crate) struct Dynamics<'a, R = f32> {
     pub(crate) integrator: Integrator,
     pub(crate) activation: Activation,
     /// The states.
     pub(crate) y: &'a mut [R],
-    /// The outputs: those of `y` before and after a step.
+    /// The outputs that belong to `y`, before and after a step.
     pub(crate) o: &'a mut [R],
-    /// What [`rate`] makes of the time constants.
+    /// The [`rate`] of each time constant.
     pub(crate) rates: &'a [R],
     pub(crate) biases: &'a [R],
     pub(crate) gains: &'a [R],
-    /// The external inputs; empty for none.
+    /// The external inputs, or empty.
     pub(crate) external: &'a [R],
-    /// Inputs and their weights, source-major; empty for none.
+    /// Inputs and their weights, source-major, or empty.
     pub(crate) inputs: (&'a [R], &'a [R]),
     /// Weights between the neurons, source-major.
     pub(crate) weights: &'a [R],
     /// Neurons whose outputs are held.
     pub(crate) lesions: &'a [Lesion],
-    /// Workspace: what the neurons are driven to.
+    /// Workspace: the net inputs.
     pub(crate) net: &'a mut [R],
-    /// Workspace of Runge-Kutta: the weighted sum of the slopes so far; empty for other integrators.
+    /// Workspace of Runge-Kutta, else empty: the weighted sum of the slopes so far.
     pub(crate) sum: &'a mut [R],
-    /// Workspace of Runge-Kutta: the states at which the next slope is taken; empty for other integrators.
+    /// Workspace of Runge-Kutta, else empty: the states of the next slope.
     pub(crate) point: &'a mut [R],
 }
 
-/// What an integrator needs of a time constant and a time step.
+/// The coefficient of an integrator for a time constant and a time step.
 ///
-/// The exponential one goes from `a` by a fraction of the way to `b`. Both ends will do, and the nearer one is exact: the
-/// fraction `1 - exp(-dt/tau)` of the way from the state if it is below a half, else, with a minus sign to tell, the
-/// fraction `exp(-dt/tau)` of the way back from what drives it.
+/// The exponential integrator moves the state to the net input by the fraction `1 - exp(-dt/tau)`. Above a half, the fraction
+/// `exp(-dt/tau)` back from the net input is more exact. A minus sign marks this second form.
 pub(crate) fn rate(integrator: Integrator, time_step: f64, time_constant: f64) -> f64 {
     let x = time_step / time_constant;
     match integrator {
         Integrator::Euler | Integrator::RungeKutta4 => x,
         // The difference of 1 and the exponential would lose its digits at small x.
         Integrator::ExponentialEuler if x < LN_2 => tanh(0.5 * x) * (1.0 + exp(-x)),
-        // Not zero, which has no sign to compare.
+        // Not zero, because the sign is compared.
         Integrator::ExponentialEuler => -exp(-x).max(1e-30),
     }
 }
@@ -68,7 +67,7 @@ impl Lanes for Dynamics<'_> {
 }
 
 impl<R: Real> Dynamics<'_, R> {
-    /// Brings the outputs up to date with states that were set.
+    /// Computes the outputs of new states.
     #[inline(never)]
     pub(crate) fn refresh(&mut self) {
         for i in 0..self.y.len() {
@@ -76,7 +75,7 @@ impl<R: Real> Dynamics<'_, R> {
         }
     }
 
-    /// One step; does nothing where there are fewer neurons than lanes.
+    /// Advances by one step. Does nothing if there are fewer neurons than lanes.
     #[inline(always)]
     fn stages<S: Scalar<Real = R>>(&mut self, simd: S::Simd) {
         let neurons = self.y.len();
@@ -87,8 +86,8 @@ impl<R: Real> Dynamics<'_, R> {
             let sources = [self.inputs, (&*self.o, self.weights)];
             let layer = Layer { targets: neurons, slope: R::from_f64(1.0), biases: self.external, sources };
             layer.all_sums::<S>(simd, self.net);
-            // What is left over is a vector that overlaps the one before it. It is computed first, of what that one will
-            // overwrite, and stored last, with the same values where both have been.
+            // The last vector may overlap the previous one. It is computed first, before the previous one overwrites its
+            // data, and stored last, with the same values in the overlap.
             let end = self.advance::<S>(simd, stage, last);
             let mut i = 0;
             while i < last {
@@ -155,7 +154,7 @@ impl<R: Real> Dynamics<'_, R> {
         }
     }
 
-    /// The outputs of the neurons from `i` on in these states; of a NaN 0.
+    /// The outputs of the neurons from `i` on in these states, 0 for a NaN.
     #[inline(always)]
     fn output<S: Scalar<Real = R>>(&self, i: usize, y: S) -> S {
         let (bias, gain) = (S::load(y.simd(), &self.biases[i..]), S::load(y.simd(), &self.gains[i..]));

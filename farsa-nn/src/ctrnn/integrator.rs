@@ -1,4 +1,4 @@
-//! How a continuous network is carried from one time to the next.
+//! Integrators of continuous-time networks.
 
 use core::fmt;
 use core::str::FromStr;
@@ -6,9 +6,9 @@ use core::str::FromStr;
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// How a [`Ctrnn`](crate::Ctrnn) goes from `t` to `t + dt`; external inputs are held over the step.
+/// The method that advances a [`Ctrnn`](crate::Ctrnn) from `t` to `t + dt` with constant external inputs.
 ///
-/// With `f_i(y) = ( -y_i + net_i(y) ) / tau_i`, where `net_i` is what a neuron is driven to:
+/// With `f_i(y) = ( -y_i + net_i(y) ) / tau_i` and the net input `net_i`:
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -36,7 +36,7 @@ impl Integrator {
         }
     }
 
-    /// The smallest time constant [s] with which a neuron alone does not diverge at this time step [s]; 0 if each will do.
+    /// The smallest time constant [s] with which a single neuron does not diverge at this time step [s], 0 if all are stable.
     ///
     /// ```
     /// use farsa_nn::Integrator;
@@ -62,11 +62,14 @@ impl fmt::Display for Integrator {
 impl FromStr for Integrator {
     type Err = Error;
 
-    /// The integrator of this name, in any case and with or without the hyphens, so that `RungeKutta4` is `runge-kutta-4`.
+    /// Finds the integrator of this name, ignoring case and hyphens. `RungeKutta4` is `runge-kutta-4`.
     ///
     /// # Errors
-    /// [`Error::UnknownIntegrator`] when none has this name.
+    /// [`Error::Name`] for an unknown name.
     fn from_str(name: &str) -> Result<Self, Error> {
-        Self::ALL.into_iter().find(|one| same_letters(name, one.name())).ok_or(Error::UnknownIntegrator)
+        Self::ALL
+            .into_iter()
+            .find(|integrator| same_letters(name, integrator.name()))
+            .ok_or(Error::Name { of: "integrator", names: "euler, exponential-euler, runge-kutta-4" })
     }
 }

@@ -5,7 +5,7 @@ use core::ops::Range;
 use crate::activation::Activation;
 use crate::ctrnn::integrator::Integrator;
 
-/// What one parameter of a [`CtrnnLayout`] is.
+/// The kind of a parameter of a [`CtrnnLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -17,24 +17,24 @@ pub enum CtrnnParameter {
     Weight,
     /// `theta_i`: added to the state of neuron `i`.
     Bias,
-    /// `g_i`: the gain of neuron `i`; 1 where an experiment has none.
+    /// `g_i`: the gain of neuron `i`, 1 in an experiment without gains.
     Gain,
     /// `tau_i` [s]: the time constant of neuron `i`.
     TimeConstant,
 }
 
 impl CtrnnParameter {
-    /// Every kind, in the order in which they lie in the parameters.
+    /// Every kind, in the order of the parameters.
     pub const ALL: [Self; 5] = [Self::InputWeight, Self::Weight, Self::Bias, Self::Gain, Self::TimeConstant];
 }
 
-/// Numbers of inputs `m`, neurons `n` and outputs of a [`Ctrnn`](crate::Ctrnn), where inputs enter and outputs are read,
-/// and how it is integrated.
+/// The layout of a [`Ctrnn`](crate::Ctrnn): numbers of inputs `m`, neurons `n` and outputs, the neurons of inputs and outputs, and
+/// the integrator.
 ///
-/// Inputs are weighted, and reach every neuron, or are direct: input `k` is the external input of one neuron. Neurons have
-/// no order of their own, so both the neurons of direct inputs and those of the outputs are one range each.
+/// Weighted inputs reach every neuron. A direct input `k` is the external input of one neuron. The neurons of direct inputs are
+/// one range, and so are those of the outputs.
 ///
-/// The parameters are one slice, source-major: all targets of one source together. `m` counts 0 where inputs are direct.
+/// The parameters are one slice, source-major: all targets of one source together. `m` counts 0 if inputs are direct.
 ///
 /// | kind | count | at |
 /// |---|---|---|
@@ -49,7 +49,7 @@ impl CtrnnParameter {
 /// ```
 /// use farsa_nn::{CtrnnLayout, Integrator};
 ///
-/// // Seven sensory, five inner, two motor neurons; each input goes to a neuron of its own.
+/// // Seven sensory, five inner, two motor neurons. Each input has its own neuron.
 /// const AGENT: CtrnnLayout = CtrnnLayout::new(7, 14, 2).with_direct_inputs(0).with_integrator(Integrator::RungeKutta4);
 /// assert_eq!(AGENT.parameter_count(), 14 * 14 + 3 * 14);
 /// assert_eq!(AGENT.output_neurons(), 12..14);
@@ -60,18 +60,18 @@ pub struct CtrnnLayout {
     inputs: usize,
     neurons: usize,
     outputs: usize,
-    /// The first neuron of direct inputs; `None` if they are weighted.
+    /// The first neuron of direct inputs, `None` if they are weighted.
     direct: Option<usize>,
     first_output: usize,
     integrator: Integrator,
     activation: Activation,
 }
 
-/// The parameters of a [`CtrnnLayout`] by kind, as [`CtrnnLayout::split`] cuts them.
+/// The parameters of a [`CtrnnLayout`] by kind, as returned by [`CtrnnLayout::split`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CtrnnParts<'a> {
-    /// Weights from the inputs `[inputs x neurons]`; empty where inputs are direct.
+    /// Weights from the inputs `[inputs x neurons]`, empty if inputs are direct.
     pub input_weights: &'a [f32],
     /// Weights between neurons `[neurons x neurons]`.
     pub weights: &'a [f32],
@@ -84,8 +84,8 @@ pub struct CtrnnParts<'a> {
 }
 
 impl CtrnnLayout {
-    /// A layout of so many inputs, neurons and outputs: inputs are weighted, outputs are those of the last neurons, the
-    /// integrator is [`Integrator::Euler`] and the activation [`Activation::Logistic`].
+    /// Builds a layout with weighted inputs and the outputs of the last neurons. The integrator is [`Integrator::Euler`], the
+    /// activation [`Activation::Logistic`].
     pub const fn new(inputs: usize, neurons: usize, outputs: usize) -> Self {
         Self {
             inputs,
@@ -98,26 +98,26 @@ impl CtrnnLayout {
         }
     }
 
-    /// The same with input `k` as the external input of neuron `first + k`, without weights.
+    /// Makes input `k` the external input of neuron `first + k`, without weights.
     ///
-    /// They must be neurons of the layout, which [`Ctrnn::new`](crate::Ctrnn::new) checks.
+    /// [`Ctrnn::new`](crate::Ctrnn::new) checks that the neurons exist.
     pub const fn with_direct_inputs(self, first: usize) -> Self {
         Self { direct: Some(first), ..self }
     }
 
-    /// The same with the outputs of the neurons from `first` on.
+    /// Uses the outputs of the neurons from `first` on.
     ///
-    /// They must be neurons of the layout, which [`Ctrnn::new`](crate::Ctrnn::new) checks.
+    /// [`Ctrnn::new`](crate::Ctrnn::new) checks that the neurons exist.
     pub const fn with_outputs_from(self, first: usize) -> Self {
         Self { first_output: first, ..self }
     }
 
-    /// The same with another integrator.
+    /// Sets the integrator.
     pub const fn with_integrator(self, integrator: Integrator) -> Self {
         Self { integrator, ..self }
     }
 
-    /// The same with another activation function of all neurons.
+    /// Sets the activation function of all neurons.
     pub const fn with_activation(self, activation: Activation) -> Self {
         Self { activation, ..self }
     }
@@ -137,7 +137,7 @@ impl CtrnnLayout {
         self.outputs
     }
 
-    /// The neurons whose external inputs the inputs are; `None` if inputs are weighted.
+    /// The neurons of direct inputs, `None` if inputs are weighted.
     pub const fn direct_inputs(&self) -> Option<Range<usize>> {
         match self.direct {
             Some(first) => Some(first..first.saturating_add(self.inputs)),
@@ -145,7 +145,7 @@ impl CtrnnLayout {
         }
     }
 
-    /// The neurons whose outputs are the network's.
+    /// The neurons of the outputs.
     pub const fn output_neurons(&self) -> Range<usize> {
         self.first_output..self.first_output.saturating_add(self.outputs)
     }
@@ -165,19 +165,19 @@ impl CtrnnLayout {
         self.range(CtrnnParameter::TimeConstant).end
     }
 
-    /// Length of the state: `5*n` where inputs are direct, `4*n + m` where they are weighted, and `2*n` more for
+    /// Length of the state: `5*n` for direct inputs, `4*n + m` for weighted ones, and `2*n` more for
     /// [`Integrator::RungeKutta4`].
     ///
-    /// In this order: the states `y` `[neurons]`, the outputs `o` `[neurons]`, what the integrator needs of each time
-    /// constant `[neurons]`, the workspace of the sums `[neurons]`, the inputs, and the workspace of the method.
-    /// Only `y` is memory: all else follows from it and from the parameters.
+    /// The order is: states `y` `[neurons]`, outputs `o` `[neurons]`, coefficients of the time constants `[neurons]`, workspace
+    /// of the sums `[neurons]`, inputs, workspace of the integrator. Only `y` is memory. The rest follows from it and from the
+    /// parameters.
     pub const fn state_len(&self) -> usize {
         let inputs = if self.direct.is_some() { self.neurons } else { self.inputs };
         let vectors = if matches!(self.integrator, Integrator::RungeKutta4) { 6 } else { 4 };
         self.neurons.saturating_mul(vectors).saturating_add(inputs)
     }
 
-    /// Where the parameters of one kind lie.
+    /// The indices of the parameters of one kind.
     pub const fn range(&self, kind: CtrnnParameter) -> Range<usize> {
         let n = self.neurons;
         let weights = if self.direct.is_some() { 0 } else { self.inputs.saturating_mul(n) };
@@ -193,12 +193,12 @@ impl CtrnnLayout {
         }
     }
 
-    /// What the parameter at this index is; `None` beyond the last.
+    /// The kind of the parameter at this index, `None` beyond the last.
     pub fn kind(&self, index: usize) -> Option<CtrnnParameter> {
         CtrnnParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// What each parameter is, in their order, for decoding a genome.
+    /// The kind of each parameter, in their order, for decoding a genome.
     ///
     /// ```
     /// use farsa_nn::{CtrnnLayout, CtrnnParameter};
@@ -220,9 +220,9 @@ impl CtrnnLayout {
         CtrnnParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// Cuts parameters [[`parameter_count`](Self::parameter_count)] into their kinds.
+    /// Splits parameters [[`parameter_count`](Self::parameter_count)] by kind.
     ///
-    /// Where the slice is too short the last kinds are, too; what is longer is left out.
+    /// A slice that is too short truncates the last kinds. Extra parameters are ignored.
     pub fn split<'a>(&self, parameters: &'a [f32]) -> CtrnnParts<'a> {
         let part = |kind| {
             let Range { start, end } = self.range(kind);

@@ -1,16 +1,16 @@
 //! The continuous-time recurrent network.
 
-/// Biases with which every neuron works where its function is steepest.
+/// Biases that place every neuron where its function is steepest.
 mod centre_crossing;
 /// One step, over the lanes of a scalar.
 mod dynamics;
-/// How the states are carried from one time to the next.
+/// Integrators.
 pub(crate) mod integrator;
 /// The shape of a network and the order of its parameters.
 pub(crate) mod layout;
 /// The network: parameters, states, steps.
 pub(crate) mod network;
-/// Few genes for a network whose two sides are the same.
+/// Few genes for a network with mirror symmetry.
 mod symmetry;
 
 pub use integrator::Integrator;

@@ -1,34 +1,34 @@
 //! The continuous-time recurrent network.
 
-use farsa_num::Instructions;
-use farsa_num::fearless_simd::Level;
-
-use crate::controller::Controller;
 use crate::ctrnn::dynamics::{Dynamics, rate};
 use crate::ctrnn::integrator::Integrator;
 use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
-use crate::kernel::{self, level};
-use crate::lesion::{Ablatable, Lesion};
+use crate::fault::{LayoutFault, ParameterFault, Slice};
+use crate::kernel;
+use crate::lesion::Lesion;
+use crate::network::{Data, Model, Network, check_parameters};
 
-/// A continuous-time recurrent neural network, over parameters and state that are the caller's.
+/// A continuous-time recurrent neural network.
 ///
-/// Each neuron has a state `y_i`, an output `o_i`, a time constant `tau_i`, a bias `theta_i` and a gain `g_i`; with
-/// `sigma(x) = 1/(1 + exp(-x))`, or what [`CtrnnLayout::with_activation`] says, and external inputs `I_i`:
+/// Each neuron has a state `y_i`, an output `o_i`, a time constant `tau_i`, a bias `theta_i` and a gain `g_i`. With
+/// `sigma(x) = 1/(1 + exp(-x))`, or the function of [`CtrnnLayout::with_activation`], and external inputs `I_i`:
 ///
 /// ```text
 /// tau_i dy_i/dt = -y_i + sum_j w_ji o_j + I_i          o_j = sigma( g_j (y_j + theta_j) )
 /// ```
 ///
-/// `I_i` is `sum_k s_ki x_k`, or the input itself where inputs are direct. [`step`](Controller::step) goes one time step
-/// further with the inputs held and gives the outputs at its end. Sums start at the external input and add the neurons in
-/// their order.
+/// `I_i` is `sum_k s_ki x_k`, or the input itself where inputs are direct. [`step`](crate::Controller::step) advances by one
+/// time step with constant inputs and writes the outputs at its end. Sums start at the external input and add the neurons
+/// in their order.
 ///
-/// A state of NaN, which only an overflow of the sums can make, puts out 0 and so does not spread; it stays until
-/// [`reset`](Controller::reset). Inputs beyond [`INPUT_LIMIT`](Ctrnn::INPUT_LIMIT) count as the limit, NaN as 0.
+/// Only an overflow of the sums can make a state NaN. Its output is 0, so it does not spread, and it lasts until
+/// [`reset`](crate::Controller::reset). Inputs beyond [`INPUT_LIMIT`](Ctrnn::INPUT_LIMIT) count as the limit, NaN as 0.
 ///
-/// Source: `[Beer1995]` eq. 1, with the gains of `[Beer1996]`. Deviations: the start is `y = 0` wherever the source draws it;
-/// there is more than one integrator.
+/// For lesions, neurons are numbered as in the layout. A held neuron has its output held, and its state continues.
+///
+/// Source: `[Beer1995]` eq. 1, with the gains of `[Beer1996]`. Deviations: the initial state is `y = 0` where the source draws
+/// it, and there is more than one integrator.
 ///
 /// ```
 /// use farsa_nn::{Controller, Ctrnn, CtrnnLayout};
@@ -49,125 +49,54 @@ use crate::lesion::{Ablatable, Lesion};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
-pub struct Ctrnn<P, S> {
-    layout: CtrnnLayout,
-    time_step: f32,
-    parameters: P,
-    state: S,
-    level: Level,
+pub type Ctrnn<P, S> = Network<CtrnnModel, P, S>;
+
+/// The layout of a [`Ctrnn`] and its time step [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CtrnnModel {
+    pub(crate) layout: CtrnnLayout,
+    pub(crate) time_step: f32,
 }
 
 impl Ctrnn<(), ()> {
-    /// The largest magnitude of an input that acts as it is.
+    /// The largest magnitude of an input. Larger inputs are clamped.
     pub const INPUT_LIMIT: f32 = 1e6;
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
-    /// A network at rest (`y = 0`): checks the parameters [[`parameter_count`](CtrnnLayout::parameter_count)] and overwrites
-    /// the state [[`state_len`](CtrnnLayout::state_len)]. The time step is in the unit of the time constants [s].
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<CtrnnModel, P, S> {
+    /// Builds a network at rest (`y = 0`) from parameters [[`parameter_count`](CtrnnLayout::parameter_count)] and a state
+    /// [[`state_len`](CtrnnLayout::state_len)], which it overwrites. The time step has the unit of the time constants [s].
     ///
     /// # Errors
-    /// [`Error::TimeStep`], [`Error::Neurons`], [`Error::ParameterCount`], [`Error::NotFinite`], [`Error::TimeConstant`] or
-    /// [`Error::StateLen`]: the first that applies, and of the parameters the first that is wrong.
-    pub fn new(layout: CtrnnLayout, time_step: f32, parameters: P, mut state: S) -> Result<Self, Error> {
-        check_layout(&layout, time_step)?;
-        check(&layout, time_step, parameters.as_ref())?;
-        let (expected, found) = (layout.state_len(), state.as_mut().len());
-        if expected != found {
-            return Err(Error::StateLen { expected, found });
-        }
-        let mut network = Self { layout, time_step, parameters, state, level: level() };
-        network.reset();
-        Ok(network)
+    /// [`Error::Layout`] for the time step or for neurons, [`Error::Length`] or [`Error::Parameter`].
+    pub fn new(layout: CtrnnLayout, time_step: f32, parameters: P, state: S) -> Result<Self, Error> {
+        Self::at_rest(CtrnnModel { layout, time_step }, parameters, state)
     }
 
-    /// Points the network at other parameters [[`parameter_count`](CtrnnLayout::parameter_count)] and returns the old ones;
-    /// the states stay as they are.
+    /// Sets the states `y` `[neurons]` and the outputs that follow from them.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::TimeConstant`]; then the network is unchanged.
-    pub fn set_parameters(&mut self, parameters: P) -> Result<P, Error> {
-        check(&self.layout, self.time_step, parameters.as_ref())?;
-        let old = core::mem::replace(&mut self.parameters, parameters);
-        self.prepare();
-        Ok(old)
-    }
-
-    /// Copies other parameters [[`parameter_count`](CtrnnLayout::parameter_count)] over the network's own; the states stay
-    /// as they are.
-    ///
-    /// # Errors
-    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::TimeConstant`]; then the network is unchanged.
-    pub fn copy_parameters(&mut self, parameters: &[f32]) -> Result<(), Error>
-    where
-        P: AsMut<[f32]>,
-    {
-        check(&self.layout, self.time_step, parameters)?;
-        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
-            *own = *new;
-        }
-        self.prepare();
-        Ok(())
-    }
-
-    /// Sets the states `y` `[neurons]`, and the outputs with them.
-    ///
-    /// # Errors
-    /// [`Error::StateLen`] or [`Error::StateNotFinite`]; then the network is unchanged.
+    /// [`Error::Length`] or [`Error::State`]. Then the network is unchanged.
     pub fn set_states(&mut self, states: &[f32]) -> Result<(), Error> {
-        let (expected, found) = (self.layout.neurons(), states.len());
-        if expected != found {
-            return Err(Error::StateLen { expected, found });
-        }
+        Slice::State.check(self.model.layout.neurons(), states.len())?;
         if let Some(index) = states.iter().position(|y| !y.is_finite()) {
-            return Err(Error::StateNotFinite { index });
+            return Err(Error::State { index });
         }
-        self.state.as_mut().iter_mut().zip(states).for_each(|(own, new)| *own = *new);
+        self.state.as_mut().iter_mut().zip(states).for_each(|(to, y)| *to = *y);
         self.prepare();
         Ok(())
-    }
-
-    /// The parameters [[`parameter_count`](CtrnnLayout::parameter_count)].
-    pub fn parameters(&self) -> &[f32] {
-        self.parameters.as_ref()
-    }
-
-    /// Brings what follows from states and parameters up to date.
-    fn prepare(&mut self) {
-        let Self { layout, time_step, parameters, state, .. } = self;
-        let (integrator, neurons) = (layout.integrator(), layout.neurons());
-        let time_constants = layout.split(parameters.as_ref()).time_constants;
-        let rates = state.as_mut().iter_mut().skip(2 * neurons).take(neurons);
-        for (to, tau) in rates.zip(time_constants) {
-            *to = rate(integrator, f64::from(*time_step), f64::from(*tau)) as f32;
-        }
-        if let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), &[], &[]) {
-            dynamics.refresh();
-        }
     }
 }
 
-impl<P, S> Ctrnn<P, S> {
-    /// The same network over these instructions, as
-    /// [`LeakyNetwork::with_instructions`](crate::LeakyNetwork::with_instructions).
-    pub fn with_instructions(self, instructions: Instructions) -> Self {
-        Self { level: instructions.level(), ..self }
-    }
-
+impl<P, S> Network<CtrnnModel, P, S> {
     /// The layout.
     pub const fn layout(&self) -> CtrnnLayout {
-        self.layout
+        self.model.layout
     }
 
     /// The time step [s].
     pub const fn time_step(&self) -> f32 {
-        self.time_step
-    }
-
-    /// Gives parameters and state back.
-    pub fn into_parts(self) -> (P, S) {
-        (self.parameters, self.state)
+        self.model.time_step
     }
 
     /// The states `y` `[neurons]`.
@@ -176,7 +105,7 @@ impl<P, S> Ctrnn<P, S> {
         S: AsRef<[f32]>,
     {
         let state = self.state.as_ref();
-        state.get(..self.layout.neurons()).unwrap_or(state)
+        state.get(..self.model.layout.neurons()).unwrap_or(state)
     }
 
     /// The outputs `o` of all neurons `[neurons]`.
@@ -184,12 +113,12 @@ impl<P, S> Ctrnn<P, S> {
     where
         S: AsRef<[f32]>,
     {
-        let neurons = self.layout.neurons();
+        let neurons = self.model.layout.neurons();
         self.state.as_ref().get(neurons..neurons.saturating_mul(2)).unwrap_or(&[])
     }
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Ctrnn<P, S> {
+impl Model for CtrnnModel {
     fn inputs(&self) -> usize {
         self.layout.inputs()
     }
@@ -198,34 +127,64 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Ctrnn<P, S> {
         self.layout.outputs()
     }
 
-    fn reset(&mut self) {
-        self.state.as_mut().fill(0.0);
-        self.prepare();
-    }
-
-    fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.step_ablated(&[], x, y);
-    }
-}
-
-/// Neurons have their numbers in the layout; one that is held has its output held, its state goes on.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for Ctrnn<P, S> {
     fn neurons(&self) -> usize {
         self.layout.neurons()
     }
 
-    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
-        let Self { layout, parameters, state, level, .. } = self;
-        debug_assert_eq!(x.len(), layout.inputs(), "sensor values and the layout's inputs");
-        debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
-        let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), lesions, x) else { return };
-        kernel::step(&mut dynamics, *level);
-        let outputs = dynamics.o.get(layout.output_neurons()).unwrap_or(&[]);
+    fn state_len(&self) -> usize {
+        self.layout.state_len()
+    }
+
+    fn check_model<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error> {
+        self.check_layout()?;
+        let constants = self.layout.range(CtrnnParameter::TimeConstant);
+        check_parameters(constants.end, constants.end, parameters, value)?;
+        let least = self.layout.integrator().least_time_constant(self.time_step);
+        let mut constants = parameters.iter().map(|p| value(*p)).enumerate().skip(constants.start);
+        match constants.find(|(_, tau)| !(*tau > 0.0 && *tau >= least)) {
+            Some((index, value)) => Err(ParameterFault::TimeConstant { value, least }.at(index)),
+            None => Ok(()),
+        }
+    }
+
+    fn prepare(&self, parameters: &[f32], state: &mut [f32]) {
+        let (integrator, neurons) = (self.layout.integrator(), self.layout.neurons());
+        let time_constants = self.layout.split(parameters).time_constants;
+        let rates = state.iter_mut().skip(2 * neurons).take(neurons);
+        for (to, tau) in rates.zip(time_constants) {
+            *to = rate(integrator, f64::from(self.time_step), f64::from(*tau)) as f32;
+        }
+        if let Some(mut dynamics) = dynamics(&self.layout, parameters, state, &[], &[]) {
+            dynamics.refresh();
+        }
+    }
+
+    fn step(&self, data: Data<'_>, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+        let Data { parameters, state, level } = data;
+        let Some(mut dynamics) = dynamics(&self.layout, parameters, state, lesions, x) else { return };
+        kernel::step(&mut dynamics, level);
+        let outputs = dynamics.o.get(self.layout.output_neurons()).unwrap_or(&[]);
         y.iter_mut().zip(outputs).for_each(|(y, o)| *y = *o);
     }
 }
 
-/// Cuts parameters and state as a step wants them and takes these inputs; `None` where one of them is too short.
+impl CtrnnModel {
+    /// Checks the time step, and that the neurons of inputs and outputs exist.
+    pub(crate) fn check_layout(&self) -> Result<(), Error> {
+        if !(self.time_step.is_finite() && self.time_step > 0.0) {
+            return Err(LayoutFault::TimeStep(self.time_step).into());
+        }
+        let neurons = self.layout.neurons();
+        for range in [Some(self.layout.output_neurons()), self.layout.direct_inputs()].into_iter().flatten() {
+            if range.end > neurons {
+                return Err(LayoutFault::Neurons { first: range.start, count: range.len(), neurons }.into());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Splits parameters and state for a step and stores the inputs. Returns `None` if a slice is too short.
 fn dynamics<'a>(
     layout: &CtrnnLayout,
     parameters: &'a [f32],
@@ -239,21 +198,21 @@ fn dynamics<'a>(
     let (o, state) = state.split_at_mut_checked(neurons)?;
     let (rates, state) = state.split_at_mut_checked(neurons)?;
     let (net, state) = state.split_at_mut_checked(neurons)?;
-    let kept = if layout.direct_inputs().is_some() { neurons } else { inputs };
-    let (kept, state) = state.split_at_mut_checked(kept)?;
+    let stored = if layout.direct_inputs().is_some() { neurons } else { inputs };
+    let (stored, state) = state.split_at_mut_checked(stored)?;
     let workspace = if layout.integrator() == Integrator::RungeKutta4 { neurons } else { 0 };
     let (sum, state) = state.split_at_mut_checked(workspace)?;
     let (point, _) = state.split_at_mut_checked(workspace)?;
     // A missing input is zero.
-    kept.fill(0.0);
+    stored.fill(0.0);
     let first = layout.direct_inputs().map_or(0, |neurons| neurons.start);
-    for (to, x) in kept.iter_mut().skip(first).zip(x.get(..inputs).unwrap_or(x)) {
+    for (to, x) in stored.iter_mut().skip(first).zip(x.get(..inputs).unwrap_or(x)) {
         let limit = Ctrnn::INPUT_LIMIT;
         *to = if x.is_nan() { 0.0 } else { x.clamp(-limit, limit) };
     }
     let (external, inputs) = match layout.direct_inputs() {
-        Some(_) => (&*kept, (&[][..], &[][..])),
-        None => (&[][..], (&*kept, parts.input_weights)),
+        Some(_) => (&*stored, (&[][..], &[][..])),
+        None => (&[][..], (&*stored, parts.input_weights)),
     };
     (parts.time_constants.len() == neurons).then_some(Dynamics {
         integrator: layout.integrator(),
@@ -271,42 +230,4 @@ fn dynamics<'a>(
         sum,
         point,
     })
-}
-
-pub(crate) fn check_layout(layout: &CtrnnLayout, time_step: f32) -> Result<(), Error> {
-    if !(time_step.is_finite() && time_step > 0.0) {
-        return Err(Error::TimeStep { value: time_step });
-    }
-    let neurons = layout.neurons();
-    for range in [Some(layout.output_neurons()), layout.direct_inputs()].into_iter().flatten() {
-        if range.end > neurons {
-            return Err(Error::Neurons { first: range.start, count: range.len(), neurons });
-        }
-    }
-    Ok(())
-}
-
-pub(crate) fn check(layout: &CtrnnLayout, time_step: f32, parameters: &[f32]) -> Result<(), Error> {
-    check_values(layout, time_step, parameters.iter().copied())
-}
-
-/// The same for parameters that are no slice of numbers.
-pub(crate) fn check_values(
-    layout: &CtrnnLayout,
-    time_step: f32,
-    parameters: impl ExactSizeIterator<Item = f32> + Clone,
-) -> Result<(), Error> {
-    let (expected, found) = (layout.parameter_count(), parameters.len());
-    if expected != found {
-        return Err(Error::ParameterCount { expected, found });
-    }
-    if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
-        return Err(Error::NotFinite { index });
-    }
-    let least = layout.integrator().least_time_constant(time_step);
-    let time_constants = parameters.enumerate().skip(layout.range(CtrnnParameter::TimeConstant).start);
-    match time_constants.into_iter().find(|(_, tau)| !(*tau > 0.0 && *tau >= least)) {
-        Some((index, value)) => Err(Error::TimeConstant { index, value, least }),
-        None => Ok(()),
-    }
 }

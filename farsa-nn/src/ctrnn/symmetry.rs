@@ -1,20 +1,21 @@
-//! Bilateral symmetry: few genes, of which each fills every parameter that must be the same.
+//! Bilateral symmetry: few genes, each for all parameters that are equal.
 
 use crate::block::description::Span;
 use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
+use crate::fault::{LayoutFault, Slice};
 
-/// Which parameters of a [`Ctrnn`](crate::Ctrnn) are one gene, because the network is its own mirror image, because neurons
-/// are alike, or not at all, because a link does not exist.
+/// A map from few genes to all parameters of a mirror-symmetric [`Ctrnn`](crate::Ctrnn).
 ///
-/// A weight from `j` to `i` is that from the mirror image of `j` to the mirror image of `i`; biases, gains and time constants
-/// are those of the mirror image. Genes lie in the order of the first parameters that they fill.
+/// Neurons can also be alike, and links can be absent. A weight from `j` to `i` equals that from the mirror image of `j` to the
+/// mirror image of `i`. Biases, gains and time constants equal those of the mirror image. Genes are in the order of the first
+/// parameters that they fill.
 ///
 /// ```
 /// use farsa_nn::block::Span;
 /// use farsa_nn::{CtrnnLayout, CtrnnSymmetry};
 ///
-/// // Beer's agent: seven neurons of rays, all alike; five between; two motors. Each layer is mirrored on itself.
+/// // Beer's agent: seven alike ray neurons, five inner ones, two motors. Each layer is mirrored on itself.
 /// const LAYOUT: CtrnnLayout = CtrnnLayout::new(7, 14, 2).with_direct_inputs(0);
 /// const RAYS: Span = Span::new(0, 7);
 /// const INNER: Span = Span::new(7, 5);
@@ -30,7 +31,7 @@ use crate::error::Error;
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 ///
-/// Source: `[Beer1996]`, which gives the number for its agent.
+/// Source: `[Beer1996]`, which reports the number of genes of its agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CtrnnSymmetry<'a> {
     layout: CtrnnLayout,
@@ -43,10 +44,10 @@ pub struct CtrnnSymmetry<'a> {
     gains: Option<&'a [Span]>,
 }
 
-/// Where a parameter comes from.
+/// The origin of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Origin {
-    /// A gene of its own.
+    /// Its own gene.
     Gene,
     /// The parameter at this lower index.
     Parameter(usize),
@@ -54,59 +55,57 @@ enum Origin {
 }
 
 impl<'a> CtrnnSymmetry<'a> {
-    /// A network in which the mirror image of each input `[inputs; empty where inputs are direct]` and of each neuron
-    /// `[neurons]` is given by its number; in the middle that is its own.
+    /// Builds a symmetry from the mirror image of each input `[inputs; empty where inputs are direct]` and of each neuron
+    /// `[neurons]`. An element in the middle is its own image.
     ///
     /// # Errors
-    /// [`Error::MirrorLen`] for other lengths, [`Error::Mirror`] for one whose mirror image is not there or has another image.
+    /// [`Error::Length`], or [`Error::Layout`] for a missing mirror image or one with another image.
     pub fn new(layout: CtrnnLayout, inputs: &'a [usize], neurons: &'a [usize]) -> Result<Self, Error> {
         let weighted = if layout.direct_inputs().is_some() { 0 } else { layout.inputs() };
         for (images, expected) in [(inputs, weighted), (neurons, layout.neurons())] {
-            if images.len() != expected {
-                return Err(Error::MirrorLen { expected, found: images.len() });
-            }
-            let strayed = |(index, image): &(usize, &usize)| images.get(**image) != Some(index);
-            if let Some((index, &image)) = images.iter().enumerate().find(strayed) {
-                return Err(Error::Mirror { index, image });
+            Slice::MirrorImages.check(expected, images.len())?;
+            let asymmetric = |(index, image): &(usize, &usize)| images.get(**image) != Some(index);
+            if let Some((index, &image)) = images.iter().enumerate().find(asymmetric) {
+                return Err(LayoutFault::Mirror { index, image }.into());
             }
         }
         Ok(Self { layout, inputs, neurons, links: None, alike: &[], gains: None })
     }
 
-    /// The same with links between these neurons only, each from all of one span to all of another, and their mirror images;
-    /// other weights between neurons are zero.
+    /// Limits links to these spans, each from all of one span to all of another, and to their mirror images. Other weights
+    /// between neurons are zero.
     ///
     /// # Errors
-    /// [`Error::Neurons`] for a span of neurons that the layout does not have.
+    /// [`Error::Layout`] for a span of neurons that the layout does not have.
     pub fn with_links(self, links: &'a [(Span, Span)]) -> Result<Self, Error> {
         links.iter().try_for_each(|(sources, targets)| self.check(*sources).and(self.check(*targets)))?;
         Ok(Self { links: Some(links), ..self })
     }
 
-    /// The same with one bias, one gain and one time constant for all neurons of each of these spans.
+    /// Uses one bias, one gain and one time constant for all neurons of each of these spans.
     ///
     /// # Errors
-    /// [`Error::Neurons`] for a span of neurons that the layout does not have, [`Error::Alike`] for one that shares neurons with
-    /// another, or whose mirror images are not all the neurons of one of the spans.
+    /// [`Error::Layout`] for neurons that the layout does not have, for overlapping spans, or for mirror images that are not all
+    /// the neurons of one of the spans.
     pub fn with_alike(self, alike: &'a [Span]) -> Result<Self, Error> {
         for (index, span) in alike.iter().enumerate() {
             self.check(*span)?;
             let shares = |other: &Span| span.first.max(other.first) < span.end().min(other.end());
-            let of = |neuron| alike.iter().find(|other| other.contains(image(self.neurons, neuron)));
-            let mirrored = of(span.first).is_some_and(|other| other.count == span.count)
-                && (span.first..span.end()).all(|neuron| of(neuron) == of(span.first));
+            let opposite = |neuron| alike.iter().find(|other| other.contains(image(self.neurons, neuron)));
+            let mirrored = opposite(span.first).is_some_and(|other| other.count == span.count)
+                && (span.first..span.end()).all(|neuron| opposite(neuron) == opposite(span.first));
             if alike[..index].iter().any(shares) || span.count > 0 && !mirrored {
-                return Err(Error::Alike { first: span.first, count: span.count });
+                return Err(LayoutFault::Alike { first: span.first, count: span.count }.into());
             }
         }
         Ok(Self { alike, ..self })
     }
 
-    /// The same with genes for the gains of the neurons of these spans and of their mirror images only; other gains are 1. Of
-    /// alike neurons the first counts.
+    /// Limits gain genes to the neurons of these spans and to their mirror images. Other gains are 1. Alike neurons follow the
+    /// first of them.
     ///
     /// # Errors
-    /// [`Error::Neurons`] for a span of neurons that the layout does not have.
+    /// [`Error::Layout`] for a span of neurons that the layout does not have.
     pub fn with_gains(self, gains: &'a [Span]) -> Result<Self, Error> {
         gains.iter().try_for_each(|span| self.check(*span))?;
         Ok(Self { gains: Some(gains), ..self })
@@ -114,7 +113,7 @@ impl<'a> CtrnnSymmetry<'a> {
 
     fn check(&self, span: Span) -> Result<(), Error> {
         let (Span { first, count }, neurons) = (span, self.layout.neurons());
-        if span.end() > neurons { Err(Error::Neurons { first, count, neurons }) } else { Ok(()) }
+        if span.end() > neurons { Err(LayoutFault::Neurons { first, count, neurons }.into()) } else { Ok(()) }
     }
 
     /// Number of genes.
@@ -122,7 +121,7 @@ impl<'a> CtrnnSymmetry<'a> {
         self.kinds().count()
     }
 
-    /// What each gene is, in their order, for decoding a genome.
+    /// The kind of each gene, in their order, for decoding a genome.
     pub fn kinds(&self) -> impl Iterator<Item = CtrnnParameter> + use<'a> {
         let symmetry = *self;
         let genes = symmetry.layout.kinds().enumerate();
@@ -133,13 +132,10 @@ impl<'a> CtrnnSymmetry<'a> {
     /// [[`gene_count`](Self::gene_count)].
     ///
     /// # Errors
-    /// [`Error::ParameterCount`] when one of the slices has another length; the parameters are then unchanged.
+    /// [`Error::Length`] for a slice of another length. Then the parameters are unchanged.
     pub fn expand(&self, genes: &[f32], parameters: &mut [f32]) -> Result<(), Error> {
-        for (expected, found) in [(self.gene_count(), genes.len()), (self.layout.parameter_count(), parameters.len())] {
-            if expected != found {
-                return Err(Error::ParameterCount { expected, found });
-            }
-        }
+        Slice::Parameters.check(self.gene_count(), genes.len())?;
+        Slice::Parameters.check(self.layout.parameter_count(), parameters.len())?;
         let mut genes = genes.iter();
         for (index, kind) in self.layout.kinds().enumerate() {
             let value = match self.origin(kind, index) {
@@ -172,16 +168,16 @@ impl<'a> CtrnnSymmetry<'a> {
         if first == place { Origin::Gene } else { Origin::Parameter(start + first) }
     }
 
-    /// Whether the link or its mirror image exists.
+    /// Reports that the link or its mirror image exists.
     fn linked(&self, from: usize, to: usize) -> bool {
-        let images = [from, to].map(|one| image(self.neurons, one));
+        let images = [from, to].map(|neuron| image(self.neurons, neuron));
         self.links.is_none_or(|links| {
             let has = |a, b| links.iter().any(|(sources, targets)| sources.contains(a) && targets.contains(b));
             has(from, to) || has(images[0], images[1])
         })
     }
 
-    /// Whether the gain of the neuron or of its mirror image is a gene.
+    /// Reports that the gain of the neuron or of its mirror image is a gene.
     fn has_gain(&self, neuron: usize) -> bool {
         let mirrored = image(self.neurons, neuron);
         self.gains.is_none_or(|spans| spans.iter().any(|span| span.contains(neuron) || span.contains(mirrored)))
@@ -193,6 +189,6 @@ impl<'a> CtrnnSymmetry<'a> {
 }
 
 /// The mirror image of an input or a neuron.
-fn image(images: &[usize], one: usize) -> usize {
-    images.get(one).copied().unwrap_or(one)
+fn image(images: &[usize], index: usize) -> usize {
+    images.get(index).copied().unwrap_or(index)
 }

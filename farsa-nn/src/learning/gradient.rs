@@ -6,10 +6,11 @@ use alloc::vec::Vec;
 use farsa_num::{Real, logistic};
 
 use crate::error::Error;
+use crate::fault::{LayoutFault, Slice};
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 
-/// What a motor value `O` costs where `T` is wanted.
+/// The cost of a motor value `O` with target `T`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -17,30 +18,29 @@ pub enum Loss {
     /// `(O - T)^2`.
     #[default]
     SquaredError,
-    /// `-T ln O - (1-T) ln(1-O)`, less what `O = T` costs; wrong outputs near 0 and 1 learn faster than by squared errors.
+    /// `-T ln O - (1-T) ln(1-O)`, less the cost of `O = T`. Wrong outputs near 0 and 1 learn faster than by squared errors.
     CrossEntropy,
 }
 
-/// What a network shall do: sensor values and the wanted motor values, tick by tick from the start at rest.
+/// An example for a network: sensor values and target motor values, tick by tick from the start at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demonstration<'a> {
     /// Sensor values `[ticks x sensors]`.
     pub x: &'a [f32],
-    /// Wanted motor values `[ticks x outputs]`, in [0, 1].
+    /// Target motor values `[ticks x outputs]`, in [0, 1].
     pub wanted: &'a [f32],
 }
 
-/// The gradient of what demonstrations cost by the parameters of a [`LeakyNetwork`](crate::LeakyNetwork), summed over
-/// them.
+/// The gradient of the cost of demonstrations by the parameters of a [`LeakyNetwork`](crate::LeakyNetwork), summed over them.
 ///
-/// The network is run over each demonstration from its start at rest, then the costs are followed back through all its
-/// ticks, to the first. A demonstration of one tick is an example for a network without memory: recurrent weights then have
-/// no effect, and with leaks of 1 ([`Leak::Filter`]) this is plain back-propagation.
+/// The network runs over each demonstration from its start at rest. Then the cost is propagated back through all its ticks. A
+/// demonstration of one tick is an example for a network without memory. Recurrent weights then have no effect, and with
+/// leaks of 1 ([`Leak::Filter`]) this is plain back-propagation.
 ///
-/// `f64` is meant for learning, `f32` costs half the memory. Every sum has a fixed order: the same bits on every machine.
+/// Use `f64` for learning. `f32` needs half the memory. Every sum has a fixed order, so the bits are the same on every machine.
 ///
-/// Source: `[Rumelhart1986]` for back-propagation, `[Werbos1990]` through time; the equations are those of
-/// [`LeakyNetwork`](crate::LeakyNetwork), with the leak's own derivative.
+/// Source: `[Rumelhart1986]` for back-propagation, `[Werbos1990]` through time. The equations are those of
+/// [`LeakyNetwork`](crate::LeakyNetwork), with the derivative of the leak.
 ///
 /// ```
 /// use farsa_nn::learning::{Demonstration, Gradient, Loss};
@@ -49,7 +49,7 @@ pub struct Demonstration<'a> {
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
 /// let mut gradient = Gradient::<f64>::new(LAYOUT, Leak::Filter, Loss::SquaredError)?;
 /// let parameters = [1.0, 0.0, 0.0, 0.0, 1.0];
-/// // The output is 0.5, its wish 1: more of any weight of the output helps.
+/// // The output is 0.5, its target 1: larger weights of the output help.
 /// let cost = gradient.add(&parameters, Demonstration { x: &[0.0], wanted: &[1.0] })?;
 /// assert_eq!(cost, 0.25);
 /// // 2 * (0.5 - 1) * 0.2 * 0.5 * (1 - 0.5) * H with H = 0.5.
@@ -65,22 +65,20 @@ pub struct Gradient<R> {
     cost: R,
     /// Ticks since the sum was cleared.
     ticks: usize,
-    /// Of each tick: responses `[hidden]`, activations `[hidden]`, motor values `[outputs]`.
+    /// For each tick: responses `[hidden]`, activations `[hidden]`, motor values `[outputs]`.
     trace: Vec<R>,
-    /// What flows back: to the activations and to the responses of a tick `[hidden]` each, and through the logistic
+    /// The derivatives of the cost by the activations and by the responses of a tick `[hidden]` each, and through the logistic
     /// functions of a layer `[hidden or outputs]`.
     back: [Vec<R>; 3],
 }
 
 impl<R: Real> Gradient<R> {
-    /// A gradient of nothing yet.
+    /// Builds a gradient without demonstrations.
     ///
     /// # Errors
-    /// [`Error::Slope`].
+    /// [`Error::Layout`] for the slope.
     pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss) -> Result<Self, Error> {
-        if !layout.slope().is_finite() {
-            return Err(Error::Slope { value: layout.slope() });
-        }
+        LayoutFault::check_slope(layout.slope())?;
         let zeros = |len| vec![R::default(); len];
         let back = [zeros(layout.hidden()), zeros(layout.hidden()), zeros(layout.hidden().max(layout.outputs()))];
         let sum = zeros(layout.parameter_count());
@@ -103,12 +101,12 @@ impl<R: Real> Gradient<R> {
         &self.sum
     }
 
-    /// The same, to change it: to take the mean, to keep parameters as they are, to clip.
+    /// The mutable sum: to take the mean, to freeze parameters, to clip.
     pub fn sum_mut(&mut self) -> &mut [R] {
         &mut self.sum
     }
 
-    /// What the demonstrations since [`clear`](Self::clear) cost, per motor value.
+    /// The cost per motor value of the demonstrations since [`clear`](Self::clear).
     pub fn mean_cost(&self) -> R {
         let values = self.ticks.saturating_mul(self.layout.outputs());
         if values == 0 { R::default() } else { self.cost / R::from_f64(values as f64) }
@@ -119,27 +117,27 @@ impl<R: Real> Gradient<R> {
         self.ticks
     }
 
-    /// Forgets all demonstrations.
+    /// Discards all demonstrations.
     pub fn clear(&mut self) {
         self.sum.fill(R::default());
         (self.cost, self.ticks) = (R::default(), 0);
     }
 
-    /// What a demonstration costs under these parameters [[`parameter_count`](LeakyLayout::parameter_count)], a sum
-    /// over its ticks and motor values; nothing is added.
+    /// Computes the cost of a demonstration under these parameters [[`parameter_count`](LeakyLayout::parameter_count)], a sum
+    /// over its ticks and motor values. The gradient is unchanged.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::Demonstration`].
+    /// [`Error::Length`], [`Error::Demonstration`].
     pub fn cost(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
         self.check(parameters, demonstration)?;
         Ok(self.run(parameters, demonstration))
     }
 
-    /// Adds the gradient of what a demonstration costs under these parameters
+    /// Adds the gradient of the cost of a demonstration under these parameters
     /// [[`parameter_count`](LeakyLayout::parameter_count)] and returns the cost, a sum over its ticks and motor values.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::Demonstration`]; nothing is added then.
+    /// [`Error::Length`], [`Error::Demonstration`]. Then nothing is added.
     pub fn add(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
         let ticks = self.check(parameters, demonstration)?;
         let cost = self.run(parameters, demonstration);
@@ -149,14 +147,11 @@ impl<R: Real> Gradient<R> {
         Ok(cost)
     }
 
-    /// The number of ticks of a demonstration that fits.
+    /// Checks a demonstration and returns its number of ticks.
     fn check(&self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) -> Result<usize, Error> {
-        let (expected, found) = (self.layout.parameter_count(), parameters.len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
+        Slice::Parameters.check(self.layout.parameter_count(), parameters.len())?;
         let (sensors, outputs) = (self.layout.sensors(), self.layout.outputs());
-        // Either may be none, but not both.
+        // Either number may be 0, but not both.
         let ticks = x.len().checked_div(sensors).or(wanted.len().checked_div(outputs)).unwrap_or(0);
         if x.len() == ticks * sensors && wanted.len() == ticks * outputs {
             return Ok(ticks);
@@ -164,7 +159,7 @@ impl<R: Real> Gradient<R> {
         Err(Error::Demonstration { values: x.len(), sensors, wanted: wanted.len(), outputs })
     }
 
-    /// Runs the network, keeps what it did and returns what that costs.
+    /// Runs the network, stores its trace and returns the cost.
     fn run(&mut self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) -> R {
         let Self { layout, leak, loss, trace, .. } = self;
         let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
@@ -172,7 +167,7 @@ impl<R: Real> Gradient<R> {
         let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
         trace.clear();
-        // Per tick the responses Y, the activations H and the motor values O; the first tick is the rest before all.
+        // Per tick the responses Y, the activations H and the motor values O. The first tick is the initial rest.
         trace.resize((ticks + 1) * (2 * h + o), R::default());
         let mut cost = R::default();
         let (mut before, mut rest) = trace.split_at_mut(2 * h + o);
@@ -181,8 +176,8 @@ impl<R: Real> Gradient<R> {
             let (response, left) = now.split_at_mut(h);
             let (hidden, motors) = left.split_at_mut(h);
             let (response_before, hidden_before) = before[..2 * h].split_at(h);
-            // N_i = beta_i + sum_j w_ji I_j + sum_k w_ki H_k(t-1), Y_i = sigma(N_i); then the leak makes H(t) of Y and
-            // what was before.
+            // N_i = beta_i + sum_j w_ji I_j + sum_k w_ki H_k(t-1), Y_i = sigma(N_i). Then the leak combines Y and the previous
+            // values to H(t).
             response.copy_from_slice(part(LeakyParameter::Bias));
             let x = &x[tick * n..(tick + 1) * n];
             add_rows(response, x.iter().map(|x| R::from_f64(f64::from(*x))), part(LeakyParameter::SensorWeight));
@@ -208,16 +203,16 @@ impl<R: Real> Gradient<R> {
         cost
     }
 
-    /// Follows the costs of the run back to the parameters.
+    /// Propagates the cost of the run back to the parameters.
     fn follow_back(&mut self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) {
         let Self { layout, leak, loss, sum, trace, back, .. } = self;
         let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
         let part = |kind| &parameters[layout.range(kind)];
         let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let [to_hidden, to_response, through] = back;
-        // Back-propagation through time [Werbos1990]. `to_hidden` is dC/dH_i(t): from the motors of now, and from the
-        // tick after through leak and recurrent weights. `to_response` is what of dC/dY_i(t) comes by the leak of the
-        // tick after.
+        // Back-propagation through time [Werbos1990]. `to_hidden` is dC/dH_i(t): from the current motors, and from the
+        // next tick through leak and recurrent weights. `to_response` is the part of dC/dY_i(t) through the leak of the
+        // next tick.
         to_hidden.fill(R::default());
         to_response.fill(R::default());
         let size = 2 * h + o;
@@ -238,7 +233,7 @@ impl<R: Real> Gradient<R> {
             let leaks = layout.range(LeakyParameter::Leak);
             for i in 0..h {
                 let (d, y, flow) = (parameters[leaks.start + i], response[i], to_hidden[i]);
-                // How much of the flow reaches the response, the activation before and the response before.
+                // The shares of the response, the previous activation and the previous response.
                 let (share, before, stays) = match leak {
                     Leak::Filter => (d, hidden_before[i], true),
                     Leak::TwoTap => (d, response_before[i], false),
@@ -249,7 +244,7 @@ impl<R: Real> Gradient<R> {
                 sum[leaks.start + i] += flow * by_leak;
                 // dC/dN_i = dC/dY_i sigma'(N_i), sigma' = slope Y (1 - Y).
                 through[i] = (share * flow + to_response[i]) * slope * y * (one - y);
-                // What the leak kept came from H(t-1) or, of two taps, from Y(t-1).
+                // The leak keeps a share of H(t-1) or, with two taps, of Y(t-1).
                 let kept = (one - share) * flow;
                 (to_hidden[i], to_response[i]) = if stays { (kept, R::default()) } else { (R::default(), kept) };
             }
@@ -267,7 +262,7 @@ impl<R: Real> Gradient<R> {
 }
 
 impl Loss {
-    /// What the motor value costs whose logistic function had the argument `net`.
+    /// The cost of a motor value whose logistic function had the argument `net`.
     fn cost<R: Real>(self, net: R, motor: R, wanted: R) -> R {
         match self {
             Self::SquaredError => (motor - wanted) * (motor - wanted),

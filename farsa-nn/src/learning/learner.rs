@@ -6,22 +6,23 @@ use alloc::vec::Vec;
 use farsa_num::Real;
 
 use crate::error::Error;
+use crate::fault::{ParameterFault, Slice};
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
-use crate::leaky_network::check;
+use crate::leaky_network::LeakyModel;
 use crate::learning::gradient::{Demonstration, Gradient, Loss};
 use crate::learning::optimizer::Optimizer;
+use crate::network::Model as _;
 
-/// Parameters of a [`LeakyNetwork`](crate::LeakyNetwork) that follow the [`Gradient`] of what demonstrations cost.
+/// Parameters of a [`LeakyNetwork`](crate::LeakyNetwork) that follow the [`Gradient`] of the cost of demonstrations.
 ///
-/// After each step leaks are brought back into [0, 1], and weights and biases into plus and minus
-/// [`limit`](Self::with_limit): a leak at an end stays there until the gradient points inwards.
+/// After each step leaks are clamped to [0, 1], and weights and biases to plus and minus [`limit`](Self::with_limit).
 ///
 /// ```
 /// use farsa_nn::learning::{Adam, Demonstration, Learner, Loss};
 /// use farsa_nn::{Leak, LeakyLayout};
 ///
-/// // One output that shall be the exclusive or of two inputs: examples of one tick each.
+/// // One output learns the exclusive or of two inputs, by examples of one tick each.
 /// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 4, 1).with_slope(1.0);
 /// let start = (0..LAYOUT.parameter_count()).map(|i| (i * 29 % 17) as f64 / 4.0 - 2.0);
 /// let start = start.zip(LAYOUT.kinds()).map(|(p, kind)| if kind == farsa_nn::LeakyParameter::Leak { 1.0 } else { p });
@@ -42,7 +43,7 @@ pub struct Learner<R, O> {
     parameters: Vec<R>,
     memory: Vec<R>,
     limit: Option<R>,
-    /// The largest length that a gradient may have.
+    /// The largest norm of a gradient.
     longest: Option<R>,
     mean: Option<Mean<R>>,
 }
@@ -50,9 +51,9 @@ pub struct Learner<R, O> {
 /// The mean of parameters over steps.
 #[derive(Clone, Debug)]
 struct Mean<R> {
-    /// What each step's parameters are of it.
+    /// The weight of each step.
     share: R,
-    /// How much of its steps there is yet, 0 before the first and 1 after many; and the mean itself \[parameters\].
+    /// The total weight so far, from 0 to 1, then the mean \[parameters\].
     state: Vec<R>,
 }
 
@@ -68,45 +69,45 @@ impl<R: Real> Mean<R> {
 }
 
 impl<R: Real, O: Optimizer<R>> Learner<R, O> {
-    /// A learner at these parameters [[`parameter_count`](LeakyLayout::parameter_count)].
+    /// Builds a learner with these parameters [[`parameter_count`](LeakyLayout::parameter_count)].
     ///
     /// # Errors
-    /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]: the first that applies.
+    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
         let gradient = Gradient::new(layout, leak, loss)?;
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
-        check(&layout, &single)?;
+        LeakyModel { layout, leak }.check_model(&single, |p| p)?;
         let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
         Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
     }
 
-    /// The same learner with weights and biases kept within plus and minus this.
+    /// Limits weights and biases to plus and minus this value.
     pub fn with_limit(self, limit: R) -> Self {
         Self { limit: Some(limit), ..self }
     }
 
-    /// The same learner with gradients shortened to this length where they are longer: the long ones of a recurrent network
-    /// come from where a small change decides much, and say little.
+    /// Scales longer gradients to this norm. In a recurrent network long gradients occur where small changes have large effects,
+    /// so their norm has little meaning.
     pub fn with_max_gradient_norm(self, longest: R) -> Self {
         Self { longest: Some(longest), ..self }
     }
 
-    /// The same learner with a [`mean`](Self::mean) of its parameters over about so many of the latest steps, at least one: it
-    /// lies in the middle of where steps that do not grow smaller go to and fro.
+    /// Adds a [`mean`](Self::mean) of the parameters over about this number of latest steps, at least one. Steps of constant
+    /// size oscillate around a minimum, and the mean is near its middle.
     ///
-    /// Source: \[Polyak1992\]. Deviation: the plain mean over the first steps only; then a step counts less by a factor of
-    /// `1 - 1/steps` with each that follows.
+    /// Source: \[Polyak1992\]. Deviation: a plain mean over the first steps only. Later, each step reduces the weight of the
+    /// previous ones by a factor of `1 - 1/steps`.
     pub fn with_averaging(self, steps: u32) -> Self {
         let state = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
         Self { mean: Some(Mean { share: R::from_f64(1.0 / f64::from(steps.max(1))), state }), ..self }
     }
 
-    /// One step along the mean gradient of these demonstrations; returns what they cost before it, per motor value.
+    /// Takes one step along the mean gradient of these demonstrations. Returns their cost before it, per motor value.
     ///
     /// Without demonstrations there is no step.
     ///
     /// # Errors
-    /// [`Error::Demonstration`]; then nothing has changed.
+    /// [`Error::Demonstration`]. Then nothing has changed.
     pub fn learn<'d>(&mut self, demonstrations: impl IntoIterator<Item = Demonstration<'d>>) -> Result<R, Error> {
         self.gradient.clear();
         for demonstration in demonstrations {
@@ -143,7 +144,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         Ok(self.gradient.mean_cost())
     }
 
-    /// What these demonstrations cost per motor value; nothing is learned.
+    /// Computes the cost of these demonstrations per motor value, without learning.
     ///
     /// # Errors
     /// [`Error::Demonstration`].
@@ -166,31 +167,26 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         &self.parameters
     }
 
-    /// The mean of the parameters over the latest steps [[`parameter_count`](LeakyLayout::parameter_count)], and of a
-    /// learner without [`with_averaging`](Self::with_averaging) the parameters.
+    /// The mean of the parameters over the latest steps [[`parameter_count`](LeakyLayout::parameter_count)]. Without
+    /// [`with_averaging`](Self::with_averaging) these are the parameters.
     pub fn mean(&self) -> &[R] {
         self.mean.as_ref().and_then(|mean| mean.state.get(1..)).unwrap_or(&self.parameters)
     }
 
-    /// All that learning goes on from, one after the other: the parameters, the optimizer's memory, and of a learner with a
-    /// mean how much of its steps there is yet and the mean.
+    /// The state for resuming: the parameters, the memory of the optimizer, and with averaging the weight and the mean.
     pub fn state(&self) -> impl Iterator<Item = R> + '_ {
         let mean = self.mean.iter().flat_map(|mean| &mean.state);
         self.parameters.iter().chain(&self.memory).chain(mean).copied()
     }
 
-    /// Goes on from where another learner of the same kind was.
+    /// Resumes from the state of another learner with the same settings.
     ///
     /// # Errors
-    /// [`Error::StateLen`] for another number of state, [`Error::NotFinite`]; then nothing has changed.
+    /// [`Error::Length`] or [`Error::Parameter`]. Then nothing has changed.
     pub fn set_state(&mut self, state: &[R]) -> Result<(), Error> {
-        let found = state.len();
-        let expected = self.state().count();
-        if expected != found {
-            return Err(Error::StateLen { expected, found });
-        }
+        Slice::State.check(self.state().count(), state.len())?;
         if let Some(index) = state.iter().position(|value| !value.to_f64().is_finite()) {
-            return Err(Error::NotFinite { index });
+            return Err(ParameterFault::NotFinite.at(index));
         }
         let (parameters, rest) = state.split_at(self.parameters.len());
         let (memory, mean) = rest.split_at(self.memory.len());

@@ -1,12 +1,12 @@
 //! Learning from demonstrations by back-propagation.
 
-/// The gradient of what a demonstration costs.
+/// The gradient of the cost of demonstrations.
 #[cfg(feature = "alloc")]
 mod gradient;
 /// A network that learns.
 #[cfg(feature = "alloc")]
 mod learner;
-/// How parameters follow a gradient downhill.
+/// Optimizers.
 mod optimizer;
 
 #[cfg(feature = "alloc")]

@@ -1,32 +1,31 @@
-//! How parameters follow a gradient downhill.
+//! Optimizers: rules that follow a gradient downhill.
 
 use farsa_num::Real;
 
-/// A rule that changes parameters by a gradient, with a memory that is the caller's.
+/// A rule that changes parameters by a gradient. The caller provides its memory.
 ///
-/// The rule itself is a few numbers; what it remembers from step to step lies in a slice that starts as zeros, so that a
-/// checkpoint is a copy of two slices.
+/// The rule itself is a few numbers. Its memory is a slice of initial zeros, so a checkpoint is a copy of two slices.
 ///
 /// # For implementors
 /// - The same calls on the same memory give the same bits on every machine: + - * / and square root, in a fixed order.
 /// - Use the shorter length of `gradient` and `parameters`.
 pub trait Optimizer<R: Real> {
-    /// Length of the memory for so many parameters.
+    /// Length of the memory for a number of parameters.
     fn memory_len(&self, parameters: usize) -> usize;
-    /// Changes the parameters by a gradient \[parameters\]; `memory` [[`memory_len`](Self::memory_len)] was zeros before the
+    /// Changes the parameters by a gradient \[parameters\]. `memory` [[`memory_len`](Self::memory_len)] must be zeros before the
     /// first step.
     fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]);
 }
 
 /// Steepest descent with momentum: `v = momentum*v - rate*g`, `p = p + v`.
 ///
-/// Source: `[Rumelhart1986]` eq. 9, for single steps; with momentum 0 it is plain descent.
+/// Source: `[Rumelhart1986]` eq. 9, for single steps. With momentum 0 it is plain descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
     /// Factor on the gradient.
     pub rate: f64,
-    /// What stays of a change from step to step, [0, 1).
+    /// The share of a change that the next step keeps, [0, 1).
     pub momentum: f64,
 }
 
@@ -44,30 +43,30 @@ impl<R: Real> Optimizer<R> for Momentum {
     }
 }
 
-/// Adam: every parameter takes steps of about `rate`, whatever the size of its gradient.
+/// Adam: every parameter takes steps of about `rate`, independent of the size of its gradient.
 ///
-/// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are kept as `1 - beta^t`, by repeated products, so
-/// that a memory of zeros is the start.
+/// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are stored as `1 - beta^t`, by repeated products, so the
+/// initial memory is zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adam {
     /// Size of a step.
     pub rate: f64,
-    /// How much of the mean gradient, and of the mean of its squares, stays from step to step, each in [0, 1).
+    /// The shares of the mean gradient and of the mean of its squares that the next step keeps, each in [0, 1).
     pub decays: [f64; 2],
     /// Added to the root of the mean square.
     pub epsilon: f64,
 }
 
 impl Adam {
-    /// Adam with this size of a step and the source's defaults beside it.
+    /// Builds Adam with this step size and the other defaults of the source.
     pub const fn new(rate: f64) -> Self {
         Self { rate, decays: [0.9, 0.999], epsilon: 1e-8 }
     }
 }
 
 impl<R: Real> Optimizer<R> for Adam {
-    /// Two means per parameter, and how much of each is there yet.
+    /// Two means per parameter, and their two total weights.
     fn memory_len(&self, parameters: usize) -> usize {
         parameters.saturating_mul(2).saturating_add(2)
     }

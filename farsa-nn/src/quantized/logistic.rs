@@ -1,9 +1,9 @@
 //! The logistic function in integers: a table and a line between its entries.
 
-/// Fraction bits of activations: 2^15 stands for 1.
+/// Fraction bits of activations: 2^15 is 1.
 pub(crate) const ACTIVATION_BITS: u32 = 15;
 
-/// Fraction bits of the argument; of these the lower [`STEP_BITS`] lie between two entries of the table.
+/// Fraction bits of the argument. The lower [`STEP_BITS`] select a point between two entries of the table.
 pub(crate) const ARGUMENT_BITS: u32 = 20;
 const STEP_BITS: u32 = 15;
 
@@ -19,7 +19,7 @@ const ENTRIES: usize = (END * PER_UNIT) as usize + 1;
 static TABLE: [u16; ENTRIES] = table();
 
 const fn table() -> [u16; ENTRIES] {
-    // exp(-1/32) by its series, whose tenth term is below 1e-21; then its powers.
+    // exp(-1/32) by its series, whose tenth term is below 1e-21, then its powers.
     let x = -1.0 / PER_UNIT as f64;
     let (mut ratio, mut term, mut n) = (1.0, 1.0, 1);
     while n < 10 {
@@ -36,8 +36,8 @@ const fn table() -> [u16; ENTRIES] {
     entries
 }
 
-/// 1/(1 + exp(-x)) with x = `sum` / 2^`bits`, in units of 2^-15: in 0..=2^15, within 1.5 units, never falling where `sum`
-/// rises; `logistic(-sum)` is 2^15 - `logistic(sum)`.
+/// 1/(1 + exp(-x)) with x = `sum` / 2^`bits`, in units of 2^-15. The result is in 0..=2^15, within 1.5 units, and never falls where
+/// `sum` rises. `logistic(-sum)` is 2^15 - `logistic(sum)`.
 ///
 /// `bits` is at most [`ARGUMENT_BITS`].
 #[inline(always)]

@@ -4,7 +4,7 @@
 mod logistic;
 /// The network: integer parameters, state, steps.
 pub(crate) mod network;
-/// What its integers stand for, and how real parameters become such integers.
+/// The scale of the integers, and the conversion of real parameters.
 pub(crate) mod scale;
 
 pub use network::QuantizedNetwork;

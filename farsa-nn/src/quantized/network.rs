@@ -2,37 +2,36 @@
 
 use crate::controller::Controller;
 use crate::error::Error;
+use crate::fault::{ParameterFault, Slice};
 use crate::kernel::prefix;
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::quantized::logistic::{ACTIVATION_BITS, logistic};
 use crate::quantized::scale::{LEAK_BITS, QuantizedScale};
 
-/// Outputs whose sums are added side by side.
+/// Number of outputs that are summed together.
 const BLOCK: usize = 8;
 
-/// Fraction bits of activations between steps; the lower half of them keeps a slow neuron moving.
+/// Fraction bits of activations between steps. The lower half of them lets a slow neuron move.
 const STATE_BITS: u32 = 30;
 
-/// A [`LeakyNetwork`](crate::LeakyNetwork) of 16-bit parameters and 32-bit sums: no float, no division, no
-/// multiplication wider than 32 bits in a step.
+/// A [`LeakyNetwork`](crate::LeakyNetwork) of 16-bit parameters and 32-bit sums. A step has no float, no division and no
+/// multiplication wider than 32 bits.
 ///
-/// [`QuantizedScale::quantize`] makes the parameters of those of a `LeakyNetwork` of the same layout; the slope of the
-/// logistic function is in the weights then, and that of the layout is not asked again. A step rounds each product
-/// once,
+/// [`QuantizedScale::quantize`] converts the parameters of a `LeakyNetwork` of the same layout. The weights then include the
+/// slope of the logistic function, and the slope of the layout is unused. A step rounds each product once,
 ///
 /// ```text
 /// net_i = sum_j (w_ji I_j >> s) + sum_k (r_ki H_k >> s') + (beta_i >> s')
 /// ```
 ///
-/// and adds integers, so that no order of the sums shows in the bits; construction checks that the largest possible sum
-/// fits. What it does to the motor values is measured in the crate's documentation.
+/// and adds integers, so the order of the sums does not change a bit. Construction checks that the largest possible sum fits.
+/// The documentation of the crate has the measured effect on motor values.
 ///
-/// As a [`Controller`] it takes and writes `f32`: sensor values beyond the range of
-/// [`input_bits`](QuantizedScale::input_bits) take its ends, motor values are multiples of 2^-15 in [0, 1 - 2^-15].
+/// As a [`Controller`] it reads and writes `f32`. Sensor values beyond the range of
+/// [`input_bits`](QuantizedScale::input_bits) take its ends. Motor values are multiples of 2^-15 in [0, 1 - 2^-15].
 ///
-/// Source: the equations are those of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the
-/// arithmetic.
+/// Source: the equations of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the arithmetic.
 #[derive(Clone, Debug)]
 pub struct QuantizedNetwork<P, S> {
     layout: LeakyLayout,
@@ -43,11 +42,11 @@ pub struct QuantizedNetwork<P, S> {
 }
 
 impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
-    /// A network at rest: checks the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and zeroes the
-    /// state [[`state_len`](LeakyLayout::state_len)].
+    /// Builds a network at rest from parameters [[`parameter_count`](LeakyLayout::parameter_count)] and a state
+    /// [[`state_len`](LeakyLayout::state_len)], which it sets to zero.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::LeakRange`], [`Error::SumRange`] or [`Error::StateLen`]: the first that applies.
+    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`].
     pub fn new(
         layout: LeakyLayout,
         leak: Leak,
@@ -56,39 +55,34 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         mut state: S,
     ) -> Result<Self, Error> {
         check(&layout, scale, parameters.as_ref(), |fixed| fixed)?;
-        let (expected, found) = (layout.state_len(), state.as_mut().len());
-        if expected != found {
-            return Err(Error::StateLen { expected, found });
-        }
+        Slice::State.check(layout.state_len(), state.as_mut().len())?;
         state.as_mut().fill(0);
         Ok(Self { layout, leak, scale, parameters, state })
     }
 
-    /// Points the network at other parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale and
-    /// returns the old ones; the state, whose units are the same in every scale, stays as it is.
+    /// Replaces the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and their scale, and returns the old
+    /// parameters. The state is unchanged, because its units are the same in every scale.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
+    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. Then the network is unchanged.
     pub fn set_parameters(&mut self, scale: QuantizedScale, parameters: P) -> Result<P, Error> {
         check(&self.layout, scale, parameters.as_ref(), |fixed| fixed)?;
         self.scale = scale;
         Ok(core::mem::replace(&mut self.parameters, parameters))
     }
 
-    /// Copies other parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale over the network's
-    /// own; the state stays as it is.
+    /// Copies parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale over those of the network. The state
+    /// is unchanged.
     ///
     /// # Errors
-    /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
+    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. Then the network is unchanged.
     pub fn copy_parameters(&mut self, scale: QuantizedScale, parameters: &[i16]) -> Result<(), Error>
     where
         P: AsMut<[i16]>,
     {
         check(&self.layout, scale, parameters, |fixed| fixed)?;
         self.scale = scale;
-        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
-            *own = *new;
-        }
+        self.parameters.as_mut().iter_mut().zip(parameters).for_each(|(to, p)| *to = *p);
         Ok(())
     }
 
@@ -96,7 +90,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
     /// 2^-[`input_bits`](QuantizedScale::input_bits), and overwrites the motor values `y` `[outputs]`, in units of
     /// 2^-15, 0..=32767.
     ///
-    /// All values of `x` are valid. Of slices of the wrong length it uses the shorter.
+    /// All values of `x` are valid. The shorter of two lengths counts.
     ///
     /// # Panics
     /// With debug assertions, when `x` or `y` has another length.
@@ -106,8 +100,8 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         self.advance(x.iter().copied(), y, |motor| motor);
     }
 
-    /// A step from sensor values to motor values, each as what `write` makes of it.
-    // Each sensor value is asked for once, so that a float is converted once.
+    /// Advances from sensor values to motor values, which `write` converts.
+    // Each sensor value is read once, so a float is converted once.
     #[inline(always)]
     fn advance<Y>(&mut self, x: impl Iterator<Item = i16>, y: &mut [Y], write: impl Fn(i16) -> Y) {
         let Self { layout, leak, scale, parameters, state } = self;
@@ -116,7 +110,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         let (count, state) = (layout.hidden(), state.as_mut());
         let (hidden, state) = state.split_at_mut(count.min(state.len()));
         let (previous, sums) = state.split_at_mut(count.min(state.len()));
-        // Rows of no weights have nothing to add.
+        // An empty row would be an invalid chunk.
         let row_len = count.max(1);
 
         // The bias is the weight of a source that is always 1.
@@ -151,7 +145,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
             }
         }
 
-        // The sums have done their work.
+        // The sums are no longer needed.
         let sources = sums;
         for (source, h) in sources.iter_mut().zip(&*hidden) {
             *source = activation(*h);
@@ -159,7 +153,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         let shift = scale.activation_shift();
         let outputs = layout.outputs();
         let rows = part(LeakyParameter::OutputWeight).chunks_exact(outputs.max(1));
-        // Source by source, as above, where the state has no room for the sums of all outputs.
+        // Source by source, as above. The state has no room for the sums of all outputs.
         for (block, y) in prefix(y, outputs).chunks_mut(BLOCK).enumerate() {
             let mut sums = [0; BLOCK];
             for (source, row) in sources.iter().zip(rows.clone()) {
@@ -168,7 +162,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
                 }
             }
             for (y, sum) in y.iter_mut().zip(sums) {
-                // 1 is no i16 of these units.
+                // 1 is not an `i16` in these units.
                 *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
             }
         }
@@ -191,12 +185,12 @@ impl<P, S> QuantizedNetwork<P, S> {
         self.leak
     }
 
-    /// Where the binary points lie.
+    /// The positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.scale
     }
 
-    /// Gives parameters and state back.
+    /// Returns the parameters and the state.
     pub fn into_parts(self) -> (P, S) {
         (self.parameters, self.state)
     }
@@ -244,27 +238,24 @@ fn activation(h: i32) -> i32 {
     (h + (1 << (STATE_BITS - ACTIVATION_BITS - 1))) >> (STATE_BITS - ACTIVATION_BITS)
 }
 
-/// The share `d` / 2^14, 0..=1, of a difference within 2^30, rounded down: in two halves, whose products fit 32 bits.
+/// The share `d` / 2^14, 0..=1, of a difference within 2^30, rounded down. The products of the two halves fit 32 bits.
 #[inline(always)]
 fn share(d: i32, difference: i32) -> i32 {
     const HALF: u32 = 15;
     ((d * (difference >> HALF)) << (HALF - LEAK_BITS)) + ((d * (difference & ((1 << HALF) - 1))) >> LEAK_BITS)
 }
 
-/// What construction asks of parameters, wherever they lie; `value` makes a number of what lies there.
+/// Checks the parameters of a network, which `value` decodes.
 pub(crate) fn check<T: Copy>(
     layout: &LeakyLayout,
     scale: QuantizedScale,
     fixed: &[T],
     value: impl Fn(T) -> i16,
 ) -> Result<(), Error> {
-    let (expected, found) = (layout.parameter_count(), fixed.len());
-    if expected != found {
-        return Err(Error::ParameterCount { expected, found });
-    }
+    Slice::Parameters.check(layout.parameter_count(), fixed.len())?;
     let leaks = fixed.iter().enumerate().skip(layout.range(LeakyParameter::Leak).start).map(|(i, d)| (i, value(*d)));
     if let Some((index, d)) = leaks.into_iter().find(|(_, d)| !(0..=1 << LEAK_BITS).contains(d)) {
-        return Err(Error::LeakRange { index, value: f32::from(d) / f32::from(1_i16 << LEAK_BITS) });
+        return Err(ParameterFault::Leak(f32::from(d) / f32::from(1_i16 << LEAK_BITS)).at(index));
     }
     scale.check_sums(layout, fixed, value)
 }

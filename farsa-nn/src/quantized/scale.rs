@@ -1,25 +1,28 @@
-//! What the integers of a fixed-point network stand for, and how real parameters become such integers.
+//! The scale of the integers of a fixed-point network, and the conversion of real parameters.
 
 use farsa_num::Scalar;
 
 use crate::error::Error;
+use crate::fault::{LayoutFault, ParameterFault, Slice};
+use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
-use crate::leaky_network::check;
+use crate::leaky_network::LeakyModel;
+use crate::network::Model as _;
 use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 
-/// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
+/// Fraction bits of leaks: 2^14 is exactly 1.
 pub(crate) const LEAK_BITS: u32 = 14;
 
-/// Where the binary points of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) lie: an integer `v` of `b` fraction bits
-/// stands for `v / 2^b`.
+/// The binary points of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork): an integer `v` of `b` fraction bits
+/// is `v / 2^b`.
 ///
 /// | integers | fraction bits |
 /// |---|---|
-/// | sensor values, `i16` | [`input_bits`](Self::input_bits), the caller's choice: 9 covers [-64, 64) in steps of 0.002 |
+/// | sensor values, `i16` | [`input_bits`](Self::input_bits), chosen by the caller: 9 cover [-64, 64) in steps of 0.002 |
 /// | weights and biases, `i16`, times the layout's slope | [`weight_bits`](Self::weight_bits) |
 /// | sums, `i32`: arguments of the logistic function | [`sum_bits`](Self::sum_bits) |
 /// | leaks, `i16` | 14 |
-/// | motor values, `i16`; responses | 15; the largest motor value is 32767, where a response may be 32768 |
+/// | motor values, `i16`, and responses | 15. The largest motor value is 32767, the largest response 32768 |
 /// | activations between steps, `i32` | 30 |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -30,7 +33,7 @@ pub struct QuantizedScale {
     sums: u8,
 }
 
-/// A scale as it is read, before it is checked.
+/// A scale before its check.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "QuantizedScale")]
@@ -50,41 +53,40 @@ impl TryFrom<SavedScale> for QuantizedScale {
 }
 
 impl QuantizedScale {
-    /// The fewest fraction bits of a sum, 10: with fewer the logistic function would miss by more than 1e-4.
+    /// The fewest fraction bits of a sum, 10. With fewer, the error of the logistic function exceeds 1e-4.
     pub const SUM_BITS_MIN: u32 = 10;
 
-    /// A scale that was written down before, with a program's parameters.
+    /// Builds a scale from stored fraction bits.
     ///
     /// # Errors
-    /// [`Error::FractionBits`]: inputs and weights have at most 15 fraction bits; sums have 10 to 20, and no more than
-    /// a product of a weight and an input.
+    /// [`Error::Layout`]: inputs and weights have at most 15 fraction bits. Sums have 10 to 20, and no more than a product of a
+    /// weight and an input.
     pub const fn new(input_bits: u32, weight_bits: u32, sum_bits: u32) -> Result<Self, Error> {
         if input_bits > 15 {
-            return Err(Error::FractionBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+            return Err(fraction_bits("inputs", input_bits, 0, 15));
         }
         if weight_bits > 15 {
-            return Err(Error::FractionBits { of: "weights", found: weight_bits, least: 0, most: 15 });
+            return Err(fraction_bits("weights", weight_bits, 0, 15));
         }
         let product = input_bits + weight_bits;
         let most = if product < ARGUMENT_BITS { product } else { ARGUMENT_BITS };
         if sum_bits < Self::SUM_BITS_MIN || sum_bits > most {
-            return Err(Error::FractionBits { of: "sums", found: sum_bits, least: Self::SUM_BITS_MIN, most });
+            return Err(fraction_bits("sums", sum_bits, Self::SUM_BITS_MIN, most));
         }
         Ok(Self { inputs: input_bits as u8, weights: weight_bits as u8, sums: sum_bits as u8 })
     }
 
-    /// Writes the parameters of a [`LeakyNetwork`](crate::LeakyNetwork)
-    /// [[`parameter_count`](LeakyLayout::parameter_count)] as integers of a
-    /// [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) for sensor values of so many fraction bits, each rounded to the
-    /// nearest.
+    /// Rounds the parameters of a [`LeakyNetwork`](crate::LeakyNetwork)
+    /// [[`parameter_count`](LeakyLayout::parameter_count)] to integers of a
+    /// [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) for sensor values of `input_bits` fraction bits.
     ///
-    /// Weights and biases get the most fraction bits, up to 15, with which the largest of them times the slope is an
-    /// `i16`; sums the most, up to 20, with which no sensor values whatever can overflow one.
+    /// Weights and biases get as many fraction bits as possible, up to 15: the largest of them times the slope must be an `i16`.
+    /// Sums get as many as possible, up to 20: no sensor values may overflow one.
     ///
     /// # Errors
-    /// [`Error::Slope`], [`Error::ParameterCount`] (of either slice), [`Error::NotFinite`], [`Error::LeakRange`],
-    /// [`Error::FractionBits`] of the inputs, [`Error::WeightRange`] where a weight times the slope is beyond 32767,
-    /// and [`Error::SumRange`] where sums of 10 fraction bits could overflow. Then `fixed` may be written in part.
+    /// [`Error::Layout`] for slope or fraction bits, [`Error::Length`] of either slice, [`Error::Parameter`], [`Error::Sum`] if sums
+    /// of 10 fraction bits could overflow. A weight that times the slope exceeds 32767 is such a parameter. `fixed` may be partly
+    /// written.
     ///
     /// ```
     /// use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
@@ -108,15 +110,10 @@ impl QuantizedScale {
         fixed: &mut [i16],
     ) -> Result<Self, Error> {
         let slope = layout.slope();
-        if !slope.is_finite() {
-            return Err(Error::Slope { value: slope });
-        }
-        check(layout, parameters)?;
-        if fixed.len() != parameters.len() {
-            return Err(Error::ParameterCount { expected: parameters.len(), found: fixed.len() });
-        }
+        LeakyModel { layout: *layout, leak: Leak::Filter }.check_model(parameters, |p| p)?;
+        Slice::Parameters.check(parameters.len(), fixed.len())?;
         if input_bits > 15 {
-            return Err(Error::FractionBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+            return Err(fraction_bits("inputs", input_bits, 0, 15));
         }
         let leaks = layout.range(LeakyParameter::Leak);
         let (weights, fixed_weights) = (&parameters[..leaks.start], &mut fixed[..leaks.start]);
@@ -126,7 +123,7 @@ impl QuantizedScale {
         for (index, weight) in weights.iter().enumerate() {
             while rounded(sloped(*weight), weight_bits).abs() > 32767.0 {
                 if weight_bits == 0 {
-                    return Err(Error::WeightRange { index, value: sloped(*weight) });
+                    return Err(ParameterFault::Weight(sloped(*weight)).at(index));
                 }
                 weight_bits -= 1;
             }
@@ -153,7 +150,7 @@ impl QuantizedScale {
         self.inputs as u32
     }
 
-    /// Fraction bits of weights and biases, which are those of the layout times its slope.
+    /// Fraction bits of weights and biases, which include the slope.
     pub const fn weight_bits(self) -> u32 {
         self.weights as u32
     }
@@ -163,29 +160,29 @@ impl QuantizedScale {
         self.sums as u32
     }
 
-    /// The sensor value that stands for `x`, to the nearest; the ends of `i16` beyond them, 0 for NaN.
+    /// Rounds a sensor value to an integer. Values beyond `i16` take its ends, NaN is 0.
     pub fn input(self, x: f32) -> i16 {
-        // Single precision: a processor without floating-point arithmetic may well be asked.
+        // Single precision, because processors without floating-point arithmetic run this too.
         let x = x * f32::from(1_u16 << self.input_bits());
         x.clamp(-32768.0, 32767.0).round_small() as i16
     }
 
-    /// What a motor value stands for.
+    /// Converts a motor value to its real value.
     pub fn output(y: i16) -> f32 {
         f32::from(y) * (1.0 / 32768.0)
     }
 
-    /// How far a product of a sensor value and its weight is shifted right before it is added.
+    /// Right shift of a product of a sensor value and its weight before the addition.
     pub(crate) const fn input_shift(self) -> u32 {
         self.input_bits() + self.weight_bits() - self.sum_bits()
     }
 
-    /// The same for an activation.
+    /// Right shift of a product of an activation and its weight before the addition.
     pub(crate) const fn activation_shift(self) -> u32 {
         ACTIVATION_BITS + self.weight_bits() - self.sum_bits()
     }
 
-    /// Whether every sum fits an `i32`, whatever the sensor values; `value` makes a number of what lies in `fixed`.
+    /// Checks that every sum fits an `i32` for all sensor values. `value` decodes a parameter.
     pub(crate) fn check_sums<T: Copy>(
         self,
         layout: &LeakyLayout,
@@ -193,8 +190,8 @@ impl QuantizedScale {
         value: impl Fn(T) -> i16,
     ) -> Result<(), Error> {
         let part = |kind| fixed.get(layout.range(kind)).unwrap_or(&[]);
-        // The largest sensor value and the largest activation are both 2^15. A shifted product is rounded down, so that a
-        // negative one may be larger by one than it is here.
+        // The largest sensor value and the largest activation are both 2^15. A shifted product is rounded down, so the
+        // magnitude of a negative one may be larger by one.
         let largest = |weights: &[T], target: usize, targets: usize, shift: u32| {
             let products = weights.iter().skip(target).step_by(targets.max(1));
             products.map(|w| ((u64::from(value(*w).unsigned_abs()) << 15) >> shift) + 1).sum::<u64>()
@@ -206,18 +203,23 @@ impl QuantizedScale {
                 + largest(part(LeakyParameter::RecurrentWeight), i, h, activation)
                 + largest(part(LeakyParameter::Bias), i, h, activation)
         });
-        // Without hidden neurons outputs have no weights, and bytes of strangers may have any number of them.
+        // Without hidden neurons outputs have no weights, and untrusted bytes may have any number of them.
         let weights = part(LeakyParameter::OutputWeight);
         let outputs = (0..o.min(weights.len())).map(|i| largest(weights, i, o, activation));
         let limit = i32::MAX as u64;
         match hidden.chain(outputs).enumerate().find(|(_, sum)| *sum > limit) {
-            Some((target, largest)) => Err(Error::SumRange { target, largest, limit }),
+            Some((target, largest)) => Err(Error::Sum { target, largest, limit }),
             None => Ok(()),
         }
     }
 }
 
-/// The integer next to `x` in units of 2^-bits, ties to even, for what is then below 2^51; what is larger stays large.
+/// The error of an invalid number of fraction bits.
+const fn fraction_bits(of: &'static str, found: u32, least: u32, most: u32) -> Error {
+    Error::Layout(LayoutFault::FractionBits { of, found, least, most })
+}
+
+/// Rounds `x` in units of 2^-bits, ties to even, up to 2^51. Larger numbers stay large.
 fn rounded(x: f64, bits: u32) -> f64 {
     (x * f64::from(1_u32 << bits)).round_small()
 }

@@ -1,7 +1,8 @@
 //! Networks of blocks.
 
 use farsa_nn::block::{Block, BlockLayout, BlockNetwork, BlockParameter, Group, Span};
-use farsa_nn::bytes::{Aligned, BlockNetworkBytes, BytesError};
+use farsa_nn::bytes::{Aligned, BlockNetworkBytes, BytesError, Field, Table};
+use farsa_nn::fault::{LayoutFault, ParameterFault};
 use farsa_nn::{Activation, Controller, Error, Leak};
 use farsa_num::{Digest, Domain, Stream, crc32};
 use proptest::prelude::*;
@@ -94,7 +95,7 @@ fn a_network_over_bytes_is_the_network() {
     let read = BlockNetworkBytes::read(&bytes.0).expect("a network");
     assert_eq!((read.inputs(), read.outputs(), read.leak(), read.channels()), (3, 1, Leak::TwoTap, 7));
     read.expect(LAYOUT, Leak::TwoTap).expect("the layout");
-    // Without a heap, into memory of our own.
+    // Without a heap, into buffers on the stack.
     let (mut groups, mut blocks) = ([Group::new(0, Activation::Step); 3], [Block::Gain(X); 8]);
     assert_eq!(
         read.copy_layout(&mut groups[1..], &mut blocks).expect_err("too short"),
@@ -140,17 +141,24 @@ fn every_flipped_bit_and_every_truncation_is_refused() {
 #[test]
 fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     let hashed = |at: usize, word: u32| refused(&with_hash(&modulated().0, at, word));
-    assert!(matches!(hashed(32, 4), BytesError::Shape { .. } | BytesError::Description { .. }));
+    assert!(matches!(
+        hashed(32, 4),
+        BytesError::Word { table: Table::Shape, .. } | BytesError::Word { table: Table::Description, .. }
+    ));
     assert!(matches!(hashed(32, u32::MAX), BytesError::Length { found: LEN, .. }));
     assert!(matches!(hashed(36, u32::MAX), BytesError::Length { found: LEN, .. }));
-    assert_eq!(hashed(40, 3), BytesError::Shape { word: 4, found: 3 });
-    assert_eq!(hashed(44, 3), BytesError::Shape { word: 5, found: 3 });
-    assert_eq!(hashed(48, 3), BytesError::Shape { word: 6, found: 3 });
-    assert_eq!(hashed(52, 3), BytesError::Shape { word: 7, found: 3 });
-    assert_eq!(hashed(24, 6), BytesError::Parameters(Error::Neurons { first: 0, count: 7, neurons: 6 }));
+    assert_eq!(hashed(40, 3), BytesError::Word { table: Table::Shape, word: 4, found: 3 });
+    assert_eq!(hashed(44, 3), BytesError::Word { table: Table::Shape, word: 5, found: 3 });
+    assert_eq!(hashed(48, 3), BytesError::Word { table: Table::Shape, word: 6, found: 3 });
+    assert_eq!(hashed(52, 3), BytesError::Word { table: Table::Shape, word: 7, found: 3 });
+    assert_eq!(
+        hashed(24, 6),
+        BytesError::Parameters(Error::Layout(LayoutFault::Neurons { first: 0, count: 7, neurons: 6 }))
+    );
 
-    let wrong =
-        |word: usize, found: u32| assert_eq!(refused(&described(word, found)), BytesError::Description { word, found });
+    let wrong = |word: usize, found: u32| {
+        assert_eq!(refused(&described(word, found)), BytesError::Word { table: Table::Description, word, found });
+    };
     wrong(0, u32::MAX);
     wrong(2, 5);
     wrong(2, 2048);
@@ -161,12 +169,12 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     wrong(first(5) + 4, 1);
     wrong(first(3) + 5, u32::MAX);
     let nan = refused(&described(1, f32::NAN.to_bits()));
-    assert!(matches!(nan, BytesError::Parameters(Error::Slope { .. })), "{nan}");
-    let beyond = Error::Block { index: 4, first: 3, count: 4, neurons: 6 };
+    assert!(matches!(nan, BytesError::Parameters(Error::Layout(LayoutFault::Slope(_)))), "{nan}");
+    let beyond = Error::Layout(LayoutFault::Block { index: 4, first: 3, count: 4, neurons: 6 });
     assert_eq!(refused(&described(first(4) + 2, 4)), BytesError::Parameters(beyond));
-    let beyond = Error::Block { index: 5, first: 6, count: 1, neurons: 6 };
+    let beyond = Error::Layout(LayoutFault::Block { index: 5, first: 6, count: 1, neurons: 6 });
     assert_eq!(refused(&described(first(5) + 3, 6)), BytesError::Parameters(beyond));
-    // What they are is the source of the error; others have none.
+    // The source of the error is the network's error. Other errors have no source.
     let source = |error: BytesError| core::error::Error::source(&error).map(ToString::to_string);
     assert_eq!(source(BytesError::Parameters(beyond)), Some(beyond.to_string()));
     assert_eq!(source(BytesError::BigEndian), None);
@@ -179,8 +187,14 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
         bytes[HEAD + 4 * (WORDS + index)..][..4].copy_from_slice(&value.to_le_bytes());
         refused(&sealed(bytes))
     };
-    assert_eq!(at(5, f32::INFINITY), BytesError::Parameters(Error::NotFinite { index: 5 }));
-    assert_eq!(at(COUNT - 1, 1.5), BytesError::Parameters(Error::LeakRange { index: COUNT - 1, value: 1.5 }));
+    assert_eq!(
+        at(5, f32::INFINITY),
+        BytesError::Parameters(Error::Parameter { index: 5, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(
+        at(COUNT - 1, 1.5),
+        BytesError::Parameters(Error::Parameter { index: COUNT - 1, fault: ParameterFault::Leak(1.5) })
+    );
 }
 
 #[test]
@@ -198,10 +212,13 @@ fn another_network_is_told_apart() {
         (BlockLayout::new(3, 1, &GROUPS, &blocks), Leak::TwoTap),
         (BlockLayout::new(3, 1, &GROUPS, &BLOCKS[..7]), Leak::TwoTap),
     ] {
-        assert!(matches!(read.expect(layout, leak), Err(BytesError::OtherLayout { .. })), "{layout:?}");
+        assert!(
+            matches!(read.expect(layout, leak), Err(BytesError::Mismatch { field: Field::Layout, .. })),
+            "{layout:?}"
+        );
     }
     assert_eq!(read.expect_channels(7), Ok(()));
-    assert_eq!(read.expect_channels(8), Err(BytesError::OtherChannels { expected: 8, found: 7 }));
+    assert_eq!(read.expect_channels(8), Err(BytesError::Mismatch { field: Field::Channels, expected: 8, found: 7 }));
 }
 
 #[test]
@@ -228,20 +245,32 @@ fn nothing_is_written_that_would_not_be_read() {
         error
     };
     let few = BlockLayout::new(9, 1, &GROUPS, &BLOCKS);
-    assert_eq!(write(few, &wrong), BytesError::Parameters(Error::Neurons { first: 0, count: 10, neurons: 6 }));
+    assert_eq!(
+        write(few, &wrong),
+        BytesError::Parameters(Error::Layout(LayoutFault::Neurons { first: 0, count: 10, neurons: 6 }))
+    );
     let mut blocks = BLOCKS;
     blocks[3] = Block::connect(H, H).delayed(usize::MAX);
     let delayed = BlockLayout::new(3, 1, &GROUPS, &blocks);
-    assert_eq!(write(delayed, &wrong), BytesError::Description { word: 9 + 6 * 3 + 5, found: u32::MAX });
+    assert_eq!(
+        write(delayed, &wrong),
+        BytesError::Word { table: Table::Description, word: 9 + 6 * 3 + 5, found: u32::MAX }
+    );
     let huge = Group { neurons: 1 << 40, bias: false, gain: false, leak: false, ..GROUPS[0] };
     let groups = [&GROUPS[..], &[huge]].concat();
     let larger = BlockLayout::new(3, 1, &groups, &BLOCKS);
-    assert_eq!(write(larger, &wrong), BytesError::Description { word: 3 * GROUPS.len(), found: u32::MAX });
+    assert_eq!(
+        write(larger, &wrong),
+        BytesError::Word { table: Table::Description, word: 3 * GROUPS.len(), found: u32::MAX }
+    );
     wrong[2] = f32::NAN;
-    assert_eq!(write(LAYOUT, &wrong), BytesError::Parameters(Error::NotFinite { index: 2 }));
+    assert_eq!(
+        write(LAYOUT, &wrong),
+        BytesError::Parameters(Error::Parameter { index: 2, fault: ParameterFault::NotFinite })
+    );
 }
 
-/// Any layout of a few groups and blocks; spans lie within the neurons.
+/// Any layout of a few groups and blocks, with spans within the neurons.
 fn layouts() -> impl Strategy<Value = (usize, usize, Vec<Group>, Vec<Block>)> {
     let group = (1_usize..4, 0_usize..5, -2_f32..2.0, any::<[bool; 3]>()).prop_map(
         |(neurons, activation, slope, [bias, gain, leak])| Group {

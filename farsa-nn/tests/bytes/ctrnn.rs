@@ -1,6 +1,7 @@
 //! Continuous-time networks.
 
-use farsa_nn::bytes::{Aligned, BytesError, CtrnnBytes};
+use farsa_nn::bytes::{Aligned, BytesError, CtrnnBytes, Field, Table};
+use farsa_nn::fault::{LayoutFault, ParameterFault};
 use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
@@ -48,7 +49,7 @@ fn the_format_is_that_of_the_document() {
     assert_eq!(word(LEN - 4), crc32(&bytes[..LEN - 4]));
 }
 
-/// The numbers of integrators and activations are what the document says, whatever the order of their declaration.
+/// The numbers of integrators and activations are those of the document, for any order of their declaration.
 #[test]
 fn methods_and_functions_have_the_numbers_of_the_document() {
     let one = |layout: CtrnnLayout| {
@@ -98,10 +99,11 @@ fn every_flipped_bit_and_every_truncation_is_refused() {
 
 #[test]
 fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
-    assert_eq!(refused(&with(8, &[2])), BytesError::Version { expected: 1, found: 2 });
-    assert!(matches!(refused(&with(24, &[4])), BytesError::LayoutHash { .. }));
+    assert_eq!(refused(&with(8, &[2])), BytesError::Mismatch { field: Field::Version, expected: 1, found: 2 });
+    assert!(matches!(refused(&with(24, &[4])), BytesError::Mismatch { field: Field::LayoutHash, .. }));
     let hashed = |at: usize, word: u32| refused(&with_hash(&agent().0, at, word));
-    let neurons = |first, count| BytesError::Parameters(Error::Neurons { first, count, neurons: 5 });
+    let neurons =
+        |first, count| BytesError::Parameters(Error::Layout(LayoutFault::Neurons { first, count, neurons: 5 }));
     assert_eq!(hashed(24, 5), neurons(1, 5));
     assert_eq!(hashed(28, 6), BytesError::Length { expected: LEN + 4 * (11 + 3), found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
@@ -109,17 +111,29 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     // Weighted inputs: there would be weights.
     assert_eq!(hashed(36, 0), BytesError::Length { expected: LEN + 4 * 15, found: LEN });
     assert_eq!(hashed(40, 4), neurons(4, 2));
-    assert_eq!(hashed(44, 3), BytesError::Shape { word: 5, found: 3 });
-    assert_eq!(hashed(48, 5), BytesError::Shape { word: 6, found: 5 });
-    let step = |value: f32| BytesError::Parameters(Error::TimeStep { value });
+    assert_eq!(hashed(44, 3), BytesError::Word { table: Table::Shape, word: 5, found: 3 });
+    assert_eq!(hashed(48, 5), BytesError::Word { table: Table::Shape, word: 6, found: 5 });
+    let step = |value: f32| BytesError::Parameters(Error::Layout(LayoutFault::TimeStep(value)));
     assert_eq!(hashed(52, 0.0_f32.to_bits()), step(0.0));
     assert_eq!(hashed(52, f32::INFINITY.to_bits()), step(f32::INFINITY));
     // Longer than the integrator bears with these time constants.
-    assert!(matches!(hashed(52, 50_f32.to_bits()), BytesError::Parameters(Error::TimeConstant { index: 35, .. })));
+    assert!(matches!(
+        hashed(52, 50_f32.to_bits()),
+        BytesError::Parameters(Error::Parameter { index: 35, fault: ParameterFault::TimeConstant { .. } })
+    ));
     let at = |index: usize, value: f32| refused(&with(HEAD + 4 * index, &value.to_le_bytes()));
-    assert_eq!(at(5, f32::INFINITY), BytesError::Parameters(Error::NotFinite { index: 5 }));
+    assert_eq!(
+        at(5, f32::INFINITY),
+        BytesError::Parameters(Error::Parameter { index: 5, fault: ParameterFault::NotFinite })
+    );
     let least = Integrator::RungeKutta4.least_time_constant(TIME_STEP);
-    assert_eq!(at(39, 0.01), BytesError::Parameters(Error::TimeConstant { index: 39, value: 0.01, least }));
+    assert_eq!(
+        at(39, 0.01),
+        BytesError::Parameters(Error::Parameter {
+            index: 39,
+            fault: ParameterFault::TimeConstant { value: 0.01, least }
+        })
+    );
 }
 
 #[test]
@@ -134,10 +148,13 @@ fn another_controller_is_told_apart() {
         (LAYOUT.with_outputs_from(0), TIME_STEP),
         (CtrnnLayout::new(3, 5, 2).with_integrator(Integrator::RungeKutta4), TIME_STEP),
     ] {
-        assert!(matches!(read.expect(layout, time_step), Err(BytesError::OtherLayout { .. })), "{layout:?}");
+        assert!(
+            matches!(read.expect(layout, time_step), Err(BytesError::Mismatch { field: Field::Layout, .. })),
+            "{layout:?}"
+        );
     }
     assert_eq!(read.expect_channels(7), Ok(()));
-    assert_eq!(read.expect_channels(8), Err(BytesError::OtherChannels { expected: 8, found: 7 }));
+    assert_eq!(read.expect_channels(8), Err(BytesError::Mismatch { field: Field::Channels, expected: 8, found: 7 }));
 }
 
 #[test]
@@ -164,11 +181,14 @@ fn nothing_is_written_that_would_not_be_read() {
         error
     };
     let error = write(LAYOUT, -1.0, &wrong);
-    assert_eq!(error, BytesError::Parameters(Error::TimeStep { value: -1.0 }));
+    assert_eq!(error, BytesError::Parameters(Error::Layout(LayoutFault::TimeStep(-1.0))));
     let error = write(LAYOUT.with_outputs_from(usize::MAX), TIME_STEP, &wrong);
-    assert!(matches!(error, BytesError::Parameters(Error::Neurons { first: usize::MAX, .. })));
+    assert!(matches!(error, BytesError::Parameters(Error::Layout(LayoutFault::Neurons { first: usize::MAX, .. }))));
     wrong[2] = f32::NAN;
-    assert_eq!(write(LAYOUT, TIME_STEP, &wrong), BytesError::Parameters(Error::NotFinite { index: 2 }));
+    assert_eq!(
+        write(LAYOUT, TIME_STEP, &wrong),
+        BytesError::Parameters(Error::Parameter { index: 2, fault: ParameterFault::NotFinite })
+    );
 }
 
 proptest! {

@@ -1,6 +1,7 @@
 //! Leaky networks.
 
-use farsa_nn::bytes::{Aligned, BytesError, LeakyNetworkBytes, channel_hash};
+use farsa_nn::bytes::{Aligned, BytesError, Field, LeakyNetworkBytes, Table, channel_hash};
+use farsa_nn::fault::{LayoutFault, ParameterFault};
 use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
@@ -75,20 +76,26 @@ fn every_flipped_bit_and_every_truncation_is_refused() {
 #[test]
 fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert_eq!(refused(b"\x7fELF\x01\x01\x01\0 and so on"), BytesError::Magic { found: *b"\x7fELF\x01\x01\x01\0" });
-    assert_eq!(refused(&with(8, &[2])), BytesError::Version { expected: 1, found: 2 });
-    assert_eq!(refused(&with(12, &[9])), BytesError::Kind { expected: 1, found: 9 });
-    assert!(matches!(refused(&with(24, &[30])), BytesError::LayoutHash { .. }));
+    assert_eq!(refused(&with(8, &[2])), BytesError::Mismatch { field: Field::Version, expected: 1, found: 2 });
+    assert_eq!(refused(&with(12, &[9])), BytesError::Mismatch { field: Field::Kind, expected: 1, found: 9 });
+    assert!(matches!(refused(&with(24, &[30])), BytesError::Mismatch { field: Field::LayoutHash, .. }));
     // A forged hash is caught by what the numbers mean.
     let hashed = |at: usize, word: u32| refused(&with_hash(&champion().0, at, word));
     assert_eq!(hashed(24, 30), BytesError::Length { expected: LEN + 4 * 12, found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
-    assert_eq!(hashed(36, f32::NAN.to_bits()), BytesError::Shape { word: 3, found: f32::NAN.to_bits() });
-    assert_eq!(hashed(40, 3), BytesError::Shape { word: 4, found: 3 });
-    assert_eq!(hashed(48, 1), BytesError::Shape { word: 6, found: 1 });
+    assert_eq!(
+        hashed(36, f32::NAN.to_bits()),
+        BytesError::Word { table: Table::Shape, word: 3, found: f32::NAN.to_bits() }
+    );
+    assert_eq!(hashed(40, 3), BytesError::Word { table: Table::Shape, word: 4, found: 3 });
+    assert_eq!(hashed(48, 1), BytesError::Word { table: Table::Shape, word: 6, found: 1 });
     assert_eq!(refused(&with(20, &[0])), BytesError::Length { expected: HEAD + 4 + (3168 - 96), found: LEN });
     let at = |index: usize, value: f32| refused(&with(HEAD + 4 * index, &value.to_le_bytes()));
-    assert_eq!(at(5, f32::INFINITY), BytesError::Parameters(Error::NotFinite { index: 5 }));
-    assert_eq!(at(791, 1.5), BytesError::Parameters(Error::LeakRange { index: 791, value: 1.5 }));
+    assert_eq!(
+        at(5, f32::INFINITY),
+        BytesError::Parameters(Error::Parameter { index: 5, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(at(791, 1.5), BytesError::Parameters(Error::Parameter { index: 791, fault: ParameterFault::Leak(1.5) }));
 }
 
 #[test]
@@ -101,10 +108,13 @@ fn another_controller_is_told_apart() {
         (LeakyLayout::new(26, 12, 23), Leak::Evonet),
         (LeakyLayout::new(29, 12, 22), Leak::Evonet),
     ] {
-        assert!(matches!(read.expect(layout, leak), Err(BytesError::OtherLayout { .. })), "{layout:?}");
+        assert!(
+            matches!(read.expect(layout, leak), Err(BytesError::Mismatch { field: Field::Layout, .. })),
+            "{layout:?}"
+        );
     }
     assert_eq!(read.expect_channels(7), Ok(()));
-    assert_eq!(read.expect_channels(8), Err(BytesError::OtherChannels { expected: 8, found: 7 }));
+    assert_eq!(read.expect_channels(8), Err(BytesError::Mismatch { field: Field::Channels, expected: 8, found: 7 }));
     let hashes = [
         channel_hash(["ab", "c"], ["d"]),
         channel_hash(["a", "bc"], ["d"]),
@@ -137,10 +147,10 @@ fn nothing_is_written_that_would_not_be_read() {
     );
     wrong[2] = f32::NAN;
     let error = LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &wrong, &mut out);
-    assert_eq!(error, Err(BytesError::Parameters(Error::NotFinite { index: 2 })));
+    assert_eq!(error, Err(BytesError::Parameters(Error::Parameter { index: 2, fault: ParameterFault::NotFinite })));
     let nan = LAYOUT.with_slope(f32::NAN);
     let error = LeakyNetworkBytes::write(nan, Leak::Filter, 0, &parameters(LAYOUT, 1), &mut out);
-    assert!(matches!(error, Err(BytesError::Parameters(Error::Slope { .. }))));
+    assert!(matches!(error, Err(BytesError::Parameters(Error::Layout(LayoutFault::Slope(_))))));
     assert_eq!(out, [3; LEN]);
 }
 

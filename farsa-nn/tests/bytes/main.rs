@@ -1,4 +1,4 @@
-//! Controllers as bytes: what is written is read, nothing else is.
+//! Controllers as bytes: only written bytes are read.
 
 mod block;
 mod ctrnn;
@@ -7,14 +7,15 @@ mod perceptron;
 mod quantized;
 
 use farsa_nn::bytes::{
-    Aligned, BlockNetworkBytes, BytesError, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, QuantizedNetworkBytes,
+    Aligned, BlockNetworkBytes, BytesError, CtrnnBytes, Field, LeakyNetworkBytes, PerceptronBytes,
+    QuantizedNetworkBytes,
 };
 use farsa_num::{Digest, crc32};
 
 /// Where the parameters begin.
 const HEAD: usize = 72;
 
-/// Writes the checksum anew, so that what is wrong is not damage.
+/// Rewrites the checksum, so that the fault is not damage.
 fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len() - 4;
     let checksum = crc32(&bytes[..end]);
@@ -45,7 +46,7 @@ fn digest(bytes: &[u8]) -> u64 {
     digest.finish()
 }
 
-/// No flipped bit, no truncation and no byte more of a controller passes this reader.
+/// Checks that this reader rejects every flipped bit, every truncation and an extra byte.
 fn all_damage_is_refused(bytes: &[u8], refused: impl Fn(&[u8]) -> BytesError) {
     let mut damaged = bytes.to_vec();
     for at in 0..8 * bytes.len() {
@@ -53,9 +54,9 @@ fn all_damage_is_refused(bytes: &[u8], refused: impl Fn(&[u8]) -> BytesError) {
         let error = refused(&damaged);
         let expected = match at / 8 {
             0..8 => matches!(error, BytesError::Magic { .. }),
-            8..12 => matches!(error, BytesError::Version { .. }),
+            8..12 => matches!(error, BytesError::Mismatch { field: Field::Version, .. }),
             16..20 => matches!(error, BytesError::Length { .. }),
-            _ => matches!(error, BytesError::Checksum { .. }),
+            _ => matches!(error, BytesError::Mismatch { field: Field::Checksum, .. }),
         };
         assert!(expected, "bit {at}: {error}");
         damaged[at / 8] ^= 1 << (at % 8);
@@ -68,7 +69,7 @@ fn all_damage_is_refused(bytes: &[u8], refused: impl Fn(&[u8]) -> BytesError) {
     assert_eq!(refused(&longer), BytesError::Length { expected: bytes.len(), found: bytes.len() + 1 });
 }
 
-/// A head that is right before any bytes, which may be sealed.
+/// A valid head before any bytes, with an optional checksum.
 fn after_a_head(head: &[u8], rest: &[u8], seal: bool) -> Vec<u8> {
     let mut whole = [&head[..HEAD], rest].concat();
     if seal {
@@ -90,7 +91,7 @@ fn kinds() -> [Vec<u8>; 5] {
 fn each_kind_is_read_as_itself_alone() {
     let kinds = kinds();
     for (at, bytes) in kinds.iter().enumerate() {
-        let found = at as u32 + 1;
+        let found = at as u64 + 1;
         let errors = [
             LeakyNetworkBytes::read(bytes).err(),
             QuantizedNetworkBytes::read(bytes).err(),
@@ -99,12 +100,15 @@ fn each_kind_is_read_as_itself_alone() {
             BlockNetworkBytes::read(bytes).err(),
         ];
         for (expected, error) in (1..).zip(errors) {
-            assert_eq!(error, (expected != found).then_some(BytesError::Kind { expected, found }));
+            assert_eq!(
+                error,
+                (expected != found).then_some(BytesError::Mismatch { field: Field::Kind, expected, found })
+            );
         }
     }
 }
 
-/// What was written once is written so for good, on every machine: there are boards that hold it.
+/// The bytes stay the same on every machine, because boards store them.
 #[test]
 fn the_bytes_of_each_kind_do_not_change() {
     let kinds = kinds();
@@ -114,7 +118,7 @@ fn the_bytes_of_each_kind_do_not_change() {
     );
 }
 
-/// What becomes of using parameters where they lie, so far beyond a multiple of eight, on this processor.
+/// The result of using parameters in place on this processor, at an offset from a multiple of eight.
 fn placement(offset: usize, alignment: usize) -> Result<(), BytesError> {
     match offset % alignment {
         _ if cfg!(target_endian = "big") => Err(BytesError::BigEndian),

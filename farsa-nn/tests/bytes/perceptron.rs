@@ -1,6 +1,7 @@
 //! The layer of logistic units.
 
-use farsa_nn::bytes::{Aligned, BytesError, PerceptronBytes};
+use farsa_nn::bytes::{Aligned, BytesError, Field, PerceptronBytes, Table};
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::{Controller, Error, Perceptron};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
@@ -71,18 +72,21 @@ fn every_flipped_bit_and_every_truncation_is_refused() {
 
 #[test]
 fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
-    assert_eq!(refused(&with(8, &[2])), BytesError::Version { expected: 1, found: 2 });
-    assert!(matches!(refused(&with(24, &[4])), BytesError::LayoutHash { .. }));
+    assert_eq!(refused(&with(8, &[2])), BytesError::Mismatch { field: Field::Version, expected: 1, found: 2 });
+    assert!(matches!(refused(&with(24, &[4])), BytesError::Mismatch { field: Field::LayoutHash, .. }));
     let hashed = |at: usize, word: u32| refused(&with_hash(&reflex().0, at, word));
     assert_eq!(hashed(24, 5), BytesError::Length { expected: LEN - 8, found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
     let bits = f32::NAN.to_bits();
-    assert_eq!(hashed(32, bits), BytesError::Shape { word: 2, found: bits });
+    assert_eq!(hashed(32, bits), BytesError::Word { table: Table::Shape, word: 2, found: bits });
     for word in 3..8 {
-        assert_eq!(hashed(24 + 4 * word, 1), BytesError::Shape { word, found: 1 });
+        assert_eq!(hashed(24 + 4 * word, 1), BytesError::Word { table: Table::Shape, word, found: 1 });
     }
     let at = |index: usize, value: f32| refused(&with(HEAD + 4 * index, &value.to_le_bytes()));
-    assert_eq!(at(5, f32::INFINITY), BytesError::Parameters(Error::NotFinite { index: 5 }));
+    assert_eq!(
+        at(5, f32::INFINITY),
+        BytesError::Parameters(Error::Parameter { index: 5, fault: ParameterFault::NotFinite })
+    );
 }
 
 #[test]
@@ -90,10 +94,10 @@ fn another_layer_is_told_apart() {
     let bytes = reflex();
     let read = PerceptronBytes::read(&bytes.0).expect("a layer");
     for (inputs, outputs, slope) in [(5, 2, 1.5), (6, 3, 1.5), (2, 6, 1.5), (6, 2, 1.0)] {
-        assert!(matches!(read.expect(inputs, outputs, slope), Err(BytesError::OtherLayout { .. })));
+        assert!(matches!(read.expect(inputs, outputs, slope), Err(BytesError::Mismatch { field: Field::Layout, .. })));
     }
     assert_eq!(read.expect_channels(7), Ok(()));
-    assert_eq!(read.expect_channels(8), Err(BytesError::OtherChannels { expected: 8, found: 7 }));
+    assert_eq!(read.expect_channels(8), Err(BytesError::Mismatch { field: Field::Channels, expected: 8, found: 7 }));
 }
 
 #[test]
@@ -119,11 +123,14 @@ fn nothing_is_written_that_would_not_be_read() {
     };
     assert_eq!(write(6, 1.0, &wrong, 1), BytesError::Buffer { expected: LEN, found: LEN - 1 });
     let slope = f32::NEG_INFINITY;
-    assert_eq!(write(6, slope, &wrong, 0), BytesError::Parameters(Error::Slope { value: slope }));
-    let count = Error::ParameterCount { expected: 16, found: 14 };
+    assert_eq!(write(6, slope, &wrong, 0), BytesError::Parameters(Error::Layout(LayoutFault::Slope(slope))));
+    let count = Error::Length { slice: Slice::Parameters, expected: 16, found: 14 };
     assert_eq!(write(7, 1.0, &wrong, 0), BytesError::Parameters(count));
     wrong[2] = f32::NAN;
-    assert_eq!(write(6, 1.0, &wrong, 0), BytesError::Parameters(Error::NotFinite { index: 2 }));
+    assert_eq!(
+        write(6, 1.0, &wrong, 0),
+        BytesError::Parameters(Error::Parameter { index: 2, fault: ParameterFault::NotFinite })
+    );
 }
 
 proptest! {

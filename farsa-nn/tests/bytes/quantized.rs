@@ -1,6 +1,7 @@
 //! Networks of integers.
 
-use farsa_nn::bytes::{Aligned, BytesError, QuantizedNetworkBytes};
+use farsa_nn::bytes::{Aligned, BytesError, Field, QuantizedNetworkBytes, Table};
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
 use farsa_nn::{Error, Leak, LeakyLayout, LeakyParameter};
 use farsa_num::{Domain, Stream, crc32};
@@ -95,10 +96,10 @@ fn a_network_over_bytes_is_the_network_and_takes_others_while_it_runs() {
     }
 
     let before = (own.scale(), own.parameters().to_vec());
-    let count = Error::ParameterCount { expected: COUNT, found: 1 };
+    let count = Error::Length { slice: Slice::Parameters, expected: COUNT, found: 1 };
     assert_eq!(own.copy_parameters(scale, &[0]), Err(count));
     assert_eq!(own.set_parameters(scale, vec![0]), Err(count));
-    let wrong = Error::LeakRange { index: COUNT - 1, value: -1.0 / 16384.0 };
+    let wrong = Error::Parameter { index: COUNT - 1, fault: ParameterFault::Leak(-1.0 / 16384.0) };
     others[COUNT - 1] = -1;
     assert_eq!(own.copy_parameters(scale, &others), Err(wrong));
     assert_eq!(own.set_parameters(scale, others), Err(wrong));
@@ -112,20 +113,25 @@ fn every_flipped_bit_and_every_truncation_is_refused() {
 
 #[test]
 fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
-    assert_eq!(refused(&with(8, &[2])), BytesError::Version { expected: 1, found: 2 });
-    assert!(matches!(refused(&with(24, &[7])), BytesError::LayoutHash { .. }));
+    assert_eq!(refused(&with(8, &[2])), BytesError::Mismatch { field: Field::Version, expected: 1, found: 2 });
+    assert!(matches!(refused(&with(24, &[7])), BytesError::Mismatch { field: Field::LayoutHash, .. }));
     let hashed = |at: usize, word: u32| refused(&with_hash(&champion().0, at, word));
     assert_eq!(hashed(24, 7), BytesError::Length { expected: LEN + 2 * 5, found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
-    assert_eq!(hashed(36, 1), BytesError::Shape { word: 3, found: 1 });
-    assert_eq!(hashed(40, 3), BytesError::Shape { word: 4, found: 3 });
-    let bits = |of, found, least, most| BytesError::Parameters(Error::FractionBits { of, found, least, most });
+    assert_eq!(hashed(36, 1), BytesError::Word { table: Table::Shape, word: 3, found: 1 });
+    assert_eq!(hashed(40, 3), BytesError::Word { table: Table::Shape, word: 4, found: 3 });
+    let bits = |of, found, least, most| {
+        BytesError::Parameters(Error::Layout(LayoutFault::FractionBits { of, found, least, most }))
+    };
     assert_eq!(hashed(44, 16), bits("inputs", 16, 0, 15));
     assert_eq!(hashed(48, u32::MAX), bits("weights", u32::MAX, 0, 15));
     assert_eq!(hashed(52, 9), bits("sums", 9, 10, 20));
     assert_eq!(refused(&with(20, &[0])), BytesError::Length { expected: HEAD + 4, found: LEN });
     let leak = refused(&with(LEN - 6, &(-1_i16).to_le_bytes()));
-    assert_eq!(leak, BytesError::Parameters(Error::LeakRange { index: 84, value: -1.0 / 16384.0 }));
+    assert_eq!(
+        leak,
+        BytesError::Parameters(Error::Parameter { index: 84, fault: ParameterFault::Leak(-1.0 / 16384.0) })
+    );
 }
 
 /// Weights whose sums could overflow are refused, so that the board's step needs no check.
@@ -138,7 +144,7 @@ fn sums_that_could_overflow_are_refused() {
     let mut bytes = vec![0; QuantizedNetworkBytes::byte_count(MANY)];
     let largest = 70 * ((32_767 << 10 >> 5 << 5 << 5 >> 5) + 1);
     let error = QuantizedNetworkBytes::write(MANY, Leak::Filter, scale, 0, &fixed, &mut bytes);
-    let expected = BytesError::Parameters(Error::SumRange { target: 70, largest, limit: i32::MAX as u64 });
+    let expected = BytesError::Parameters(Error::Sum { target: 70, largest, limit: i32::MAX as u64 });
     assert_eq!(error, Err(expected));
     // Written with sums of fewer fraction bits, which fit, and forged.
     let coarse = QuantizedScale::new(15, 10, 19).expect("valid");
@@ -169,10 +175,13 @@ fn another_controller_is_told_apart() {
         (LeakyLayout::new(5, 5, 4), Leak::TwoTap, 9),
         (LeakyLayout::new(6, 5, 3), Leak::TwoTap, 9),
     ] {
-        assert!(matches!(read.expect(layout, leak, input_bits), Err(BytesError::OtherLayout { .. })), "{layout:?}");
+        assert!(
+            matches!(read.expect(layout, leak, input_bits), Err(BytesError::Mismatch { field: Field::Layout, .. })),
+            "{layout:?}"
+        );
     }
     assert_eq!(read.expect_channels(7), Ok(()));
-    assert_eq!(read.expect_channels(8), Err(BytesError::OtherChannels { expected: 8, found: 7 }));
+    assert_eq!(read.expect_channels(8), Err(BytesError::Mismatch { field: Field::Channels, expected: 8, found: 7 }));
 }
 
 #[test]
@@ -197,7 +206,7 @@ fn nothing_is_written_that_would_not_be_read() {
     assert_eq!(short, Err(BytesError::Buffer { expected: LEN, found: LEN - 1 }));
     wrong[84] = 16_385;
     let error = QuantizedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out);
-    let leak = Error::LeakRange { index: 84, value: 16_385.0 / 16_384.0 };
+    let leak = Error::Parameter { index: 84, fault: ParameterFault::Leak(16_385.0 / 16_384.0) };
     assert_eq!(error, Err(BytesError::Parameters(leak)));
     assert_eq!(out, [3; LEN]);
 }
@@ -220,7 +229,7 @@ proptest! {
     #[test]
     fn no_bytes_whatever_are_a_panic(bytes: Vec<u8>, seal: bool) {
         let _ = QuantizedNetworkBytes::read(&bytes);
-        // So many may be parameters by chance.
+        // This number of bytes may be parameters by chance.
         prop_assume!(bytes.len() != 2 * COUNT);
         prop_assert!(QuantizedNetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
     }

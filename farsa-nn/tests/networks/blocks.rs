@@ -3,13 +3,14 @@
 use farsa_nn::block::{
     Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, BlockPlan, EvonetRanges, Group, Span,
 };
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::{
     Ablatable, Activation, Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
 
-/// What a neuron is, and its own parameters.
+/// A neuron with its parameters.
 #[derive(Clone, Copy)]
 struct Neuron {
     group: Group,
@@ -26,7 +27,7 @@ struct Oracle<'a> {
     neurons: Vec<Neuron>,
     activations: Vec<f32>,
     responses: Vec<f32>,
-    /// What each block sent, step by step.
+    /// The values sent by each block, step by step.
     sent: Vec<Vec<Vec<f32>>>,
 }
 
@@ -159,7 +160,7 @@ proptest! {
             for x in &xs {
                 network.step(x, &mut y);
                 let expected = oracle.step(x);
-                // Without bounds, numbers may leave the floats; what is no number has no bits to compare.
+                // Without bounds, numbers may overflow, and a NaN has no bits to compare.
                 if oracle.activations.iter().any(|a| a.is_nan()) {
                     break;
                 }
@@ -207,7 +208,7 @@ proptest! {
             then.step(&xs[t], &mut z);
             prop_assert_eq!(bits(&y), bits(&z), "step {}", t);
         }
-        // And a reset forgets what was on its way.
+        // A reset clears the delayed values.
         let first = |network: &mut BlockNetwork<'_, _, _>| {
             let mut y = [0.0; 2];
             network.reset();
@@ -302,25 +303,37 @@ fn construction_names_the_mistake() {
     };
     let layout = BlockLayout::new(1, 1, &groups, &blocks);
     assert_eq!(build(layout, &[0.5; 4], 0), None);
-    assert_eq!(build(layout, &[0.5; 3], 0), Some(Error::ParameterCount { expected: 4, found: 3 }));
-    assert_eq!(build(layout, &[0.5; 4], 1), Some(Error::StateLen { expected: 18, found: 17 }));
-    assert_eq!(build(layout, &[0.5, f32::NAN, 0.5, 0.5], 0), Some(Error::NotFinite { index: 1 }));
-    assert_eq!(build(layout, &[0.5, 0.5, 0.5, 1.5], 0), Some(Error::LeakRange { index: 3, value: 1.5 }));
+    assert_eq!(build(layout, &[0.5; 3], 0), Some(Error::Length { slice: Slice::Parameters, expected: 4, found: 3 }));
+    assert_eq!(build(layout, &[0.5; 4], 1), Some(Error::Length { slice: Slice::State, expected: 18, found: 17 }));
+    assert_eq!(
+        build(layout, &[0.5, f32::NAN, 0.5, 0.5], 0),
+        Some(Error::Parameter { index: 1, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(
+        build(layout, &[0.5, 0.5, 0.5, 1.5], 0),
+        Some(Error::Parameter { index: 3, fault: ParameterFault::Leak(1.5) })
+    );
     let many = BlockLayout::new(2, 2, &groups, &blocks);
-    assert_eq!(build(many, &[0.5; 4], 0), Some(Error::Neurons { first: 0, count: 4, neurons: 3 }));
+    assert_eq!(build(many, &[0.5; 4], 0), Some(Error::Layout(LayoutFault::Neurons { first: 0, count: 4, neurons: 3 })));
     let beyond = [blocks[0], Block::Update(Span::new(2, 2))];
     let error = build(BlockLayout::new(1, 1, &groups, &beyond), &[0.5; 4], 0);
-    assert_eq!(error, Some(Error::Block { index: 1, first: 2, count: 2, neurons: 3 }));
+    assert_eq!(error, Some(Error::Layout(LayoutFault::Block { index: 1, first: 2, count: 2, neurons: 3 })));
     assert_eq!(
         error.expect("an error").to_string(),
         "block 1 has 2 neurons from neuron 2 on where the layout has 3 neurons"
     );
     let steep = [groups[0].with_slope(f32::NAN), groups[1]];
-    assert!(matches!(build(BlockLayout::new(1, 1, &steep, &blocks), &[0.5; 4], 0), Some(Error::Slope { .. })));
+    assert!(matches!(
+        build(BlockLayout::new(1, 1, &steep, &blocks), &[0.5; 4], 0),
+        Some(Error::Layout(LayoutFault::Slope(_)))
+    ));
     let huge = [Block::connect(Span::new(0, 1), Span::new(1, 2)).delayed(usize::MAX)];
     let layout = BlockLayout::new(1, 1, &groups, &huge);
     assert_eq!(layout.state_len(), usize::MAX);
-    assert_eq!(build(layout, &[0.5; 4], 0), Some(Error::StateLen { expected: usize::MAX, found: 99 }));
+    assert_eq!(
+        build(layout, &[0.5; 4], 0),
+        Some(Error::Length { slice: Slice::State, expected: usize::MAX, found: 99 })
+    );
 }
 
 #[test]
@@ -392,7 +405,7 @@ fn an_architecture_has_what_it_is_asked_for() {
     assert_eq!(counts(Architecture::jordan(3, 4, 2)), [12 + 8 + 8, 6, 0, 0]);
     assert_eq!(counts(Architecture::feed_forward(3, 4, 2)), [12 + 8, 6, 0, 0]);
     assert_eq!(counts(Architecture::fully_recurrent(3, 4, 2)), [18 + 36, 6, 0, 0]);
-    // Of which: a plan's groups are inputs, hidden neurons, outputs.
+    // The groups of a plan are inputs, hidden neurons, outputs.
     let has = |architecture: Architecture, has: fn(&Group) -> bool| {
         let plan = architecture.plan();
         plan.layout().groups().iter().map(has).collect::<Vec<_>>()
@@ -439,7 +452,7 @@ fn the_originals_order_takes_each_parameter_once() {
         for found in [count - 1, count + 1] {
             let numbers = std::iter::repeat_n(1.0, found);
             let error = layout.read_evonet(EvonetRanges::default(), numbers, &mut parameters);
-            assert_eq!(error, Err(Error::ParameterCount { expected: count, found }));
+            assert_eq!(error, Err(Error::Length { slice: Slice::Parameters, expected: count, found }));
         }
     }
 }

@@ -1,10 +1,11 @@
-//! The continuous-time network against loops written from its equations, cases known in closed form, and properties.
+//! The continuous-time network against loops written from its equations, closed-form cases, and properties.
 
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Lesioned};
 use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
 
-/// The equations of the source, index by index, with vectors of their own.
+/// The equations of the source, index by index, with separate vectors.
 struct Oracle<'a> {
     layout: CtrnnLayout,
     time_step: f32,
@@ -168,7 +169,7 @@ proptest! {
         prop_assert_eq!(&run(&mut owner), &first);
     }
 
-    /// Neurons have no order of their own: renaming them changes no more than the order of rounding.
+    /// Renumbering neurons changes only the order of rounding.
     #[test]
     fn renamed_neurons_are_the_same_neurons((seed, n) in (any::<u64>(), 1..20_usize), turn in 1..20_usize) {
         for integrator in Integrator::ALL {
@@ -322,14 +323,20 @@ fn construction_names_the_mistake() {
     };
     assert_eq!(build(TINY, 0.1, &GOOD), None);
     for value in [0.0, -0.1, f32::INFINITY] {
-        assert_eq!(build(TINY, value, &GOOD), Some(Error::TimeStep { value }));
+        assert_eq!(build(TINY, value, &GOOD), Some(Error::Layout(LayoutFault::TimeStep(value))));
     }
-    assert!(matches!(build(TINY, f32::NAN, &GOOD), Some(Error::TimeStep { value }) if value.is_nan()));
-    assert_eq!(build(TINY, 0.1, &GOOD[1..]), Some(Error::ParameterCount { expected: 12, found: 11 }));
+    assert!(
+        matches!(build(TINY, f32::NAN, &GOOD), Some(Error::Layout(LayoutFault::TimeStep(value))) if value.is_nan())
+    );
+    assert_eq!(build(TINY, 0.1, &GOOD[1..]), Some(Error::Length { slice: Slice::Parameters, expected: 12, found: 11 }));
     for (index, value) in [(0, f32::NAN), (5, f32::INFINITY), (11, f32::NEG_INFINITY)] {
-        assert_eq!(build(TINY, 0.1, &with(index, value)), Some(Error::NotFinite { index }));
+        assert_eq!(
+            build(TINY, 0.1, &with(index, value)),
+            Some(Error::Parameter { index, fault: ParameterFault::NotFinite })
+        );
     }
-    let short = |index, value, least| Some(Error::TimeConstant { index, value, least });
+    let short =
+        |index, value, least| Some(Error::Parameter { index, fault: ParameterFault::TimeConstant { value, least } });
     assert_eq!(build(TINY, 0.1, &with(11, 0.0)), short(11, 0.0, 0.05));
     assert_eq!(build(TINY, 0.1, &with(10, -3.0)), short(10, -3.0, 0.05));
     assert_eq!(build(TINY, 0.1, &with(10, 0.05)), None);
@@ -341,15 +348,21 @@ fn construction_names_the_mistake() {
     assert_eq!(build(layout, 0.1, &with(10, 0.0)), short(10, 0.0, 0.0));
     assert_eq!(
         build(TINY.with_direct_inputs(2), 0.1, &GOOD[2..]),
-        Some(Error::Neurons { first: 2, count: 1, neurons: 2 })
+        Some(Error::Layout(LayoutFault::Neurons { first: 2, count: 1, neurons: 2 }))
     );
-    assert_eq!(build(TINY.with_outputs_from(2), 0.1, &GOOD), Some(Error::Neurons { first: 2, count: 1, neurons: 2 }));
-    assert_eq!(build(CtrnnLayout::new(1, 2, 3), 0.1, &GOOD), Some(Error::Neurons { first: 0, count: 3, neurons: 2 }));
+    assert_eq!(
+        build(TINY.with_outputs_from(2), 0.1, &GOOD),
+        Some(Error::Layout(LayoutFault::Neurons { first: 2, count: 1, neurons: 2 }))
+    );
+    assert_eq!(
+        build(CtrnnLayout::new(1, 2, 3), 0.1, &GOOD),
+        Some(Error::Layout(LayoutFault::Neurons { first: 0, count: 3, neurons: 2 }))
+    );
     let found = TINY.state_len() - 1;
     let error = Ctrnn::new(TINY, 0.1, &GOOD, vec![0.0; found]).err();
-    assert_eq!(error, Some(Error::StateLen { expected: found + 1, found }));
+    assert_eq!(error, Some(Error::Length { slice: Slice::State, expected: found + 1, found }));
     let huge = Ctrnn::new(CtrnnLayout::new(1, usize::MAX, 1), 0.1, GOOD, [0.0; 1]).err();
-    assert_eq!(huge, Some(Error::ParameterCount { expected: usize::MAX, found: 12 }));
+    assert_eq!(huge, Some(Error::Length { slice: Slice::Parameters, expected: usize::MAX, found: 12 }));
     let message = short(10, 0.02, 0.05).expect("an error").to_string();
     assert_eq!(
         message,
@@ -363,8 +376,8 @@ fn refused_parameters_and_states_change_nothing() -> Result<(), Error> {
     let mut network = Ctrnn::new(layout, 0.1, [1.0; 4], [0.0; 4])?;
     assert!(network.set_parameters([-1.0; 4]).is_err());
     assert!(network.copy_parameters(&[1.0; 3]).is_err());
-    assert_eq!(network.set_states(&[0.0; 2]), Err(Error::StateLen { expected: 1, found: 2 }));
-    assert_eq!(network.set_states(&[f32::NAN]), Err(Error::StateNotFinite { index: 0 }));
+    assert_eq!(network.set_states(&[0.0; 2]), Err(Error::Length { slice: Slice::State, expected: 1, found: 2 }));
+    assert_eq!(network.set_states(&[f32::NAN]), Err(Error::State { index: 0 }));
     assert_eq!((network.parameters(), network.states()), (&[1.0; 4][..], &[0.0][..]));
     network.set_states(&[-1.0])?;
     assert_eq!((network.states(), network.neuron_outputs()), (&[-1.0][..], &[0.5][..]));
@@ -396,8 +409,14 @@ fn names_are_read_back() {
     for activation in Activation::ALL {
         assert_eq!(activation.name().parse(), Ok(activation));
     }
-    assert_eq!("rk4".parse::<Integrator>(), Err(Error::UnknownIntegrator));
-    assert_eq!("sigmoid".parse::<Activation>(), Err(Error::UnknownActivation));
+    assert_eq!(
+        "rk4".parse::<Integrator>(),
+        Err(Error::Name { of: "integrator", names: "euler, exponential-euler, runge-kutta-4" })
+    );
+    assert_eq!(
+        "sigmoid".parse::<Activation>(),
+        Err(Error::Name { of: "activation", names: "logistic, tanh, linear, step, rectified" })
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The continuous-time network against another program: fixtures/README.md says which.
+//! The continuous-time network against scipy, see fixtures/README.md.
 
 use farsa_nn::{Controller, Ctrnn, CtrnnLayout, Integrator};
 

@@ -2,11 +2,12 @@
 #![cfg(feature = "alloc")]
 
 use farsa_nn::block::{Block, BlockNetwork, Evonet, EvonetRanges};
+use farsa_nn::fault::{ParameterFault, Slice};
 use farsa_nn::{Activation, Controller, Error, Leak};
 
 const TEXT: &str = include_str!("../fixtures/evonet.phe");
 
-/// What the text says, as plain numbers: blocks and neurons.
+/// The content of the text as plain numbers: blocks and neurons.
 fn numbers(lines: std::ops::Range<usize>) -> Vec<Vec<usize>> {
     let words = |line: &str| line.split_whitespace().take(6).map(|word| word.parse().expect("a number")).collect();
     TEXT.lines().skip(lines.start).take(lines.len()).map(words).collect()
@@ -101,7 +102,10 @@ fn files_without_parameters_and_older_ones() -> Result<(), Error> {
     let net = format!("{}END\n", TEXT.split("FREE").next().unwrap_or_default());
     let evonet: Evonet = net.parse()?;
     assert!(evonet.numbers.is_empty());
-    assert_eq!(evonet.parameters(EvonetRanges::default()), Err(Error::ParameterCount { expected: 24, found: 0 }));
+    assert_eq!(
+        evonet.parameters(EvonetRanges::default()),
+        Err(Error::Length { slice: Slice::Parameters, expected: 24, found: 0 })
+    );
     assert!(matches!(evonet.layout.blocks[6], Block::ModulatedGain { by: 0, .. }));
     assert_eq!((evonet.layout.groups[4].slope, evonet.layout.groups[0].activation), (0.2, Activation::Linear));
     // Alike neurons that follow each other are one group.
@@ -113,7 +117,10 @@ fn files_without_parameters_and_older_ones() -> Result<(), Error> {
     let evonet: Evonet = older.parse()?;
     assert_eq!((evonet.numbers[0], evonet.mutations[0]), (None, None));
     assert_eq!((evonet.numbers[2], evonet.mutations[2]), (Some(0.5), Some(0.0)));
-    assert_eq!(evonet.parameters(EvonetRanges::default()), Err(Error::NoValue { index: 0 }));
+    assert_eq!(
+        evonet.parameters(EvonetRanges::default()),
+        Err(Error::Parameter { index: 0, fault: ParameterFault::NoValue })
+    );
     let free: Evonet = TEXT.replace("2.500000 \t", "* \t").parse()?;
     assert_eq!(free.numbers[0], None);
     Ok(())

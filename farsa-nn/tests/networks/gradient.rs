@@ -1,6 +1,7 @@
 //! Gradients against finite differences, the run against the network, optimizers against their formulas, and what is learned.
 #![cfg(feature = "alloc")]
 
+use farsa_nn::fault::{ParameterFault, Slice};
 use farsa_nn::learning::{Adam, Demonstration, Gradient, Learner, Loss, Momentum, Optimizer};
 use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Digest, Domain, Stream};
@@ -58,7 +59,7 @@ proptest! {
         }
     }
 
-    /// The run that is followed back is that of the network, to the bit; single precision is near double.
+    /// The forward run has the bits of the network, and single precision is near double.
     #[test]
     fn costs_what_the_network_does(case in any_case()) {
         let single: Vec<f32> = case.parameters.iter().map(|p| *p as f32).collect();
@@ -121,7 +122,7 @@ proptest! {
     }
 }
 
-/// A flag that is shown for one tick and asked for later: only a memory can tell.
+/// A flag is visible for one tick and required later, so the network needs memory.
 fn flags() -> Vec<(Vec<f32>, Vec<f32>)> {
     let flag = |shown: f32, ticks: usize| {
         let x = (0..ticks).flat_map(|tick| [if tick == 0 { shown } else { 0.0 }, 1.0]).collect();
@@ -172,7 +173,7 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
     }
 }
 
-/// The divergence of what is wanted from what is done, nothing where both are the same.
+/// The divergence of targets and outputs, zero where both are the same.
 #[test]
 fn cross_entropy_costs_the_divergence_from_what_is_wanted() {
     let layout = LeakyLayout::new(0, 0, 1).with_slope(1.0);
@@ -195,9 +196,9 @@ fn cross_entropy_costs_the_divergence_from_what_is_wanted() {
     }
 }
 
-/// What the next step of learning costs, and of demonstrations of several lengths the mean over all ticks.
+/// The cost before the next step of learning. For demonstrations of several lengths it is the mean over all ticks.
 #[test]
-fn a_cost_is_told_without_learning() {
+fn a_cost_is_computed_without_learning() {
     let flags = flags();
     let mut learner = learner(Leak::Filter, Adam::new(0.03));
     learn(&mut learner, 20);
@@ -259,10 +260,13 @@ fn learning_goes_on_where_it_stopped() -> Result<(), Error> {
     learn(&mut first, 25);
     let state: Vec<f64> = first.state().collect();
     let mut second = learner(Leak::Filter, Adam::new(0.03));
-    assert_eq!(second.set_state(&state[1..]), Err(Error::StateLen { expected: state.len(), found: state.len() - 1 }));
+    assert_eq!(
+        second.set_state(&state[1..]),
+        Err(Error::Length { slice: Slice::State, expected: state.len(), found: state.len() - 1 })
+    );
     let mut broken = state.clone();
     broken[3] = f64::NAN;
-    assert_eq!(second.set_state(&broken), Err(Error::NotFinite { index: 3 }));
+    assert_eq!(second.set_state(&broken), Err(Error::Parameter { index: 3, fault: ParameterFault::NotFinite }));
     second.set_state(&state)?;
     learn(&mut second, 35);
     assert!(whole.state().eq(second.state()));
@@ -291,19 +295,22 @@ fn a_mean_is_that_of_the_latest_steps() -> Result<(), Error> {
             assert!((mean - sum / weights).abs() < 1e-12, "{mean} is not {}", sum / weights);
         }
     }
-    // It changes nothing of learning, and goes on where it stopped.
+    // It does not change learning, and resumes at the same state.
     let mut plain = learner(Leak::Filter, Adam::new(0.03));
     learn(&mut plain, 40);
     assert_eq!(plain.parameters(), averaged.parameters());
     assert_eq!(plain.mean(), plain.parameters());
     let state: Vec<f64> = averaged.state().collect();
-    assert_eq!(plain.set_state(&state), Err(Error::StateLen { expected: plain.state().count(), found: state.len() }));
+    assert_eq!(
+        plain.set_state(&state),
+        Err(Error::Length { slice: Slice::State, expected: plain.state().count(), found: state.len() })
+    );
     let mut second = learner(Leak::Filter, Adam::new(0.03)).with_averaging(5);
     second.set_state(&state)?;
     learn(&mut second, 3);
     learn(&mut averaged, 3);
     assert!(second.state().eq(averaged.state()));
-    // A mean over one step is that step, but for rounding; one over many of a few is the plain mean.
+    // A mean over one step is that step up to rounding. One over more steps than taken is the plain mean.
     let mut latest = learner(Leak::Filter, Adam::new(0.03)).with_averaging(0);
     learn(&mut latest, 40);
     assert!(latest.mean().iter().zip(latest.parameters()).all(|(mean, p)| (mean - p).abs() < 1e-15));
@@ -329,9 +336,12 @@ fn demonstrations_of_other_shapes_are_refused() -> Result<(), Error> {
     }
     let none = Demonstration { x: &[], wanted: &[] };
     assert_eq!(gradient.add(&parameters, none), Ok(0.0));
-    assert_eq!(gradient.add(&parameters[1..], none), Err(Error::ParameterCount { expected: 8, found: 7 }));
+    assert_eq!(
+        gradient.add(&parameters[1..], none),
+        Err(Error::Length { slice: Slice::Parameters, expected: 8, found: 7 })
+    );
     assert!(Gradient::<f64>::new(layout.with_slope(f32::NAN), Leak::Filter, Loss::SquaredError).is_err());
     let learner = Learner::new(layout, Leak::Filter, Loss::SquaredError, vec![2.0; 8], Adam::new(0.1));
-    assert_eq!(learner.err(), Some(Error::LeakRange { index: 7, value: 2.0 }));
+    assert_eq!(learner.err(), Some(Error::Parameter { index: 7, fault: ParameterFault::Leak(2.0) }));
     Ok(())
 }

@@ -1,12 +1,13 @@
 //! The network against loops written from its equations, hand-computed cases and properties.
 
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::Instructions;
 use proptest::prelude::*;
 
 const LABELS: LeakyLayout = LeakyLayout::new(29, 12, 23);
 
-/// The equations of the source, index by index, with vectors of their own.
+/// The equations of the source, index by index, with separate vectors.
 struct Oracle<'a> {
     layout: LeakyLayout,
     leak: Leak,
@@ -136,7 +137,7 @@ proptest! {
         }
     }
 
-    /// An output does not depend on which outputs are computed beside it: its place in a tile does not show.
+    /// An output does not depend on the other outputs in its vector.
     #[test]
     fn reversed_outputs_are_the_same_outputs((layout, parameters, inputs) in any_case()) {
         let mut reversed = parameters.clone();
@@ -206,7 +207,7 @@ fn two_steps_by_hand() -> Result<(), Error> {
     // One sensor (w 2), one hidden neuron (r 5, bias 1, leak 0.25), one output (w 4).
     const TINY: LeakyLayout = LeakyLayout::new(1, 1, 1);
     let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
-    // x = 2: net 5, y = 1/(1 + exp(-1)) = 0.7310586; x = 0: net 1 + 5*H(1).
+    // x = 2: net 5, y = 1/(1 + exp(-1)) = 0.7310586. x = 0: net 1 + 5*H(1).
     let cases = [
         (Leak::Filter, [0.182_764_6, 0.285_708_4], [0.536_487_9, 0.556_894_2]),
         (Leak::TwoTap, [0.182_764_6, 0.696_928_9], [0.536_487_9, 0.635_883_9]),
@@ -247,16 +248,25 @@ fn construction_names_the_mistake() {
     let build = |parameters: &[f32], state: &mut [f32]| LeakyNetwork::new(TINY, Leak::Filter, parameters, state).err();
     let mut state = [0.0; 3];
     assert_eq!(build(&[0.0; 5], &mut state), None);
-    assert_eq!(build(&[0.0; 4], &mut state), Some(Error::ParameterCount { expected: 5, found: 4 }));
-    assert_eq!(build(&[0.0; 5], &mut state[..2]), Some(Error::StateLen { expected: 3, found: 2 }));
-    assert_eq!(build(&[0.0, 0.0, f32::NAN, 0.0, 2.0], &mut state), Some(Error::NotFinite { index: 2 }));
-    assert_eq!(build(&[0.0, 0.0, 0.0, 0.0, f32::INFINITY], &mut state), Some(Error::NotFinite { index: 4 }));
-    assert_eq!(build(&[0.0, 0.0, 0.0, 0.0, 1.5], &mut state), Some(Error::LeakRange { index: 4, value: 1.5 }));
+    assert_eq!(build(&[0.0; 4], &mut state), Some(Error::Length { slice: Slice::Parameters, expected: 5, found: 4 }));
+    assert_eq!(build(&[0.0; 5], &mut state[..2]), Some(Error::Length { slice: Slice::State, expected: 3, found: 2 }));
+    assert_eq!(
+        build(&[0.0, 0.0, f32::NAN, 0.0, 2.0], &mut state),
+        Some(Error::Parameter { index: 2, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(
+        build(&[0.0, 0.0, 0.0, 0.0, f32::INFINITY], &mut state),
+        Some(Error::Parameter { index: 4, fault: ParameterFault::NotFinite })
+    );
+    assert_eq!(
+        build(&[0.0, 0.0, 0.0, 0.0, 1.5], &mut state),
+        Some(Error::Parameter { index: 4, fault: ParameterFault::Leak(1.5) })
+    );
     let steep = LeakyNetwork::new(TINY.with_slope(f32::INFINITY), Leak::Filter, [0.0; 5], [0.0; 3]).err();
-    assert_eq!(steep, Some(Error::Slope { value: f32::INFINITY }));
+    assert_eq!(steep, Some(Error::Layout(LayoutFault::Slope(f32::INFINITY))));
     let huge = LeakyLayout::new(usize::MAX, 2, 2);
     let error = LeakyNetwork::new(huge, Leak::Filter, [0.0; 5], [0.0; 3]).err();
-    assert_eq!(error, Some(Error::ParameterCount { expected: usize::MAX, found: 5 }));
+    assert_eq!(error, Some(Error::Length { slice: Slice::Parameters, expected: usize::MAX, found: 5 }));
 }
 
 #[test]
@@ -293,8 +303,8 @@ fn a_leak_is_known_by_its_name() {
         assert_eq!(format!("{leak:?}").parse(), Ok(leak));
         assert_eq!(format!("{leak:>8}"), format!("{:>8}", leak.name()));
     }
-    assert_eq!("filt".parse::<Leak>(), Err(Error::UnknownLeak));
-    assert_eq!("".parse::<Leak>(), Err(Error::UnknownLeak));
+    assert_eq!("filt".parse::<Leak>(), Err(Error::Name { of: "leak", names: "filter, two-tap, evonet" }));
+    assert_eq!("".parse::<Leak>(), Err(Error::Name { of: "leak", names: "filter, two-tap, evonet" }));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The single layer against its equation, and through the trait.
 
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::{Ablatable, Controller, Error, Lesion, Perceptron, PerceptronLanes};
 use farsa_num::Instructions;
 use proptest::prelude::*;
@@ -63,11 +64,14 @@ proptest! {
 fn lanes_are_checked_like_the_layer_alone() {
     let build = |slope, parameters: &[f32]| PerceptronLanes::new(6, 2, slope, 2, parameters).err();
     assert_eq!(build(1.0, &[0.0; 28]), None);
-    assert_eq!(build(1.0, &[0.0; 14]), Some(Error::ParameterCount { expected: 28, found: 14 }));
-    assert_eq!(build(f32::INFINITY, &[0.0; 28]), Some(Error::Slope { value: f32::INFINITY }));
+    assert_eq!(build(1.0, &[0.0; 14]), Some(Error::Length { slice: Slice::Parameters, expected: 28, found: 14 }));
+    assert_eq!(build(f32::INFINITY, &[0.0; 28]), Some(Error::Layout(LayoutFault::Slope(f32::INFINITY))));
     let mut layers = PerceptronLanes::new(1, 1, 1.0, 2, [1.0; 4]).expect("valid");
-    assert_eq!(layers.set_lane(0, &[0.0]), Err(Error::ParameterCount { expected: 2, found: 1 }));
-    assert_eq!(layers.set_lane(0, &[0.0, f32::NAN]), Err(Error::NotFinite { index: 1 }));
+    assert_eq!(layers.set_lane(0, &[0.0]), Err(Error::Length { slice: Slice::Parameters, expected: 2, found: 1 }));
+    assert_eq!(
+        layers.set_lane(0, &[0.0, f32::NAN]),
+        Err(Error::Parameter { index: 1, fault: ParameterFault::NotFinite })
+    );
     assert_eq!(layers.lanes(), 2);
 }
 
@@ -75,11 +79,11 @@ fn lanes_are_checked_like_the_layer_alone() {
 fn construction_names_the_mistake() {
     let build = |slope, parameters: &[f32]| Perceptron::new(6, 2, slope, parameters).err();
     assert_eq!(build(1.0, &[0.0; 14]), None);
-    assert_eq!(build(1.0, &[0.0; 12]), Some(Error::ParameterCount { expected: 14, found: 12 }));
-    assert_eq!(build(f32::NEG_INFINITY, &[0.0; 14]), Some(Error::Slope { value: f32::NEG_INFINITY }));
+    assert_eq!(build(1.0, &[0.0; 12]), Some(Error::Length { slice: Slice::Parameters, expected: 14, found: 12 }));
+    assert_eq!(build(f32::NEG_INFINITY, &[0.0; 14]), Some(Error::Layout(LayoutFault::Slope(f32::NEG_INFINITY))));
     let mut parameters = [0.0; 14];
     parameters[13] = f32::NAN;
-    assert_eq!(build(1.0, &parameters), Some(Error::NotFinite { index: 13 }));
+    assert_eq!(build(1.0, &parameters), Some(Error::Parameter { index: 13, fault: ParameterFault::NotFinite }));
 }
 
 #[test]

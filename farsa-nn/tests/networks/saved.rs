@@ -10,7 +10,7 @@ use farsa_nn::{Activation, CtrnnLayout, CtrnnParameter, Integrator, Leak, LeakyL
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::{from_str, to_string};
 
-/// Saves and reads a value; returns what was saved.
+/// Saves and reads a value. Returns the saved text.
 #[expect(clippy::needless_pass_by_value, reason = "so that it maps arrays")]
 fn comes_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: T) -> String {
     let saved = to_string(&value).expect("plain data");

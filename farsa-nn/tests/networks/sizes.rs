@@ -1,6 +1,7 @@
-//! How many values and neurons networks of every kind say that they have, and what errors say.
+//! Numbers of values and neurons of all kinds of networks, and the texts of errors.
 
 use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
+use farsa_nn::fault::{LayoutFault, ParameterFault, Slice};
 use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
 use farsa_nn::{
     Ablatable, Controller, Ctrnn, CtrnnLayout, Error, Leak, LeakyLayout, LeakyNetwork, Lesion, Lesioned, Perceptron,
@@ -9,12 +10,12 @@ use farsa_nn::{
 const PLAN: BlockPlan = Architecture::elman(2, 4, 3).plan();
 const LAYOUT: BlockLayout = PLAN.layout();
 
-/// What a network says of itself, through a reference, too.
+/// The numbers of inputs and outputs, also through a reference.
 fn sizes(mut network: impl Controller) -> [usize; 2] {
-    let said = [network.inputs(), network.outputs()];
+    let sizes = [network.inputs(), network.outputs()];
     let by_reference: &mut dyn Controller = &mut network;
-    assert_eq!([by_reference.inputs(), by_reference.outputs()], said);
-    said
+    assert_eq!([by_reference.inputs(), by_reference.outputs()], sizes);
+    sizes
 }
 
 #[test]
@@ -44,7 +45,7 @@ fn networks_say_how_large_they_are() {
     assert_eq!((sizes(blocks.clone()), blocks.neurons()), ([2, 3], LAYOUT.neurons()));
 }
 
-/// The last neuron that a network says it has can be held, and shows in what it puts out; there is none after it.
+/// The last neuron can be held, and its lesion changes an output. A lesion after it changes nothing.
 #[test]
 fn neurons_are_counted_to_the_last() {
     fn held<N: Ablatable>(mut network: N, x: &[f32]) {
@@ -70,57 +71,72 @@ fn neurons_are_counted_to_the_last() {
 
 #[test]
 fn errors_say_what_is_wrong() {
-    let told = [
-        (Error::ParameterCount { expected: 7, found: 5 }, "5 parameters where the layout has 7"),
-        (Error::StateLen { expected: 7, found: 5 }, "a state of 5 values where the layout needs 7"),
-        (Error::NotFinite { index: 3 }, "parameter 3 is not finite"),
-        (Error::LeakRange { index: 3, value: 1.5 }, "parameter 3, a leak, is 1.5: outside [0, 1]"),
-        (Error::Slope { value: f32::NAN }, "the slope of the logistic function is NaN: not finite"),
+    let cases = [
+        (Error::Length { slice: Slice::Parameters, expected: 7, found: 5 }, "5 parameters where the layout has 7"),
+        (Error::Length { slice: Slice::State, expected: 7, found: 5 }, "a state of 5 values where the layout needs 7"),
+        (Error::Parameter { index: 3, fault: ParameterFault::NotFinite }, "parameter 3 is not finite"),
+        (
+            Error::Parameter { index: 3, fault: ParameterFault::Leak(1.5) },
+            "parameter 3, a leak, is 1.5: outside [0, 1]",
+        ),
+        (Error::Layout(LayoutFault::Slope(f32::NAN)), "the slope of the logistic function is NaN: not finite"),
         (
             Error::Demonstration { values: 7, sensors: 3, wanted: 4, outputs: 2 },
             "7 sensor values and 4 wanted motor values: not whole ticks of 3 and 2",
         ),
         (
-            Error::FractionBits { of: "sums", found: 9, least: 10, most: 20 },
+            Error::Layout(LayoutFault::FractionBits { of: "sums", found: 9, least: 10, most: 20 }),
             "9 fraction bits of sums: outside [10, 20]",
         ),
-        (Error::WeightRange { index: 2, value: 4e4 }, "parameter 2 times the slope is 40000: outside [-32767, 32767]"),
-        (Error::SumRange { target: 4, largest: 9, limit: 8 }, "the sum of target 4 can reach 9 where 8 is the most"),
-        (Error::UnknownLeak, "unknown leak: one of filter, two-tap, evonet"),
-        (Error::TimeStep { value: 0.0 }, "the time step is 0: not a finite number above 0"),
         (
-            Error::TimeConstant { index: 10, value: 0.02, least: 0.05 },
+            Error::Parameter { index: 2, fault: ParameterFault::Weight(4e4) },
+            "parameter 2 times the slope is 40000: outside [-32767, 32767]",
+        ),
+        (Error::Sum { target: 4, largest: 9, limit: 8 }, "the sum of target 4 can reach 9 where 8 is the most"),
+        (Error::Name { of: "leak", names: "filter, two-tap, evonet" }, "unknown leak: one of filter, two-tap, evonet"),
+        (Error::Layout(LayoutFault::TimeStep(0.0)), "the time step is 0: not a finite number above 0"),
+        (
+            Error::Parameter { index: 10, fault: ParameterFault::TimeConstant { value: 0.02, least: 0.05 } },
             "parameter 10, a time constant, is 0.02: below 0.05, where the integrator diverges at this time step",
         ),
         (
-            Error::TimeConstant { index: 10, value: 0.0, least: 0.05 },
+            Error::Parameter { index: 10, fault: ParameterFault::TimeConstant { value: 0.0, least: 0.05 } },
             "parameter 10, a time constant, is 0: not above 0",
         ),
         (
-            Error::TimeConstant { index: 10, value: -1.0, least: 0.05 },
+            Error::Parameter { index: 10, fault: ParameterFault::TimeConstant { value: -1.0, least: 0.05 } },
             "parameter 10, a time constant, is -1: not above 0",
         ),
-        (Error::Neurons { first: 4, count: 3, neurons: 6 }, "3 neurons from neuron 4 on where the layout has 6"),
         (
-            Error::Block { index: 1, first: 4, count: 3, neurons: 6 },
+            Error::Layout(LayoutFault::Neurons { first: 4, count: 3, neurons: 6 }),
+            "3 neurons from neuron 4 on where the layout has 6",
+        ),
+        (
+            Error::Layout(LayoutFault::Block { index: 1, first: 4, count: 3, neurons: 6 }),
             "block 1 has 3 neurons from neuron 4 on where the layout has 6 neurons",
         ),
-        (Error::StateNotFinite { index: 3 }, "the state of neuron 3 is not finite"),
-        (Error::NoValue { index: 3 }, "parameter 3 has no value: evolution draws it"),
-        (Error::MirrorLen { expected: 4, found: 2 }, "2 mirror images where there are 4"),
+        (Error::State { index: 3 }, "the state of neuron 3 is not finite"),
+        (Error::Parameter { index: 3, fault: ParameterFault::NoValue }, "parameter 3 has no value: evolution draws it"),
+        (Error::Length { slice: Slice::MirrorImages, expected: 4, found: 2 }, "2 mirror images where there are 4"),
         (
-            Error::Mirror { index: 1, image: 5 },
+            Error::Layout(LayoutFault::Mirror { index: 1, image: 5 }),
             "the mirror image of 1 is 5, which is not there or has another mirror image",
         ),
         (
-            Error::Alike { first: 2, count: 3 },
+            Error::Layout(LayoutFault::Alike { first: 2, count: 3 }),
             "3 alike neurons from neuron 2 on: some are alike with others, or their mirror images are not alike",
         ),
         (Error::Text { line: 4, expected: "a number" }, "line 4: expected a number"),
-        (Error::UnknownIntegrator, "unknown integrator: one of euler, exponential-euler, runge-kutta-4"),
-        (Error::UnknownActivation, "unknown activation: one of logistic, tanh, linear, step, rectified"),
+        (
+            Error::Name { of: "integrator", names: "euler, exponential-euler, runge-kutta-4" },
+            "unknown integrator: one of euler, exponential-euler, runge-kutta-4",
+        ),
+        (
+            Error::Name { of: "activation", names: "logistic, tanh, linear, step, rectified" },
+            "unknown activation: one of logistic, tanh, linear, step, rectified",
+        ),
     ];
-    for (error, text) in told {
+    for (error, text) in cases {
         assert_eq!(error.to_string(), text);
     }
 }

@@ -1,6 +1,7 @@
 //! Few genes that fill many parameters, and centre-crossing biases.
 
 use farsa_nn::block::Span;
+use farsa_nn::fault::{LayoutFault, Slice};
 use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Error, Integrator};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
@@ -25,7 +26,7 @@ proptest! {
     fn a_mirrored_world_is_answered_by_the_mirror_image(
         seed in any::<u64>(), (inputs, neurons) in (0..5_usize, 1..9_usize), direct in any::<bool>(),
     ) {
-        // Inputs and neurons are mirrored end to end; the outputs are all neurons.
+        // Inputs and neurons are mirrored end to end, and the outputs are all neurons.
         let layout = CtrnnLayout::new(inputs.min(neurons), neurons, neurons);
         let inputs = layout.inputs();
         let layout = if direct { layout.with_direct_inputs((neurons - inputs) / 2) } else { layout };
@@ -57,7 +58,7 @@ proptest! {
         let genes: Vec<f32> = (0..symmetry.gene_count()).map(|gene| gene as f32 + (seed % 2) as f32).collect();
         let mut parameters = vec![f32::NAN; layout.parameter_count()];
         symmetry.expand(&genes, &mut parameters)?;
-        // Each value is there once or, with its mirror image, twice; and all genes are.
+        // Each value occurs once or, with its mirror image, twice, and so do all genes.
         let mut sorted = parameters.clone();
         sorted.sort_by(f32::total_cmp);
         prop_assert!(sorted.chunk_by(|a, b| a == b).all(|same| same.len() <= 2));
@@ -92,7 +93,7 @@ fn links_that_do_not_exist_are_zero() -> Result<(), Error> {
     let layout = CtrnnLayout::new(0, 4, 1);
     let links = [(Span::new(0, 1), Span::new(2, 2))];
     let symmetry = CtrnnSymmetry::new(layout, &[], &[1, 0, 3, 2])?.with_links(&links)?.with_gains(&[])?;
-    // Neuron 0 to 2 and 3, and by symmetry 1 to 3 and 2; a bias and a time constant of each pair.
+    // Neuron 0 to 2 and 3, and by symmetry 1 to 3 and 2, a bias and a time constant of each pair.
     assert_eq!(symmetry.gene_count(), 2 + 2 + 2);
     let mut parameters = vec![f32::NAN; layout.parameter_count()];
     symmetry.expand(&[7.0, 8.0, 1.0, 2.0, 3.0, 4.0], &mut parameters)?;
@@ -111,7 +112,7 @@ fn gains_without_genes_are_one() -> Result<(), Error> {
     // A bias, a gain and a time constant of the pair and of those that are alike.
     let all = [[1.0, 1.0, 2.0, 2.0, 2.0], [3.0, 3.0, 4.0, 4.0, 4.0], [5.0, 5.0, 6.0, 6.0, 6.0]];
     let (none, pair, three) = ([1.0; 5], [3.0, 3.0, 1.0, 1.0, 1.0], [1.0, 1.0, 3.0, 3.0, 3.0]);
-    // The second of a pair stands for both, the first of those that are alike for all.
+    // The second of a pair counts for both, the first of alike neurons for all.
     let cases: [(&[Span], [f32; 5]); 4] =
         [(&[Span::new(0, 5)], all[1]), (&[Span::new(1, 1)], pair), (&[Span::new(2, 1)], three), (&[], none)];
     for (spans, gains) in cases {
@@ -135,22 +136,34 @@ fn mistakes_have_names() -> Result<(), Error> {
     let (genes, mut parameters) = (vec![0.0; symmetry.gene_count()], vec![9.0; layout.parameter_count()]);
     let count = genes.len();
     let few = symmetry.expand(&genes[1..], &mut parameters);
-    assert_eq!(few, Err(Error::ParameterCount { expected: count, found: count - 1 }));
+    assert_eq!(few, Err(Error::Length { slice: Slice::Parameters, expected: count, found: count - 1 }));
     assert!(symmetry.expand(&genes, &mut parameters[1..]).is_err());
     assert!(parameters.iter().all(|p| *p == 9.0));
-    assert_eq!(CtrnnSymmetry::new(layout, &[], &[2, 1, 0]), Err(Error::MirrorLen { expected: 2, found: 0 }));
-    assert_eq!(CtrnnSymmetry::new(layout, &[1, 0], &[1, 0]), Err(Error::MirrorLen { expected: 3, found: 2 }));
-    assert_eq!(CtrnnSymmetry::new(layout, &[1, 0], &[1, 2, 0]), Err(Error::Mirror { index: 0, image: 1 }));
-    assert_eq!(CtrnnSymmetry::new(layout, &[1, 2], &[0, 1, 2]), Err(Error::Mirror { index: 0, image: 1 }));
+    assert_eq!(
+        CtrnnSymmetry::new(layout, &[], &[2, 1, 0]),
+        Err(Error::Length { slice: Slice::MirrorImages, expected: 2, found: 0 })
+    );
+    assert_eq!(
+        CtrnnSymmetry::new(layout, &[1, 0], &[1, 0]),
+        Err(Error::Length { slice: Slice::MirrorImages, expected: 3, found: 2 })
+    );
+    assert_eq!(
+        CtrnnSymmetry::new(layout, &[1, 0], &[1, 2, 0]),
+        Err(Error::Layout(LayoutFault::Mirror { index: 0, image: 1 }))
+    );
+    assert_eq!(
+        CtrnnSymmetry::new(layout, &[1, 2], &[0, 1, 2]),
+        Err(Error::Layout(LayoutFault::Mirror { index: 0, image: 1 }))
+    );
     let (three, four) = (Span::new(0, 3), Span::new(1, 3));
-    let beyond = Err(Error::Neurons { first: 1, count: 3, neurons: 3 });
+    let beyond = Err(Error::Layout(LayoutFault::Neurons { first: 1, count: 3, neurons: 3 }));
     assert_eq!(symmetry.with_links(&[(three, three), (three, four)]), beyond);
     assert_eq!(symmetry.with_links(&[(four, three)]), beyond);
     assert_eq!(symmetry.with_alike(&[three, four]), beyond);
     assert_eq!(symmetry.with_gains(&[four]), beyond);
     assert!(symmetry.with_gains(&[Span::new(3, usize::MAX)]).is_err());
     // The ends are mirrored to each other, the middle to itself.
-    let not = |first, count| Err(Error::Alike { first, count });
+    let not = |first, count| Err(Error::Layout(LayoutFault::Alike { first, count }));
     let cases: [(&[[usize; 2]], _); 7] = [
         (&[[0, 2]], not(0, 2)),
         (&[[0, 2], [2, 1]], not(0, 2)),
