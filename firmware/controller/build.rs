@@ -1,4 +1,4 @@
-//! Quantises the champion: from its bytes those of the same network in integers.
+//! Quantizes the champion: converts its bytes to those of the same network in integers.
 
 use std::path::Path;
 use std::{env, fs};

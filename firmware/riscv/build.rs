@@ -1,4 +1,4 @@
-//! Gives the linker the memory of the board.
+//! Passes the linker the memory of the board.
 
 use std::path::Path;
 use std::{env, fs};

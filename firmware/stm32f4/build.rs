@@ -1,4 +1,4 @@
-//! Gives the linker the memory of the chip.
+//! Passes the linker the memory of the chip.
 
 use std::path::Path;
 use std::{env, fs};

@@ -1,4 +1,4 @@
-//! Sensors on analogue-to-digital converters: infrared, light, the ground's grey.
+//! Sensors on analog-to-digital converters: infrared, light, the gray level of the ground.
 
 use core::fmt;
 
@@ -6,25 +6,25 @@ use farsa_body::ports::{Channels, Sensor};
 
 use crate::Fault;
 
-/// Some channels of a board's analogue-to-digital converter.
+/// Channels of a board's analog-to-digital converter.
 ///
-/// `embedded-hal` 1.0 has no trait for converters, so that this one takes a few lines for each board.
+/// `embedded-hal` 1.0 has no trait for converters. Implement this one for your board in a few lines.
 pub trait Converter {
-    /// Why a conversion failed.
+    /// The error of a conversion.
     type Error;
 
-    /// The count of this sensor, the first one's number is 0.
+    /// Reads the count of a sensor, numbered from 0.
     ///
     /// # Errors
-    /// What the board says.
+    /// The error of the board.
     fn count(&mut self, sensor: usize) -> Result<u16, Self::Error>;
 }
 
-/// `N` sensors of a converter, each with a curve from its counts to what the network reads.
+/// `N` sensors of a converter, each with a curve from counts to inputs of the network.
 ///
-/// A curve is a list of points [count, value] with rising counts, straight between them and level beyond its ends: two points
-/// where the value is in proportion to the count, more where it was measured. When a conversion fails the value stays as it was
-/// read last, 0 before that, and [`check`](Self::check) says so.
+/// A curve is a list of points [count, value] with rising counts. It is straight between them and level beyond its ends. Two
+/// points are enough for a proportional sensor, a measured one has more. A failed conversion keeps the last value, at first 0,
+/// and [`check`](Self::check) reports it.
 #[derive(Debug)]
 pub struct Converters<C, const N: usize> {
     converter: C,
@@ -33,20 +33,20 @@ pub struct Converters<C, const N: usize> {
     fault: Option<Fault>,
 }
 
-/// A curve that is none.
+/// An invalid curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CurveError {
     /// It has no point.
     Empty {
-        /// Which sensor's.
+        /// Number of the sensor.
         sensor: usize,
     },
-    /// A point is not finite, or its count is not above that of the point before it.
+    /// A point is not finite, or its count is not above that of the previous point.
     Point {
-        /// Which sensor's.
+        /// Number of the sensor.
         sensor: usize,
-        /// Which point, the first one's number is 0.
+        /// Number of the point, from 0.
         point: usize,
     },
 }
@@ -65,10 +65,10 @@ impl fmt::Display for CurveError {
 impl core::error::Error for CurveError {}
 
 impl<C: Converter, const N: usize> Converters<C, N> {
-    /// The sensors of this converter with their curves.
+    /// Builds the sensors of a converter with their curves.
     ///
     /// # Errors
-    /// [`CurveError`], of the first curve that has one.
+    /// [`CurveError`] of the first invalid curve.
     pub fn new(converter: C, curves: [&'static [[f32; 2]]; N]) -> Result<Self, CurveError> {
         for (sensor, curve) in curves.iter().enumerate() {
             if curve.is_empty() {
@@ -85,7 +85,7 @@ impl<C: Converter, const N: usize> Converters<C, N> {
         Ok(Self { converter, curves, values: [0.0; N], fault: None })
     }
 
-    /// What went wrong since this was asked last.
+    /// Returns the fault since the last call.
     ///
     /// # Errors
     /// [`Fault::Read`].
@@ -93,7 +93,7 @@ impl<C: Converter, const N: usize> Converters<C, N> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
-    /// Gives the converter back.
+    /// Returns the converter.
     pub fn into_converter(self) -> C {
         self.converter
     }

@@ -1,8 +1,8 @@
-//! What can go wrong in a tick.
+//! Faults of a tick.
 
 use core::fmt;
 
-/// Why the motors of a tick are driven to what is safe.
+/// The reason for a safe command in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
@@ -12,7 +12,7 @@ pub enum Fault {
     Write,
     /// The tick came later than its period allows.
     Late {
-        /// How late [us].
+        /// The delay [us].
         by: u32,
     },
 }

@@ -1,13 +1,13 @@
-//! The last word before the motors.
+//! The limits before the motors.
 
 use core::fmt;
 
 use crate::Fault;
 
-/// Limits what a network asks of `N` motors: in range, in change per tick, and in nothing at all when something is wrong.
+/// Limits the commands of a network to `N` motors, in range and in change per tick.
 ///
-/// In a tick with a [`Fault`] the motors get the safe command at once, without a limit on its change: what is safe is safer
-/// now. The ticks after it start from there, so that nothing jumps back. A value that is no number counts as safe.
+/// In a tick with a [`Fault`] the motors get the safe command at once, without a limit on its change. Later ticks start from
+/// there, so no command jumps back. A NaN counts as the safe command.
 ///
 /// ```
 /// use firmware_adapters::{Fault, Guard};
@@ -27,27 +27,27 @@ pub struct Guard<const N: usize> {
     last: [f32; N],
 }
 
-/// Why a guard would not guard.
+/// An invalid setting of a guard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum GuardError {
     /// A range is empty or not finite.
     Range {
-        /// Which motor's.
+        /// Number of the motor.
         motor: usize,
         /// The range.
         range: [f32; 2],
     },
     /// A largest change is not above zero.
     Change {
-        /// Which motor's.
+        /// Number of the motor.
         motor: usize,
         /// The change.
         change: f32,
     },
     /// A safe command is outside its range.
     Safe {
-        /// Which motor's.
+        /// Number of the motor.
         motor: usize,
         /// The command.
         safe: f32,
@@ -71,12 +71,12 @@ impl fmt::Display for GuardError {
 impl core::error::Error for GuardError {}
 
 impl<const N: usize> Guard<N> {
-    /// A guard with the range, the largest change per tick and the safe command of every motor, which is also the first.
+    /// Builds a guard with the range, the largest change per tick and the safe command of every motor. It starts with the safe command.
     ///
     /// An infinite change is no limit.
     ///
     /// # Errors
-    /// [`GuardError`], of the first motor that has one.
+    /// [`GuardError`] of the first invalid motor.
     pub fn new(ranges: [[f32; 2]; N], changes: [f32; N], safe: [f32; N]) -> Result<Self, GuardError> {
         for (motor, ((&range, &change), &safe)) in ranges.iter().zip(&changes).zip(&safe).enumerate() {
             let [from, to] = range;
@@ -93,14 +93,14 @@ impl<const N: usize> Guard<N> {
         Ok(Self { ranges, changes, safe, last: safe })
     }
 
-    /// What the motors get of the network's `y` in a tick that went so.
+    /// Returns the commands for the outputs `y` of the network in a tick with this result.
     pub fn pass(&mut self, y: [f32; N], tick: Result<(), Fault>) -> [f32; N] {
         let limits = self.ranges.iter().zip(&self.changes).zip(&self.safe);
         for ((last, y), (([from, to], change), safe)) in self.last.iter_mut().zip(y).zip(limits) {
             *last = match tick {
                 Err(_) => *safe,
                 Ok(()) if y.is_nan() => *safe,
-                // Not `clamp`, which panics where it cannot see that the limits are in order.
+                // Not `clamp`, whose check of the limits could panic.
                 Ok(()) => y.max(*last - change).min(*last + change).max(*from).min(*to),
             };
         }

@@ -1,8 +1,8 @@
-//! Sensors and motors of `farsa-body` over `embedded-hal` 1.0: pulses, switches, converters, registers on an I2C bus; and the guard
-//! between a network and its motors.
+//! Sensors and motors of `farsa-body` over `embedded-hal` 1.0: pulses, switches, converters, registers on an I2C bus. A guard limits
+//! the commands between a network and its motors.
 //!
-//! `Sensor::read` and `Motor::drive` return no error: the loop has no place for one. An adapter keeps its last fault instead,
-//! and the loop asks for it once per tick and hands it to the [`Guard`], which then drives what is safe.
+//! `Sensor::read` and `Motor::drive` return no error. An adapter stores its last fault instead. The loop reads it once per tick and
+//! passes it to the [`Guard`], which then drives the safe command.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,11 +1,11 @@
-//! Motors on pulses: servos of models, power stages.
+//! Motors on pulses: model servos, power stages.
 
 use embedded_hal::pwm::SetDutyCycle;
 use farsa_body::ports::{Channels, Motor};
 
 use crate::Fault;
 
-/// `N` outputs whose pulses are as wide as motor values say: 0 is `low` of the period, 1 is `high` of it.
+/// `N` outputs with pulses of a width given by the motor values: 0 is `low` of the period, 1 is `high` of it.
 #[derive(Debug)]
 pub struct Pulses<P, const N: usize> {
     pins: [P; N],
@@ -15,15 +15,15 @@ pub struct Pulses<P, const N: usize> {
 }
 
 impl<P: SetDutyCycle, const N: usize> Pulses<P, N> {
-    /// Pulses from `low` to `high` [0..1 of the period]: 0.05 and 0.1 for a model's servo at 50 Hz, 0 and 1 for a power stage.
+    /// Builds pulses from `low` to `high` [0..1 of the period]: 0.05 and 0.1 for a model servo at 50 Hz, 0 and 1 for a power stage.
     ///
-    /// What lies outside [0, 1] is taken as the nearest that does not.
+    /// Values outside [0, 1] are clamped.
     pub fn new(pins: [P; N], low: f32, high: f32) -> Self {
         let share = |x: f32| x.max(0.0).min(1.0);
         Self { pins, low: share(low), high: share(high), fault: None }
     }
 
-    /// What went wrong since this was asked last.
+    /// Returns the fault since the last call.
     ///
     /// # Errors
     /// [`Fault::Write`].
@@ -31,7 +31,7 @@ impl<P: SetDutyCycle, const N: usize> Pulses<P, N> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
-    /// Gives the pins back.
+    /// Returns the pins.
     pub fn into_pins(self) -> [P; N] {
         self.pins
     }

@@ -5,9 +5,9 @@ use farsa_body::ports::{Channels, Sensor};
 
 use crate::Fault;
 
-/// `N` registers of 16 bits with sign, high byte first, one after the other in a device, each with a scale.
+/// `N` consecutive signed registers of 16 bits in a device, high byte first, each with a scale.
 ///
-/// When the device does not answer the values stay as they were read last, 0 before that, and [`check`](Self::check) says so.
+/// If the device does not respond the values stay as last read, at first 0, and [`check`](Self::check) reports it.
 #[derive(Debug)]
 pub struct Registers<I, const N: usize> {
     bus: I,
@@ -19,8 +19,8 @@ pub struct Registers<I, const N: usize> {
 }
 
 impl<I: I2c, const N: usize> Registers<I, N> {
-    /// Registers from `first` on of the device at `address` [7 bits]; a value is `offset + factor * register`, `scales` are
-    /// [offset, factor].
+    /// Builds registers from `first` on of the device at `address` [7 bits]. A value is `offset + factor * register`, and `scales`
+    /// are [offset, factor].
     pub fn new(bus: I, address: u8, first: u8, scales: [[f32; 2]; N]) -> Self {
         Self { bus, address, first, scales, values: [0.0; N], fault: None }
     }
@@ -35,7 +35,7 @@ impl<I: I2c, const N: usize> Registers<I, N> {
         Ok(())
     }
 
-    /// What went wrong since this was asked last.
+    /// Returns the fault since the last call.
     ///
     /// # Errors
     /// [`Fault::Read`].
@@ -43,7 +43,7 @@ impl<I: I2c, const N: usize> Registers<I, N> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
-    /// Gives the bus back.
+    /// Returns the bus.
     pub fn into_bus(self) -> I {
         self.bus
     }

@@ -5,7 +5,7 @@ use farsa_body::ports::{Channels, Motor};
 
 use crate::Fault;
 
-/// `N` outputs that go on above one motor value and off below another.
+/// `N` outputs that switch on above one motor value and off below another.
 #[derive(Debug)]
 pub struct Switches<P, const N: usize> {
     pins: [P; N],
@@ -16,12 +16,12 @@ pub struct Switches<P, const N: usize> {
 }
 
 impl<P: OutputPin, const N: usize> Switches<P, N> {
-    /// Outputs that are off and go on above `on_above`, off again below `off_below`; between them they stay.
+    /// Builds outputs that are off, switch on above `on_above` and off below `off_below`. Between them they do not change.
     pub fn new(pins: [P; N], off_below: f32, on_above: f32) -> Self {
         Self { pins, on: [false; N], off_below, on_above, fault: None }
     }
 
-    /// What went wrong since this was asked last.
+    /// Returns the fault since the last call.
     ///
     /// # Errors
     /// [`Fault::Write`].
@@ -29,7 +29,7 @@ impl<P: OutputPin, const N: usize> Switches<P, N> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
-    /// Gives the pins back.
+    /// Returns the pins.
     pub fn into_pins(self) -> [P; N] {
         self.pins
     }
@@ -44,7 +44,7 @@ impl<P, const N: usize> Channels for Switches<P, N> {
 impl<W: ?Sized, P: OutputPin, const N: usize> Motor<W> for Switches<P, N> {
     fn drive(&mut self, y: &[f32], _: &mut W) {
         for ((pin, on), y) in self.pins.iter_mut().zip(&mut self.on).zip(y) {
-            // Nothing is above or below a NaN: it is off.
+            // A NaN is neither above nor below: the output is off.
             *on = if *on { *y >= self.off_below } else { *y > self.on_above };
             if pin.set_state((*on).into()).is_err() {
                 self.fault = Some(Fault::Write);

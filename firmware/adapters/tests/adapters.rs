@@ -12,7 +12,7 @@ use firmware_adapters::{
     Converter, Converters, CurveError, Fault, Guard, GuardError, Period, Pulses, Registers, Switches,
 };
 
-/// What asking for the largest duty and setting one is to the mock.
+/// The calls of the mock for reading the largest duty and for setting one.
 fn sets(duty: u16) -> [PwmTransaction; 3] {
     let most = || PwmTransaction::max_duty_cycle(20_000);
     [most(), most(), PwmTransaction::set_duty_cycle(duty)]
@@ -40,7 +40,7 @@ fn a_pulse_that_fails_is_told_once() {
     stage.into_pins()[0].done();
 }
 
-/// A converter that has these counts; `None` fails.
+/// A converter with these counts. `None` fails.
 struct Counts<'a>(&'a Cell<[Option<u16>; 2]>);
 
 impl Converter for Counts<'_> {
@@ -85,7 +85,7 @@ fn a_conversion_that_fails_leaves_what_was_read_last() {
     ] {
         counts.set(now);
         sensors.read(&(), &mut x);
-        // Told once.
+        // Reported once.
         assert_eq!((x, sensors.check(), sensors.check()), (read, found, Ok(())), "{now:?}");
     }
 }

@@ -3,7 +3,7 @@
 use crate::{Chain, ChainLink};
 
 /// The arm of `farsa_body::robots::ArmAndHand` without its fingers.
-// A test holds every number to the description.
+// A test compares every number with the description.
 pub const ARM: Chain<7> = Chain {
     links: [
         link([0.0, 0.0, 1.0], [-0.025, -0.108, 0.21], 0.19, 0.0, [4.75e-5; 3]),
@@ -17,7 +17,7 @@ pub const ARM: Chain<7> = Chain {
     gravity: [0.0, 0.0, -9.81],
 };
 
-/// The centre of mass lies on the link's x.
+/// The center of mass is on the x axis of the link.
 const fn link(axis: [f32; 3], offset: [f32; 3], mass: f32, along: f32, inertia: [f32; 3]) -> ChainLink {
     ChainLink { axis, offset, mass, centre: [along, 0.0, 0.0], inertia, armature: 0.01 }
 }

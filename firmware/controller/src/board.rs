@@ -1,13 +1,13 @@
-//! What a controller sees of a board: counts of converters and timers.
+//! The interface of a controller to a board: counts of converters and timers.
 
 use farsa_body::ports::{Channels, Motor, Sensor};
 
 use crate::LAYOUT;
 
-/// The counts that converters last read and timers put out: memory that interrupts or DMA fill and empty.
+/// The counts of converters and timers, in memory that interrupts or DMA access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// Of a converter of 12 bits for every sensor `[sensors]`, 0..=4095.
+    /// Counts of a 12-bit converter for every sensor `[sensors]`, 0..=4095.
     pub readings: [u16; LAYOUT.sensors()],
     /// Widths of the pulses of every motor `[outputs]`, 0..=[`Pulse::TOP`].
     pub widths: [u16; LAYOUT.outputs()],
@@ -26,7 +26,7 @@ impl Default for Board {
     }
 }
 
-/// Some of a board's converters, each with the values at both ends of its range.
+/// Converters of a board, each with the values at both ends of its range.
 #[derive(Clone, Copy, Debug)]
 pub struct Analog {
     first: usize,
@@ -59,7 +59,7 @@ impl Sensor<Board> for Analog {
     }
 }
 
-/// Some of a board's timers: a motor value 0..1 is the width of a pulse.
+/// Timers of a board. A motor value 0..1 is the width of a pulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulse {
     first: usize,

@@ -1,10 +1,10 @@
-//! The dynamics of an arm without a heap: what its joints must exert.
+//! The inverse dynamics of an arm, without a heap.
 
 use farsa_num::sin_cos;
 
 type Vector = [f32; 3];
 
-/// A link of a [`Chain`] with the joint that it turns on, in a frame that is parallel to its parent's at position 0.
+/// A link of a [`Chain`] with its joint, in a frame parallel to that of the parent at position 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainLink {
     /// The joint's axis, of length 1.
@@ -13,15 +13,15 @@ pub struct ChainLink {
     pub offset: Vector,
     /// Mass [kg].
     pub mass: f32,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     pub centre: Vector,
-    /// Moments of inertia about the centre of mass, whose axes are the frame's [kg m2].
+    /// Moments of inertia about the center of mass, along the axes of the frame [kg m2].
     pub inertia: Vector,
     /// Inertia of the drive at the joint [kg m2].
     pub armature: f32,
 }
 
-/// An arm of `N` links that turn, one on the other.
+/// A serial arm of `N` links with rotary joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chain<const N: usize> {
     /// From the base outwards.
@@ -30,7 +30,7 @@ pub struct Chain<const N: usize> {
     pub gravity: Vector,
 }
 
-/// What the sweep outwards leaves for the sweep inwards, in the base's axes.
+/// The results of the outward sweep for the inward sweep, in the axes of the base.
 #[derive(Clone, Copy)]
 struct Swept {
     axis: Vector,
@@ -40,15 +40,15 @@ struct Swept {
 }
 
 impl<const N: usize> Chain<N> {
-    /// Joint torques [N m] that hold the positions `q` [rad] at rest against gravity.
+    /// Computes the joint torques [N m] that hold the positions `q` [rad] at rest against gravity.
     pub fn holding_torques(&self, q: &[f32; N]) -> [f32; N] {
         self.torques(q, &[0.0; N], &[0.0; N])
     }
 
-    /// Joint torques [N m] that give the accelerations `qdd` [rad/s2] at positions `q` [rad] and speeds `qd` [rad/s].
+    /// Computes the joint torques [N m] for the accelerations `qdd` [rad/s2] at positions `q` [rad] and speeds `qd` [rad/s].
     ///
-    /// Source: recursive Newton-Euler, [Featherstone2008] table 5.1. Deviation: three-dimensional vectors in the base's axes
-    /// instead of spatial ones in the links' own.
+    /// Source: recursive Newton-Euler, [Featherstone2008] table 5.1. Deviation: three-dimensional vectors in the axes of the base
+    /// instead of spatial ones in those of the links.
     pub fn torques(&self, q: &[f32; N], qd: &[f32; N], qdd: &[f32; N]) -> [f32; N] {
         // Rows are the frame's axes in the base's.
         let mut frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -19,14 +19,14 @@ pub const INPUT_BITS: u32 = 9;
 // A file of another length does not compile.
 static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
 
-// The build script quantises it.
+// The build script quantizes it.
 static FIXED: Aligned<[u8; QuantizedNetworkBytes::byte_count(LAYOUT)]> =
     Aligned(*include_bytes!(concat!(env!("OUT_DIR"), "/champion-fixed.farsa")));
 
-/// The champion's parameters where they lie, after all checks.
+/// Returns the champion's parameters in place, after all checks.
 ///
 /// # Errors
-/// What is wrong with the bytes; nothing has run then.
+/// An error of the bytes. Nothing has run then.
 pub fn champion() -> Result<&'static [f32], BytesError> {
     let bytes = LeakyNetworkBytes::read(&CHAMPION.0)?;
     bytes.expect(LAYOUT, LEAK)?;
@@ -39,10 +39,10 @@ pub fn fixed_champion() -> &'static [u8] {
     &FIXED.0
 }
 
-/// The scale and the parameters of a network in integers where they lie, after all checks.
+/// Returns the scale and the parameters of a network in integers in place, after all checks.
 ///
 /// # Errors
-/// What is wrong with the bytes.
+/// An error of the bytes.
 pub(crate) fn read_fixed(bytes: &'static [u8]) -> Result<(QuantizedScale, &'static [i16]), BytesError> {
     let bytes = QuantizedNetworkBytes::read(bytes)?;
     bytes.expect(LAYOUT, LEAK, INPUT_BITS)?;

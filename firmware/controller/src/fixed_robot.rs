@@ -1,4 +1,4 @@
-//! The loop in integers: no float in it, from the counts of the converters to the widths of the pulses.
+//! The loop in integers, without a float between the counts of the converters and the widths of the pulses.
 
 use farsa_nn::Controller;
 use farsa_nn::bytes::BytesError;
@@ -12,7 +12,7 @@ use crate::{Analog, Board, Control, INPUT_BITS, LAYOUT, LEAK, Pulse, fixed_champ
 /// Fraction bits of the factor of a count.
 const FACTOR_BITS: u32 = 16;
 
-/// For every converter the sensor value at 0, and how much a count adds to it, in units of 2^-16 of a sensor value's.
+/// For every converter the sensor value at 0 and the value of a count, in units of 2^-16 of a sensor value.
 const SCALES: [(i16, u32); LAYOUT.sensors()] = {
     let unit = (1 << INPUT_BITS) as f64;
     let mut scales = [(0, 0); LAYOUT.sensors()];
@@ -35,10 +35,10 @@ pub struct FixedRobot {
 }
 
 impl FixedRobot {
-    /// The champion at rest.
+    /// Builds the champion at rest.
     ///
     /// # Errors
-    /// What is wrong with the champion's bytes.
+    /// An error of the champion's bytes.
     pub fn new() -> Result<Self, BytesError> {
         let (scale, parameters) = read_fixed(fixed_champion())?;
         Ok(Self {
@@ -48,10 +48,10 @@ impl FixedRobot {
         })
     }
 
-    /// Runs another network of the same shape from here on, as bytes that came over a wire; what is remembered stays.
+    /// Replaces the network by one of the same shape, for example from a wire. The state is unchanged.
     ///
     /// # Errors
-    /// What is wrong with the bytes; then nothing is changed.
+    /// An error of the bytes. Then nothing is changed.
     pub fn replace(&mut self, bytes: &'static [u8]) -> Result<(), BytesError> {
         let (scale, parameters) = read_fixed(bytes)?;
         self.network.set_parameters(scale, parameters)?;
@@ -72,7 +72,7 @@ impl Control for FixedRobot {
     fn tick(&mut self, board: &mut Board) {
         for ((x, reading), (from, factor)) in self.x.iter_mut().zip(&board.readings).zip(&SCALES) {
             let more = (u32::from((*reading).min(Analog::TOP)) * factor + (1 << (FACTOR_BITS - 1))) >> FACTOR_BITS;
-            // At most the range's 100 units: 51 200, from -25 600 on.
+            // At most the 100 units of the range: 51 200, from -25 600 on.
             *x = from.wrapping_add_unsigned(more as u16);
         }
         self.network.step_quantized(&self.x, &mut self.y);

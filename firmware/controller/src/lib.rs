@@ -1,7 +1,7 @@
 //! The champion of the manipulation experiment on a board, in floats and in integers: its bytes, sensors, motors and self-test.
 //!
-//! Nothing here knows which board it is: `cortex-m`, `riscv` and `wasm` are programs around this crate, and its tests run
-//! the same functions on a computer.
+//! This crate is independent of the board. `cortex-m`, `riscv` and `wasm` are programs around it, and its tests run the same
+//! functions on a computer.
 #![no_std]
 #![forbid(unsafe_code)]
 

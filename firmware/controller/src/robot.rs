@@ -1,4 +1,4 @@
-//! The loop: read, think, drive.
+//! The loop: read, step, drive.
 
 use farsa_body::ports::{Motor, Sensor};
 use farsa_nn::bytes::BytesError;
@@ -7,8 +7,9 @@ use farsa_num::{Digest, Stream};
 
 use crate::{Analog, Board, Control, LAYOUT, LEAK, Pulse, champion};
 
-/// The network's inputs at both ends of the converters: joint positions and touch from 0 to 1, then the way from the palm to
-/// the sphere [cm], then the labels of the phases.
+/// The inputs of the network at both ends of the converters.
+///
+/// The order is: joint positions and touch from 0 to 1, the way from the palm to the sphere [cm], the labels of the phases.
 pub(crate) const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
     let mut ranges = [[0.0, 1.0]; LAYOUT.sensors()];
     let mut i = 0;
@@ -20,7 +21,7 @@ pub(crate) const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
     ranges
 };
 
-/// The controller with its state: all the memory that an episode takes.
+/// The controller with its state, all the memory of an episode.
 #[derive(Debug)]
 pub struct Robot {
     sensors: Analog,
@@ -31,10 +32,10 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// The champion at rest.
+    /// Builds the champion at rest.
     ///
     /// # Errors
-    /// What is wrong with the champion's bytes.
+    /// An error of the champion's bytes.
     pub fn new() -> Result<Self, BytesError> {
         let state = [0.0; LAYOUT.state_len()];
         Ok(Self {

@@ -1,12 +1,12 @@
-//! The proof that a processor computes what the computer computed that evolved the network.
+//! The test that a processor computes the same bits as the computer that evolved the network.
 
 use farsa_num::{Digest, Domain, Stream};
 
 use crate::{Board, Control, LAYOUT};
 
-/// Fingerprint of the activations and motor values of so many steps over random inputs: the same on every target.
+/// Computes a fingerprint of activations and motor values over a number of steps with random inputs, the same on every target.
 ///
-/// The robot forgets everything before and after.
+/// The robot is reset before and after.
 pub fn self_test<R: Control>(robot: &mut R, steps: u32) -> u64 {
     robot.reset();
     let mut inputs = Stream::new(2010, Domain::Network, 0, 0, 0);
@@ -20,8 +20,8 @@ pub fn self_test<R: Control>(robot: &mut R, steps: u32) -> u64 {
     digest.finish()
 }
 
-/// Fills the converters with noise: what stands for a robot where there is none.
+/// Fills the converters with noise instead of readings of a robot.
 pub fn noise_into(board: &mut Board, noise: &mut Stream) {
-    // In integers: a program in integers has no use for routines of floats.
+    // In integers, so a program in integers links no routines of floats.
     board.readings.fill_with(|| (noise.next_u32() >> 20) as u16);
 }

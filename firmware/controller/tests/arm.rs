@@ -1,4 +1,4 @@
-//! The arm without a heap beside the articulated bodies of farsa-physics.
+//! The arm without a heap, compared with the articulated bodies of farsa-physics.
 
 use farsa_body::robot::Robot;
 use farsa_body::robots::ArmAndHand;
@@ -6,7 +6,7 @@ use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{LinkData, Model, Options, forward_kinematics, inverse_dynamics};
 use firmware_controller::ARM;
 
-/// The arm of the description, its fingers cut off.
+/// The arm of the description without its fingers.
 fn arm() -> Robot {
     let mut robot = ArmAndHand::default().robot().expect("the default");
     robot.segments.truncate(7);

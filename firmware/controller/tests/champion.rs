@@ -1,9 +1,9 @@
-//! What boards must come to, computed here.
+//! The expected results of boards.
 
 use farsa_num::{Digest, Domain, Stream};
 use firmware_controller::{ARM, Board, Control, LAYOUT, Pulse, Robot, noise_into, self_test};
 
-/// `./ci firmware` and `./ci wasm` hold every target to these lines.
+/// `./ci firmware` and `./ci wasm` compare every target with these lines.
 #[test]
 fn the_self_test_has_its_hash() {
     let expected = include_str!("../../golden.txt");
@@ -11,7 +11,7 @@ fn the_self_test_has_its_hash() {
     for line in expected.lines().filter_map(|line| line.strip_prefix("hash ")) {
         let (steps, hash) = line.split_once(' ').expect("steps and hash");
         let steps: u32 = steps.parse().expect("a number");
-        // The long one takes a minute without optimisation: asked for by name.
+        // The long one takes a minute without optimization, so it runs only by name.
         if steps <= 100_000 || std::env::var_os("FARSA_LONG").is_some() {
             assert_eq!(format!("{:016x}", self_test(&mut robot, steps)), hash, "{steps} steps");
         }
@@ -33,7 +33,7 @@ fn a_loop_drives_what_it_reads() {
     assert!(size_of::<Robot>() + size_of::<Board>() <= 1024, "{} bytes", size_of::<Robot>() + size_of::<Board>());
 }
 
-/// Boards print these, too.
+/// Boards also print these.
 #[test]
 fn what_boards_print_beside_it() {
     let golden = include_str!("../../golden.txt");

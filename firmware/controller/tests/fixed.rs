@@ -1,6 +1,6 @@
-//! What boards must come to in integers, and how far it is from what they come to in floats.
+//! The expected results of boards in integers, and their difference from the results in floats.
 
-use farsa_nn::bytes::{Aligned, BytesError, QuantizedNetworkBytes};
+use farsa_nn::bytes::{Aligned, BytesError, Field, QuantizedNetworkBytes};
 use farsa_nn::quantized::QuantizedScale;
 use farsa_num::{Digest, Domain, Stream};
 use firmware_controller::{
@@ -31,7 +31,7 @@ fn motor_values_are_as_far_from_those_in_floats_as_is_written() {
     let (mut largest, mut squares, mut count) = (0.0_f64, 0.0, 0);
     for _ in 0..100_000 {
         let x: [i16; LAYOUT.sensors()] = core::array::from_fn(|_| FixedRobot::random(&mut inputs));
-        // Exactly the same inputs: the difference is that of weights, sums and activations.
+        // The inputs are the same, so the difference comes from weights, sums and activations.
         let y = robot.step(&x.map(|x| f32::from(x) / 512.0));
         for (y, fixed) in y.iter().zip(integers.step(&x)) {
             let difference = (f64::from(*y) - f64::from(QuantizedScale::output(*fixed))).abs();
@@ -56,7 +56,7 @@ fn a_loop_drives_what_the_loop_in_floats_drives() {
         integers.tick(&mut other);
         let differences = board.widths.iter().zip(&other.widths).map(|(a, b)| a.abs_diff(*b));
         largest = differences.fold(largest, u16::max);
-        // As boards do, which count instructions between.
+        // As on boards, which count instructions between.
         integers.step(&[FixedRobot::HALF; LAYOUT.sensors()]);
         robot.step(&[Robot::HALF; LAYOUT.sensors()]);
         other.widths.iter().for_each(|width| driven.add_bytes(&width.to_le_bytes()));
@@ -88,7 +88,7 @@ fn the_bytes_are_the_champion_quantised() {
     assert_eq!((Ok(read.scale()), read.parameters()), (scale, Ok(&quantised[..])));
 }
 
-/// Another network over a wire: whole and right, or nothing changes.
+/// Another network over a wire: it must be intact and fit, or nothing changes.
 #[test]
 fn another_network_runs_only_if_its_bytes_are_right() {
     let weights = [0.25; LAYOUT.parameter_count()];
@@ -106,7 +106,11 @@ fn another_network_runs_only_if_its_bytes_are_right() {
     let errors = foreign.map(|bytes| robot.replace(&Box::leak(Box::new(bytes)).0).expect_err("refused"));
     assert!(matches!(
         errors,
-        [BytesError::Checksum { .. }, BytesError::OtherChannels { .. }, BytesError::OtherLayout { .. }]
+        [
+            BytesError::Mismatch { field: Field::Checksum, .. },
+            BytesError::Mismatch { field: Field::Channels, .. },
+            BytesError::Mismatch { field: Field::Layout, .. }
+        ]
     ));
     let before = self_test(&mut robot, 100);
     assert_eq!(before, self_test(&mut fixed(), 100));

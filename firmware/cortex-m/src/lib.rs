@@ -1,4 +1,4 @@
-//! What the programs for a Cortex-M share: counting instructions.
+//! A counter of instructions for the programs on a Cortex-M.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -20,7 +20,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Starts SysTick; `None` the second time.
+    /// Starts SysTick. Returns `None` the second time.
     pub fn start() -> Option<Self> {
         let mut peripherals = Peripherals::take()?;
         peripherals.SYST.set_clock_source(SystClkSource::Core);
@@ -30,7 +30,7 @@ impl Counter {
         Some(Self { last: Cell::new(SYST::get_current()), ticks: Cell::new(0) })
     }
 
-    /// Instructions since the start; what is timed must be shorter than a round of the 24 bits.
+    /// Instructions since the start. The measured time must be shorter than a round of the 24 bits.
     pub fn instructions(&self) -> u64 {
         let now = SYST::get_current();
         // It counts downwards.

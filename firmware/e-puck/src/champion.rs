@@ -18,10 +18,10 @@ pub const CHANNELS: u64 = 0x98A9_7938_EFDF_6EC7;
 static CHAMPION: Aligned<[u8; PerceptronBytes::byte_count(SENSORS, WHEELS)]> =
     Aligned(*include_bytes!("../champion.farsa"));
 
-/// The champion's parameters where they lie, after all checks.
+/// Returns the champion's parameters in place, after all checks.
 ///
 /// # Errors
-/// What is wrong with the bytes; nothing has run then.
+/// An error of the bytes. Nothing has run then.
 pub fn champion() -> Result<&'static [f32], BytesError> {
     let bytes = PerceptronBytes::read(&CHAMPION.0)?;
     bytes.expect(SENSORS, WHEELS, SLOPE)?;

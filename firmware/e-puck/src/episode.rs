@@ -1,4 +1,4 @@
-//! A recorded episode in place of a robot: what its sensors counted, and what the wheels are driven to.
+//! A recorded episode instead of a robot: the counts of its sensors, and the commands of the wheels.
 
 use core::cell::Cell;
 use core::convert::Infallible;
@@ -15,7 +15,7 @@ static READINGS: &[u8] = include_bytes!("../readings.bin");
 /// Steps of the recording.
 pub const STEPS: usize = READINGS.len() / (2 * SENSORS);
 
-/// What a sensor counted in a step; nothing beyond the end.
+/// The count of a sensor in a step, `None` beyond the end.
 pub fn reading(step: usize, sensor: usize) -> Option<u16> {
     if sensor >= SENSORS {
         return None;
@@ -26,10 +26,10 @@ pub fn reading(step: usize, sensor: usize) -> Option<u16> {
     Some(u16::from(*low) | u16::from(*high) << 8)
 }
 
-/// A converter that plays the recording; beyond its end it fails.
+/// A converter that plays the recording. It fails beyond the end.
 #[derive(Debug)]
 pub struct Recording<'a> {
-    /// The step that it is in.
+    /// The current step.
     pub step: &'a Cell<usize>,
 }
 
@@ -41,10 +41,10 @@ impl Converter for Recording<'_> {
     }
 }
 
-/// Pulses that keep how wide they are.
+/// Pulses that store their width.
 #[derive(Debug)]
 pub struct Width<'a> {
-    /// Of [`TOP`](Self::TOP).
+    /// The width, in units of [`TOP`](Self::TOP).
     pub duty: &'a Cell<u16>,
 }
 
@@ -68,11 +68,11 @@ impl SetDutyCycle for Width<'_> {
     }
 }
 
-/// Drives the recorded episode, then one tick without sensors; `step` is told before every tick, and what it makes of the
-/// motor values and the widths of the pulses after it.
+/// Drives the recorded episode, then one tick without sensors. It calls `step` before every tick, and again after it with the
+/// motor values and the widths of the pulses.
 ///
-/// Gives a fingerprint of all that the network asked for and all widths, the same on every target, and whether the tick without
-/// sensors, and it alone, rests the wheels with a fault.
+/// Returns a fingerprint of all motor values and widths, the same on every target. The flag is true if only the tick without
+/// sensors stops the wheels with a fault.
 ///
 /// # Errors
 /// [`EPuckError`].

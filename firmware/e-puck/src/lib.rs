@@ -1,8 +1,8 @@
-//! An e-puck that finds a small cylinder and stays near it, on a board: eight infrared sensors on a converter, two wheels on
-//! pulses, the champion of `e-puck.toml` between them, and a guard.
+//! An e-puck on a board, which finds a small cylinder and stays near it. It has eight infrared sensors on a converter, two wheels
+//! on pulses, the champion of `e-puck.toml` and a guard.
 //!
-//! `champion.farsa` and `readings.bin` are made by the test `the_board_of_the_e_puck_has_what_this_program_makes` of
-//! `farsa-experiments`, which fails when they are no longer what the experiment gives.
+//! The test `the_board_of_the_e_puck_has_what_this_program_makes` of `farsa-experiments` creates `champion.farsa` and
+//! `readings.bin`, and fails if they differ from the result of the experiment.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The loop: read, think, guard, drive.
+//! The loop: read, step, guard, drive.
 
 use core::fmt;
 
@@ -10,12 +10,12 @@ use farsa_nn::{Controller, Perceptron};
 
 use crate::{SENSORS, SLOPE, WHEELS, champion};
 
-/// From counts of 12 bits to what the network reads: 0 where nothing is within 0.05 m, 1 at the hull, in proportion between.
+/// The curve from counts of 12 bits to inputs: 0 with nothing within 0.05 m, 1 at the hull, proportional between.
 ///
-/// Replace it by what your robot's sensors count in front of a wall at known distances; see the guide.
+/// Replace it by counts of your sensors in front of a wall at measured distances, see the guide.
 pub const CURVE: &[[f32; 2]] = &[[0.0, 0.0], [4095.0, 1.0]];
 
-/// The most that a wheel's motor value changes in a tick: from full speed ahead to rest.
+/// The largest change of a motor value in a tick: from full speed ahead to rest.
 pub const CHANGE: f32 = 0.5;
 
 /// At rest.
@@ -23,8 +23,8 @@ pub const SAFE: f32 = 0.5;
 
 /// The robot with a converter of eight infrared sensors and the pulses of two wheels.
 ///
-/// A pulse of half the period is a wheel at rest, a longer one drives it ahead, a shorter one back: what a bridge in locked
-/// antiphase does. All the memory of an episode is in here.
+/// As with a bridge in locked antiphase, a pulse of half the period is a wheel at rest. A longer one drives it ahead, a shorter one
+/// back. This value has all the memory of an episode.
 #[derive(Debug)]
 pub struct EPuck<C, P> {
     sensors: Converters<C, SENSORS>,
@@ -36,11 +36,11 @@ pub struct EPuck<C, P> {
     driven: [f32; WHEELS],
 }
 
-/// Why there is no robot.
+/// An error of building the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EPuckError {
-    /// The champion's bytes.
+    /// The bytes of the champion.
     Bytes(BytesError),
     /// The curves of the sensors.
     Curve(CurveError),
@@ -61,10 +61,10 @@ impl fmt::Display for EPuckError {
 impl core::error::Error for EPuckError {}
 
 impl<C: Converter, P: SetDutyCycle> EPuck<C, P> {
-    /// The champion on this converter, whose sensors have this curve, and the pulses of the left and the right wheel.
+    /// Builds the champion from a converter, the curve of its sensors, and the pulses of the left and the right wheel.
     ///
     /// # Errors
-    /// [`EPuckError`]; nothing has moved then.
+    /// [`EPuckError`]. Nothing has moved then.
     pub fn new(converter: C, curve: &'static [[f32; 2]], wheels: [P; WHEELS]) -> Result<Self, EPuckError> {
         let parameters = champion().map_err(EPuckError::Bytes)?;
         let network = Perceptron::new(SENSORS, WHEELS, SLOPE, parameters);
@@ -79,10 +79,10 @@ impl<C: Converter, P: SetDutyCycle> EPuck<C, P> {
         })
     }
 
-    /// One control step, 0.1 s after the last; `time` says whether it came in time.
+    /// Runs one control step, 0.1 s after the last. `time` reports a late step.
     ///
     /// # Errors
-    /// What went wrong; the wheels rest then, as far as they can be told.
+    /// The fault. The wheels then rest, if they can be driven.
     pub fn tick(&mut self, time: Result<(), Fault>) -> Result<(), Fault> {
         self.sensors.read(&(), &mut self.x);
         let sensed = time.and(self.sensors.check());
@@ -92,17 +92,17 @@ impl<C: Converter, P: SetDutyCycle> EPuck<C, P> {
         sensed.and(self.motors.check())
     }
 
-    /// What the network read in the last tick.
+    /// The inputs of the network in the last tick.
     pub fn sensed(&self) -> &[f32; SENSORS] {
         &self.x
     }
 
-    /// What the network asked for in the last tick.
+    /// The outputs of the network in the last tick.
     pub fn asked(&self) -> &[f32; WHEELS] {
         &self.y
     }
 
-    /// What the guard let pass in the last tick.
+    /// The commands after the guard in the last tick.
     pub fn driven(&self) -> &[f32; WHEELS] {
         &self.driven
     }

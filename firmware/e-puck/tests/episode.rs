@@ -1,4 +1,4 @@
-//! What boards must come to over the recorded episode, computed here.
+//! The expected results of boards for the recorded episode.
 
 use firmware_e_puck::{CHANGE, CURVE, SENSORS, STEPS, WHEELS, champion, reading, run_episode};
 
@@ -15,7 +15,7 @@ fn the_episode_has_its_hash() {
     assert_eq!(format!("{hash:016x}"), golden.expect("the line"));
 }
 
-/// The layer in double precision and written out: what `run_episode` hashes is what the exported table of channels says.
+/// The layer in double precision, written out. It checks that `run_episode` follows the exported table of channels.
 #[test]
 fn the_robot_does_what_the_network_says() {
     use adapters::Converter;
@@ -67,7 +67,7 @@ fn the_robot_does_what_the_network_says() {
         }
         sensed += usize::from(counts.get().iter().any(|count| *count > 0));
     }
-    // The episode has something to see, and its end.
+    // The episode has a visible object, and an end.
     assert!(2 * sensed > STEPS, "{sensed} of {STEPS} steps");
     assert_eq!([reading(STEPS, 0), reading(0, SENSORS), reading(usize::MAX, 0)], [None; 3]);
 }

@@ -51,17 +51,17 @@ mod app {
         let mut next = Clock::now();
         loop {
             let tick = period.tick(1000 * Clock::now().ticks());
-            // Here the converters' counts go into `board.readings`,
+            // Store the converters' counts in `board.readings` here,
             robot.tick(board);
-            // What the network asks for stays in the board's memory; the timers see what the guard lets pass, and nothing else.
+            // The outputs of the network stay in memory. The timers get only the commands after the guard.
             drive(guard.pass(board.widths.map(f32::from), tick).map(|width| width as u16));
             next += 10.millis();
             Clock::delay_until(next).await;
         }
     }
 
-    /// Gives the widths of the pulses to the timers.
+    /// Passes the widths of the pulses to the timers.
     fn drive(_widths: [u16; MOTORS]) {
-        // Here a board's compare registers are written.
+        // Write the compare registers of the board here.
     }
 }

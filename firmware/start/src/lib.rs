@@ -1,7 +1,7 @@
-//! What every program for a microcontroller needs before it can be safe: a panic handler, a measured stack, a line to the
-//! host; and the report that all of them print.
+//! The basis of a safe program for a microcontroller: a panic handler, a measured stack, a line to the host. All programs print
+//! the report of this crate.
 //!
-//! `unsafe` is here and in no other crate but the programs' few lines of start-up; each use is argued for.
+//! Only this crate and the start-up lines of the programs have `unsafe`. Each use has its reason.
 #![no_std]
 
 mod line;

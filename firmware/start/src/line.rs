@@ -31,7 +31,7 @@ fn write(name: &str) {
     sys_writec(b' ');
 }
 
-/// Ends the emulator, with success or without.
+/// Ends the emulator with success or failure.
 pub fn exit(success: bool) -> ! {
     sys_exit(if success {
         ExitReason::ADP_Stopped_ApplicationExit

@@ -1,4 +1,4 @@
-//! What a board tells about itself: the lines that `./ci firmware` reads.
+//! The report of a board: the lines that `./ci firmware` reads.
 
 use core::hint::black_box;
 
@@ -30,19 +30,19 @@ const fn parsed(digits: &str) -> u32 {
     number
 }
 
-/// Runs the self-test and the loop of the champion, prints what came of them and ends.
+/// Runs the self-test and the loop of the champion, prints the results and ends.
 ///
-/// `instructions` counts those since the program began, as exactly as the processor can.
+/// `instructions` counts the instructions since the start, as exactly as the processor can.
 pub fn report(instructions: impl Fn() -> u64) -> ! {
     tell(Robot::new, ["driven", "hash"], instructions)
 }
 
-/// The same of the champion in integers.
+/// Runs them for the champion in integers.
 pub fn report_fixed(instructions: impl Fn() -> u64) -> ! {
     tell(FixedRobot::new, ["driven-fixed", "hash-fixed"], instructions)
 }
 
-// It makes the robot itself: one that is handed over lies on the stack twice.
+// The robot is built here, because an argument would be on the stack twice.
 fn tell<R: Control>(
     robot: impl FnOnce() -> Result<R, BytesError>,
     [driven_name, hash_name]: [&str; 2],
@@ -52,7 +52,7 @@ fn tell<R: Control>(
     let mut board = Board::new();
     let mut noise = Stream::new(1, Domain::Sensor, 0, 0, 0);
 
-    // The loop without the noise, and the network of it alone.
+    // The loop without the noise, then its network alone.
     let (mut ticks, mut network, mut driven) = (0, 0, Digest::new());
     let x = [R::HALF; LAYOUT.sensors()];
     for _ in 0..COUNTED {
@@ -77,7 +77,7 @@ fn tell<R: Control>(
     exit(true)
 }
 
-/// Computes what holds the arm in random postures, prints what came of it and ends.
+/// Computes the torques that hold the arm in random postures, prints the results and ends.
 pub fn report_arm(instructions: impl Fn() -> u64) -> ! {
     let mut postures = Stream::new(1, Domain::Start, 0, 0, 0);
     let (mut spent, mut digest) = (0, Digest::new());
@@ -94,7 +94,7 @@ pub fn report_arm(instructions: impl Fn() -> u64) -> ! {
     exit(true)
 }
 
-/// Drives the recorded episode of the e-puck, prints what came of it and ends.
+/// Drives the recorded episode of the e-puck, prints the results and ends.
 pub fn report_e_puck(instructions: impl Fn() -> u64) -> ! {
     let mut spent = 0;
     let ran = run_episode(|tick| {

@@ -1,13 +1,13 @@
-//! How deep the stack has been: it is painted before, and looked at after.
+//! The depth of the stack: it is painted before a run and inspected after it.
 
 use core::hint::black_box;
 use core::ptr;
 
 const PAINT: u32 = 0x5AFE_57AC;
 
-// SAFETY: both are symbols of the linker scripts of cortex-m-rt and riscv-rt; only their addresses are used.
+// SAFETY: both are symbols of the linker scripts of cortex-m-rt and riscv-rt, and only their addresses are used.
 unsafe extern "C" {
-    /// The end of the program's variables, where the stack must not come.
+    /// The end of the program's variables, the limit of the stack.
     static __ebss: u32;
     /// The end of the memory, where the stack begins.
     static _stack_start: u32;
@@ -22,7 +22,7 @@ fn words() -> impl DoubleEndedIterator<Item = *mut u32> {
 #[inline(never)]
 pub fn paint() {
     let here = 0_u32;
-    // Room for this function's own frame.
+    // Space for the frame of this function.
     let top = black_box(&raw const here).addr().saturating_sub(256);
     for word in words().take_while(|word| word.addr() < top) {
         // SAFETY: between the variables and the stack there is unused memory, and its words are aligned.
@@ -30,7 +30,7 @@ pub fn paint() {
     }
 }
 
-/// The most bytes that the stack has had since it was painted.
+/// The largest size of the stack since it was painted [bytes].
 #[inline(never)]
 pub fn used() -> u32 {
     // SAFETY: the words of `paint`.

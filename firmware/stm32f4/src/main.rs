@@ -16,14 +16,14 @@ use stm32f4xx_hal::pac::{ADC1, Peripherals};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-/// The control step of `e-puck.toml`, and how late it may come [us].
+/// The control step of `e-puck.toml` and its tolerance [us].
 const STEP: u32 = 100_000;
 const LATE: u32 = 5_000;
 
-/// After so long without a step the chip starts anew, and the bridges are off until then [ms].
+/// The chip restarts after this time without a step [ms]. The bridges are off until then.
 const WATCHDOG: u32 = 250;
 
-/// Nothing more is done, and the watchdog ends it.
+/// Waits for the watchdog.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
@@ -57,7 +57,7 @@ impl Converter for Infrared {
 
 #[entry]
 fn main() -> ! {
-    // The first time there are peripherals.
+    // The first call returns the peripherals.
     let Some(board) = Peripherals::take() else { loop {} };
     let mut rcc = board.RCC.constrain();
     let (a, d) = (board.GPIOA.split(&mut rcc), board.GPIOD.split(&mut rcc));
@@ -73,7 +73,7 @@ fn main() -> ! {
     );
     let infrared = Infrared { adc: Adc::new(board.ADC1, true, AdcConfig::default(), &mut rcc), pins };
 
-    // Beyond what is heard; half of a period is a wheel at rest.
+    // Above the audible range. Half of a period is a wheel at rest.
     let (_, (left, right, ..)) = board.TIM4.pwm_hz(20.kHz(), &mut rcc);
     let mut wheels = [left.with(d.pd12).erase(), right.with(d.pd13).erase()];
     for wheel in &mut wheels {
@@ -93,10 +93,10 @@ fn main() -> ! {
     let mut period = Period::new(STEP, LATE);
     let mut next = clock.now().ticks();
     loop {
-        // A difference of more than half of all counts is one before the time.
+        // A difference of more than half of the range of counts is in the past.
         while clock.now().ticks().wrapping_sub(next) > u32::MAX / 2 {}
         next = next.wrapping_add(STEP);
-        // After a fault the wheels rest, and the next step is tried.
+        // After a fault the wheels rest, and the loop continues.
         let _ = robot.tick(period.tick(clock.now().ticks()));
         watchdog.feed();
     }

@@ -8,7 +8,7 @@ use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 
 const LAYOUT: LeakyLayout = LeakyLayout::new({{sensors}}, {{hidden}}, {{motors}});
 
-// `farsa export controller RUN --format bytes --out champion.farsa`; a file of another length does not compile.
+// `farsa export controller RUN --format bytes --out champion.farsa`. A file of another length does not compile.
 static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
 
 #[panic_handler]

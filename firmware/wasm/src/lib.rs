@@ -14,14 +14,14 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe { farsa_a_panic_is_left() }
 }
 
-/// The hash of so many steps; 0 if the champion's bytes are damaged.
+/// The hash of a number of steps, 0 if the champion's bytes are damaged.
 // SAFETY: no other function of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn hash(steps: u32) -> u64 {
     Robot::new().map_or(0, |mut robot| self_test(&mut robot, steps))
 }
 
-/// The same of the champion in integers.
+/// The hash of the champion in integers.
 // SAFETY: as above.
 #[unsafe(no_mangle)]
 pub extern "C" fn hash_fixed(steps: u32) -> u64 {
