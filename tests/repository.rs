@@ -182,6 +182,71 @@ fn lock_files_of_what_is_no_member_know_what_our_crates_need() {
     assert!(checked > 30, "only {checked} dependencies");
 }
 
+/// Packages that decode input: runs, documents, command lines, tables, pictures, pages.
+const DECODERS: [&str; 26] = [
+    "base64",
+    "clap",
+    "clap_builder",
+    "clap_derive",
+    "clap_lex",
+    "cobs",
+    "crc32fast",
+    "csv",
+    "csv-core",
+    "fdeflate",
+    "flate2",
+    "miniz_oxide",
+    "png",
+    "postcard",
+    "roxmltree",
+    "safetensors",
+    "serde",
+    "serde_core",
+    "serde_derive",
+    "serde_json",
+    "serde_spanned",
+    "toml",
+    "toml_datetime",
+    "toml_parser",
+    "toml_writer",
+    "winnow",
+];
+
+/// The versions of each decoder in a lock file.
+fn decoders(lock: &str) -> BTreeMap<String, BTreeSet<String>> {
+    let mut versions = BTreeMap::<_, BTreeSet<_>>::new();
+    for package in read(lock).split("[[package]]\n") {
+        let field = |key: &str| package.lines().find_map(|line| line.strip_prefix(key)?.strip_suffix('"'));
+        if let (Some(name), Some(version)) = (field("name = \""), field("version = \""))
+            && DECODERS.contains(&name)
+        {
+            versions.entry(name.to_string()).or_default().insert(version.to_string());
+        }
+    }
+    versions
+}
+
+#[test]
+fn all_lock_files_decode_with_the_same_versions() {
+    let workspace = decoders("Cargo.lock");
+    for name in DECODERS {
+        assert!(workspace.contains_key(name), "Cargo.lock has no {name}");
+    }
+    let mut checked = 0;
+    for folder in ["farsa-lab-mpi", "farsa-live", "fuzz", "firmware", "ci-nostd"] {
+        let lock = format!("{folder}/Cargo.lock");
+        for (name, versions) in decoders(&lock) {
+            assert!(
+                versions.is_subset(&workspace[&name]),
+                "{lock}: {name} {versions:?}, Cargo.lock: {:?}: run `cargo update --precise` for it",
+                workspace[&name]
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked > 60, "only {checked} packages");
+}
+
 /// The compiled crates and features for a crate of the workspace, or for all.
 fn features(which: &[&str]) -> BTreeSet<String> {
     let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} [{f}]"];
