@@ -57,21 +57,21 @@ function changeData(trial, random) {
 
 function changeOnce(page, random) {
   const all = places(page);
-  const [within, key] = all[Math.floor(random() * all.length)] ?? [page, "lives"];
+  const [within, key] = all[Math.floor(random() * all.length)] ?? [page, "episodes"];
   const what = random();
   if (what < 0.45) within[key] = structuredClone(ODD[Math.floor(random() * ODD.length)]);
   else if (what < 0.6 && typeof within[key] === "number") within[key] = Math.round(within[key] * 3 * random()) - 1;
   else if (what < 0.7) Array.isArray(within) ? within.splice(key, 1) : delete within[key];
   else if (what < 0.8 && Array.isArray(within)) within.push(...Array(1 + Math.floor(random() * 20)).fill(structuredClone(within[key])));
   else if (what < 0.9) within[key] = structuredClone(all[Math.floor(random() * all.length)]?.[0] ?? null);
-  else changeData(page?.lives?.[0], random);
+  else changeData((page?.episodes ?? page?.lives)?.[0], random);
 }
 
 // A page as text.
 function changed(seeds, random) {
   const page = structuredClone(seeds[Math.floor(random() * seeds.length)]);
   for (let n = Math.floor(random() * 4); n >= 0; n--) changeOnce(page, random);
-  if (random() < 0.3) changeData(page?.lives?.[0], random);
+  if (random() < 0.3) changeData((page?.episodes ?? page?.lives)?.[0], random);
   let text = JSON.stringify(page);
   if (random() < 0.05) text = text.slice(0, Math.floor(random() * text.length));
   return text;

@@ -49,7 +49,7 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     let files = farsa_lab::ExperimentFiles { import: Some(farsa_original::from_original), ..files };
     let laboratory = farsa_lab::Laboratory::new(&all()).with_files(files);
     #[cfg(feature = "command")]
-    let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.xz"), &["rapier"]);
+    let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.gz"), &["rapier"]);
     laboratory
 }
 

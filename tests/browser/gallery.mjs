@@ -23,7 +23,7 @@ const silent = async (browser, name) => check(`${name}: the console is silent`, 
 
 async function live(browser, name, file) {
   const size = statSync(file).size;
-  check(`${name} has ${size} bytes, at most 2000000`, size <= 2_000_000);
+  check(`${name} has ${size} bytes, at most 3000000`, size <= 3_000_000);
   const begin = performance.now();
   await browser.go(pathToFileURL(resolve(file)));
   await browser.until(() => window.farsa && (farsa.ready || farsa.error));

@@ -7,7 +7,7 @@ import { crc32 } from "node:zlib";
 
 const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
-export const SCRIPTS = ["data.js", "camera.js", "scene.js", "flat.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
+export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
 
 export const crc = (bytes) => {
@@ -298,7 +298,7 @@ export function encode(trial) {
 }
 
 export const pageOf = (trials, view = "free", title = "An invented trial") =>
-  ({ format: "farsa-replay", version: 1, made_by: "mock.mjs", title, view, lives: trials.map(encode) });
+  ({ format: "farsa-replay", version: 1, made_by: "mock.mjs", title, view, episodes: trials.map(encode) });
 
 // What `farsa replay` would print of the trial.
 export function csvOf(trial) {

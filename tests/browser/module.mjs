@@ -7,10 +7,10 @@
 // if a trial differs, or if with `--ticks` the trials of a page are fewer ticks than that. Then no fresh trials are run, which would be
 // as long.
 
-import { statSync } from "node:fs";
+import { readFileSync, statSync } from "node:fs";
 import { basename } from "node:path";
 import { parseArgs } from "node:util";
-import { dataOf, unpacked } from "./packed.mjs";
+import { gunzipSync } from "node:zlib";
 import { startDriver } from "./webdriver.mjs";
 
 const { values: options, positionals: pages } = parseArgs({ allowPositionals: true, options: { ticks: { type: "string" }, browser: { type: "boolean" } } });
@@ -18,6 +18,14 @@ const long = options.ticks !== undefined;
 const least = Number(options.ticks);
 if (long && !(least > 0)) throw new Error("--ticks wants a number above 0");
 if (pages.length === 0) throw new Error("no page to look at");
+
+const mark = '<script type="application/json" id="data">';
+
+// The data of a page.
+function dataOf(page) {
+  const html = readFileSync(page, "utf8");
+  return JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
+}
 
 // Makes `answer` of a module's bytes and a session's script; it runs where there is WebAssembly and nothing of Node.
 async function openSession(bytes, script) {
@@ -41,8 +49,8 @@ async function openSession(bytes, script) {
 }
 
 // The module of a page, open in Node or in the browser.
-async function opened({ module, unpacker, script }, browser) {
-  const bytes = unpacked(module, unpacker);
+async function opened({ module, script }, browser) {
+  const bytes = gunzipSync(Buffer.from(module, "base64"));
   if (!browser) {
     await openSession(bytes, script);
     return (request) => globalThis.answer(request);

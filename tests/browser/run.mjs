@@ -543,11 +543,11 @@ async function lettered(driver) {
 }
 
 // What lies on the ground and what is shown at times are seen when they are there, and only then.
-async function foraged(browser, hash) {
+async function foraged(browser) {
   const trial = foragingTrial();
-  const name = `foraging${hash}`;
+  const name = "foraging";
   await browser.go("about:blank");
-  await opened(browser, `${write("foraging.html", compose(pageOf([trial], "top")))}${hash}`);
+  await opened(browser, write("foraging.html", compose(pageOf([trial], "top"))));
   await browser.run(() => ["trails", "rays"].forEach((id) => document.querySelector(`#${id}`).click()));
   const { size: [columns, rows], ground: [x, y, u, v], at } = CELLS;
   const places = Array.from({ length: 20 }, (_, k) => [x + ((k % columns) + 0.5) / columns * (u - x), y + (Math.floor(k / columns) + 0.5) / rows * (v - y), 0]);
@@ -578,14 +578,14 @@ async function foraged(browser, hash) {
   check(`${name}: what lies on the ground is not beside the strips`, await browser.run(() => document.querySelector("#images").hidden));
   await silent(browser, name);
   const data = pageOf([trial], "top");
-  data.lives[0].blocks.ground_pixels = data.lives[0].bytes;
+  data.episodes[0].blocks.ground_pixels = data.episodes[0].bytes;
   await opened(browser, write("foraging-damaged.html", compose(data)));
   const error = await browser.run(() => farsa.error);
   check(`${name}: changes that are not there are damage`, /ground_pixels of trial 0 is out of range/.test(error), error);
   await browser.log();
 }
 
-// ---- The picture without WebGL, and with it.
+// ---- The picture.
 
 // The scene as it is seen, without words and controls.
 async function pictured(browser, name = "") {
@@ -596,55 +596,24 @@ async function pictured(browser, name = "") {
   return { picture: decode(png), scene: await rectOf(browser, ".scene") };
 }
 
-// The share of a scene's pixels of which two pictures have other colours.
-function apart(one, other, { left, top, right, bottom }) {
-  let [different, all] = [0, 0];
-  for (let y = Math.ceil(top); y < bottom - 1; y++) {
-    for (let x = Math.ceil(left); x < right - 1; x++) {
-      const [a, b] = [one.pixel(x, y), other.pixel(x, y)];
-      all++;
-      if (a.some((value, i) => Math.abs(value - b[i]) > 48)) different++;
-    }
-  }
-  return different / all;
-}
-
 const CAMERAS = ["overview", "three-quarter", "front", "side", "top", "close"];
 
-// A page that does without WebGL shows what the page with it shows, at the same places.
-async function flat(browser, name, data) {
-  const url = write(`flat-${name}.html`, compose(data));
-  const seen = [];
-  for (const hash of ["", "#flat"]) {
-    // The same address with another end is no other page.
-    await browser.go("about:blank");
-    await opened(browser, `${url}${hash}`);
-    await browser.run(() => farsa.seek(Math.round(farsa.ticks * 0.7)));
-    const views = [];
-    for (const camera of CAMERAS) {
-      await browser.run((camera) => farsa.setView(camera), camera);
-      const { picture, scene } = await pictured(browser, `${name}-${camera}${hash.replace("#", "-")}`);
-      const places = await browser.run(() => farsa.trials[0].bodies.map((body) => farsa.project(farsa.pose(0, body).position)));
-      views.push({ picture, scene, places, colours: coloursIn(picture, scene) });
-    }
-    const kind = await browser.run(() => [document.querySelector(".scene").getContext("2d") === null, document.querySelector("figcaption").textContent]);
-    check(`${name}${hash}: it is drawn ${hash ? "without" : "with"} WebGL, and ${hash ? "" : "not "}said to be flat`, kind[0] === !hash && /flat/.test(kind[1]) === Boolean(hash), kind.join());
-    seen.push(views);
+// Every camera shows the scene.
+async function cameras(browser, name, data) {
+  await opened(browser, write(`cameras-${name}.html`, compose(data)));
+  await browser.run(() => farsa.seek(Math.round(farsa.ticks * 0.7)));
+  for (const camera of CAMERAS) {
+    await browser.run((camera) => farsa.setView(camera), camera);
+    const { picture, scene } = await pictured(browser, `${name}-${camera}`);
+    const colours = coloursIn(picture, scene);
+    check(`${name} ${camera}: the scene has ${colours} colors`, colours > 100);
   }
-  CAMERAS.forEach((camera, i) => {
-    const [solid, plain] = seen.map((views) => views[i]);
-    const way = Math.max(...plain.places.map((p, b) => (p && solid.places[b] ? Math.hypot(p.x - solid.places[b].x, p.y - solid.places[b].y) : Number(Boolean(p) !== Boolean(solid.places[b])))));
-    check(`${name} ${camera}: without WebGL bodies are at the same places`, way < 1, way);
-    const share = apart(plain.picture, solid.picture, solid.scene);
-    check(`${name} ${camera}: ${plain.colours} colours, ${(100 * share).toFixed(2)} % of the picture is otherwise`, plain.colours > 100 && share < 0.015, share);
-  });
-  await silent(browser, `${name} without WebGL`);
+  await silent(browser, `cameras of ${name}`);
 }
 
-// What else a page does with its picture it does without WebGL too.
-async function flatHandled(browser) {
-  await browser.go("about:blank");
-  await opened(browser, `${write("flat-handled.html", compose(pageOf([armTrial(0)])))}#flat`);
+// A double click centers a body, and a recording of the scene is a file.
+async function filmed(browser) {
+  await opened(browser, write("filmed.html", compose(pageOf([armTrial(0)]))));
   const scene = await rectOf(browser, ".scene");
   const middle = { x: (scene.left + scene.right) / 2, y: (scene.top + scene.bottom) / 2 };
   const at = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
@@ -652,53 +621,25 @@ async function flatHandled(browser) {
   const before = away(await at());
   await browser.run((p) => document.querySelector(".scene").dispatchEvent(new MouseEvent("dblclick", { clientX: p.x, clientY: p.y })), await at());
   await settled(browser);
-  check("flat: a double click brings a thing into the middle", before > 40 && away(await at()) < 40, `${before} ${away(await at())}`);
+  check("a double click brings a thing into the middle", before > 40 && away(await at()) < 40, `${before} ${away(await at())}`);
   await browser.run(() => farsa.seek(farsa.ticks - 60));
   await browser.run(() => document.querySelector("#record").click());
-  check("flat: a film is a file", (await browser.until(() => farsa.filmed)) > 1000);
-  await silent(browser, "flat");
-  // Scripts of Firefox's driver do not see the page's classes.
-  if (isFirefox) return;
-  // Wherever the eye is, inside of bodies too, a picture is drawn.
-  const wrong = await browser.run(() => {
-    const [trial] = farsa.trials;
-    const canvas = Object.assign(document.createElement("canvas"), { width: 200, height: 120 });
-    // Drawn at once: without, minutes of pictures wait behind what is asked of the browser next.
-    canvas.getContext("2d", { willReadFrequently: true });
-    const flat = new Flat(canvas);
-    const visible = { forces: true, rays: true, points: true, trails: true };
-    const failures = [];
-    trial.shapes.push({ ...trial.shapes.find((shape) => shape.kind === "sphere"), kind: "capsule", radius: 0.05, half_length: 0.03 });
-    for (let k = 0; k < 300; k++) {
-      const camera = new Camera(k % 10 === 0);
-      camera.frame([trial], 5 / 3);
-      const tick = (k * 37) % trial.ticks;
-      const { position } = trial.pose(tick, k % 3 ? trial.bodies.indexOf("sphere") : k % trial.bodies.length);
-      const target = position.map((x, i) => x + 0.03 * Math.sin(k * (i + 7)));
-      Object.assign(camera, { target, distance: 10 ** ((k % 7) / 2 - 3), half: 10 ** ((k % 5) / 2 - 2), yaw: k, pitch: Math.sin(k * 5) * 1.5 });
-      try {
-        flat.draw(trial, tick, camera, visible);
-      } catch (error) {
-        failures.push(`${k}: ${error.message}`);
-      }
-    }
-    return failures;
-  });
-  check("flat: wherever the eye is, nothing fails", wrong.length === 0, wrong.slice(0, 3).join(", "));
+  check("a film is a file", (await browser.until(() => farsa.filmed)) > 1000);
+  await silent(browser, "filmed");
 }
 
 // Trails are seen where bodies were, and fainter where they will be.
-async function trailed(browser, hash) {
-  const name = `trails${hash}`;
+async function trailed(browser) {
+  const name = "trails";
   await browser.go("about:blank");
-  await opened(browser, `${write("trails.html", compose(pageOf([arenaTrial(0)], "top")))}${hash}`);
+  await opened(browser, write("trails.html", compose(pageOf([arenaTrial(0)], "top"))));
   await browser.run(() => farsa.seek(250));
   const compared = async (camera) => {
     await browser.run((camera) => farsa.setView(camera), camera);
     const pictures = [];
     for (const on of [true, false]) {
       await browser.run((on) => document.querySelector("#trails").ariaPressed === String(on) || document.querySelector("#trails").click(), on);
-      pictures.push((await pictured(browser, `${name.replace("#", "-")}-${camera}-${on}`)).picture);
+      pictures.push((await pictured(browser, `${name}-${camera}-${on}`)).picture);
     }
     const places = await browser.run(() => {
       const { path, body } = farsa.trials[0].trails.find((trail) => !trail.thing);
@@ -717,14 +658,12 @@ async function trailed(browser, hash) {
     check(`${name} ${camera}: and fainter where it will be`, rest.length > 50 && seen(rest) > 0.8 && mean(rest) < 0.8 * mean(past), told);
   };
   for (const camera of ["top", "side"]) await compared(camera);
-  if (!hash) {
-    // A context that is lost and given back has all that was in it.
-    await browser.run(() => (window.lost = document.querySelector(".scene").getContext("webgl2").getExtension("WEBGL_lose_context")).loseContext());
-    await settled(browser);
-    await browser.run(() => lost.restoreContext());
-    await settled(browser);
-    await compared("top");
-  }
+  // A lost and restored context draws the same scene.
+  await browser.run(() => (window.lost = document.querySelector(".scene").getContext("webgl2").getExtension("WEBGL_lose_context")).loseContext());
+  await settled(browser);
+  await browser.run(() => lost.restoreContext());
+  await settled(browser);
+  await compared("top");
   check(`${name}: no uncaught exception`, !(await browser.log()).some((line) => /SEVERE/.test(line)) && (await browser.run(() => farsa.error === null)));
 }
 
@@ -811,7 +750,7 @@ async function looks(driver, url, name, size, phone) {
 // A page of an invented trial with an eye, with another size.
 function resizedEye(size) {
   const data = pageOf([armTrial(0)]);
-  data.lives[0].images[0].size = size;
+  data.episodes[0].images[0].size = size;
   return compose(data);
 }
 
@@ -839,14 +778,14 @@ async function damaged(browser, html, name) {
     ["a character that is no base64", `${html.slice(0, base + 100)}!${html.slice(base + 101)}`, /not base64/],
     ["another version", changed((d) => (d.version = 2)), /version 2/],
     ["another format", changed((d) => (d.format = "film")), /farsa-replay/],
-    ["another length", changed((d) => (d.lives[0].bytes += 4)), /bytes where/],
-    ["a block out of range", changed((d) => (d.lives[0].blocks.channels = 4 * (d.lives[0].bytes >> 2))), /block channels .* out of range/],
-    ["a block that is not there", changed((d) => delete d.lives[0].blocks.poses), /block poses .* out of range/],
-    ["contacts that are none", changed((d) => (d.lives[0].blocks.contacts = d.lives[0].blocks.times)), /block contacts .* out of range|cannot be shown/],
+    ["another length", changed((d) => (d.episodes[0].bytes += 4)), /bytes where/],
+    ["a block out of range", changed((d) => (d.episodes[0].blocks.channels = 4 * (d.episodes[0].bytes >> 2))), /block channels .* out of range/],
+    ["a block that is not there", changed((d) => delete d.episodes[0].blocks.poses), /block poses .* out of range/],
+    ["contacts that are none", changed((d) => (d.episodes[0].blocks.contacts = d.episodes[0].blocks.times)), /block contacts .* out of range|cannot be shown/],
     ["an image out of range", resizedEye([9, 9000]), /image .* out of range/],
     ["an image without size", resizedEye([0, 6]), /image .* out of range/],
-    ["no trial", changed((d) => (d.lives = [])), /no trial/],
-    ["no shapes", changed((d) => delete d.lives[0].shapes), /lacks something|cannot be shown/],
+    ["no trial", changed((d) => (d.episodes = [])), /no trial/],
+    ["no shapes", changed((d) => delete d.episodes[0].shapes), /lacks something|cannot be shown/],
     ["data that is no page", withData(html, 7), /farsa-replay/],
   ];
   for (const [what, text, message] of cases) {
@@ -870,8 +809,8 @@ async function damaged(browser, html, name) {
 
 async function compared(browser, html) {
   const data = dataOf(html);
-  const [trial] = data.lives;
-  const url = write("two.html", withData(html, { ...data, lives: [trial, data.lives[1] ?? { ...trial, name: "the same again" }] }));
+  const [trial] = data.episodes;
+  const url = write("two.html", withData(html, { ...data, episodes: [trial, data.episodes[1] ?? { ...trial, name: "the same again" }] }));
   await opened(browser, url);
   const options = await browser.run(() => [...document.querySelectorAll("#trial option")].length);
   check("a page of two trials offers both", options === 2, options);
@@ -904,24 +843,26 @@ async function compared(browser, html) {
   check("beside nothing: one view again", (await browser.run(() => [...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length)) === 1);
   await silent(browser, "two trials");
   // A page that says so opens with both.
-  await opened(browser, write("both.html", withData(html, { ...data, lives: [trial, data.lives[1] ?? trial], beside: 1 })));
+  await opened(browser, write("both.html", withData(html, { ...data, episodes: [trial, data.episodes[1] ?? trial], beside: 1 })));
   check("a page opens with the trial beside that it names", (await browser.run(() => document.querySelector("#beside").value)) === "1");
   await bothColoured("opened with both");
   await silent(browser, "opened with both");
+}
+
+// Pages of earlier versions call the episodes `lives`.
+async function earlier(browser) {
+  const { episodes, ...rest } = pageOf([armTrial(0)]);
+  await opened(browser, write("earlier.html", compose({ ...rest, lives: episodes })));
+  check("the data of an earlier version are read", await browser.run(() => farsa.ready && farsa.trials.length === 1));
+  await silent(browser, "earlier page");
 }
 
 async function withoutWebGL(driver, url) {
   const browser = await driver.open({ flags: ["--disable-3d-apis"] });
   try {
     await opened(browser, url);
-    const [ready, text] = await browser.run(() => [farsa.ready, document.querySelector("figcaption").textContent]);
-    check("without WebGL the page says so", ready && /flat picture: this browser offers no WebGL 2/.test(text), text);
-    const { picture, scene } = await pictured(browser, "without-webgl");
-    const colours = coloursIn(picture, scene);
-    check(`without WebGL the scene has ${colours} colours`, colours > 100);
-    await browser.run(() => farsa.seek(20));
-    await settled(browser);
-    check("without WebGL the strips show their values", (await shownValues(browser)).filter((v) => v.text).length > 10);
+    const [ready, text] = await browser.run(() => [farsa.ready, document.querySelector("#message").textContent]);
+    check("without WebGL the page says so", !ready && text === "This page cannot be shown: it needs a browser with WebGL 2.", text);
     const severe = (await browser.log()).filter((line) => /SEVERE/.test(line));
     check("without WebGL there is no uncaught exception", severe.length === 0, severe.join(" | "));
   } finally {
@@ -1239,7 +1180,7 @@ async function withoutWebAssembly(driver) {
     await browser.cdp("Page.addScriptToEvaluateOnNewDocument", { source: "delete globalThis.WebAssembly" });
     await opened(browser, pathToFileURL(resolve(livePage)));
     const [error, seen] = await browser.run(() => [farsa.error, !document.querySelector("#message").hidden && document.querySelector("#message").textContent]);
-    check("without WebAssembly a live page says so", /no WebAssembly/.test(error) && /no WebAssembly/.test(seen), `${error} ${seen}`);
+    check("without WebAssembly a live page says so", /needs a browser with WebAssembly/.test(error) && /needs a browser with WebAssembly/.test(seen), `${error} ${seen}`);
   } finally {
     await browser.close();
   }
@@ -1266,8 +1207,8 @@ async function beginning(driver) {
     const live = readFileSync(livePage, "utf8");
     const data = dataOf(live);
     const { module } = data.live;
-    const at = module.xz.length >> 1;
-    module.xz = module.xz.slice(0, at) + (module.xz[at] === "A" ? "B" : "A") + module.xz.slice(at + 1);
+    const at = module.length >> 1;
+    data.live.module = module.slice(0, at) + (module[at] === "A" ? "B" : "A") + module.slice(at + 1);
     await opened(browser, write("damaged-module.html", withData(live, data)));
     const [error, seen] = await browser.run(() => [farsa.error, !document.querySelector("#message").hidden && document.querySelector("#message").textContent]);
     check("a page whose module is damaged says so", /cannot be unpacked/.test(error) && /cannot be unpacked/.test(seen), `${error} ${seen}`);
@@ -1279,7 +1220,7 @@ async function beginning(driver) {
 const invented = compose(pageOf([armTrial(0)]));
 const html = page ? readFileSync(page, "utf8") : invented;
 const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
-const [trial] = dataOf(html).lives;
+const [trial] = dataOf(html).episodes;
 const table = readCsv(csv ? readFileSync(csv, "utf8") : csvOf(armTrial(0)), trial);
 
 files();
@@ -1298,11 +1239,12 @@ try {
     if (servedPage) await part("served", () => serves(browser));
     if (servedPage) await part("elsewhere", () => elsewhere(browser, servedPage, check));
     if (armPage) await part("moves", () => moves(browser));
-    await part("flat arm", () => flat(browser, "arm", pageOf([armTrial(0)])));
-    await part("flat arena", () => flat(browser, "arena", pageOf([arenaTrial(0)], "top")));
-    await part("flat, mouse and film", () => flatHandled(browser));
-    for (const hash of ["", "#flat"]) await part("trails", () => trailed(browser, hash));
-    for (const hash of ["", "#flat"]) await part("foraging", () => foraged(browser, hash));
+    await part("cameras of an arm", () => cameras(browser, "arm", pageOf([armTrial(0)])));
+    await part("cameras of an arena", () => cameras(browser, "arena", pageOf([arenaTrial(0)], "top")));
+    await part("double click and film", () => filmed(browser));
+    await part("trails", () => trailed(browser));
+    await part("foraging", () => foraged(browser));
+    await part("earlier page", () => earlier(browser));
     await part("two trials", () => compared(browser, html));
     // What follows needs what Chromium's driver alone can do.
     if (!isFirefox) await part("damage", () => damaged(browser, html, "page"));

@@ -20,7 +20,8 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     let said = say(own(), &here, "replay r1 --html all.html --compare r2");
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{said:?}");
     let page = data(&fs::read_to_string(here.join("all.html")).expect("the page"));
-    let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
+    let names: Vec<&str> =
+        page["episodes"].as_array().expect("episodes").iter().filter_map(|l| l["name"].as_str()).collect();
     assert_eq!(names.len(), 6);
     // Of each run the best trial first, and the best of both beside each other.
     let parts = |name: &str| -> (String, f64, String) {
@@ -41,15 +42,15 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     assert_eq!(page["beside"], 3);
     ok(own(), &here, "replay r1 --trial best --html best.html");
     let best = data(&fs::read_to_string(here.join("best.html")).expect("the page"));
-    assert_eq!((&best["lives"][0], best["lives"].as_array().map(Vec::len)), (&page["lives"][0], Some(1)));
+    assert_eq!((&best["episodes"][0], best["episodes"].as_array().map(Vec::len)), (&page["episodes"][0], Some(1)));
     assert_eq!(best["beside"], serde_json::Value::Null);
-    let episode = &page["lives"][0];
+    let episode = &page["episodes"][0];
     assert_eq!((&episode["ticks"], &episode["bodies"]), (&500.into(), &serde_json::json!([])));
     assert_eq!(episode["channels"][2]["unit"], "N");
 
     ok(own(), &here, "replay r1 --generation 0 --individual 3 --trial 1 --html one.html");
     let page = data(&fs::read_to_string(here.join("one.html")).expect("the page"));
-    assert_eq!(page["lives"].as_array().map(Vec::len), Some(1));
+    assert_eq!(page["episodes"].as_array().map(Vec::len), Some(1));
 
     // A page takes the place of a page, and of nothing else.
     ok(own(), &here, "replay r1 --trial best --html one.html");
@@ -80,7 +81,8 @@ fn changes_are_shown_beside_the_whole_controller() {
     let told = ok(farsa(), &here, &format!("{line} --html both.html --json"));
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
     let page = data(&fs::read_to_string(here.join("both.html")).expect("the page"));
-    let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
+    let names: Vec<&str> =
+        page["episodes"].as_array().expect("episodes").iter().filter_map(|l| l["name"].as_str()).collect();
     let [intact, changed] = names[..] else { panic!("{names:?}") };
     assert!(!intact.contains("with sensor:rays") && changed.contains("; with sensor:rays; "), "{names:?}");
     assert_eq!((&page["beside"], &told["lesion"]["list"]), (&1.into(), &"sensor:rays".into()));

@@ -89,7 +89,7 @@ fn a_page_is_served_while_its_run_goes_on() {
         "connect-src 'self'",
         "X-Frame-Options: DENY",
         "Cache-Control: no-store",
-        "the run goes on where it was started",
+        "the run continues in its own process",
     ] {
         assert!(page.contains(part), "{part}");
     }

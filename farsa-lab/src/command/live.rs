@@ -16,28 +16,28 @@ use crate::run::ENGINE;
 use crate::run::plan::Plan;
 use crate::store::bounded;
 
-/// The most bytes of a module.
-const MOST_MODULE: u64 = 100_000_000;
-/// What begins a file that is compressed by gzip, and one by xz.
-const COMPRESSED: [&[u8]; 2] = [&[0x1f, 0x8b], b"\xfd7zXZ\0"];
+/// The most bytes of a module file.
+const MAX_MODULE_BYTES: u64 = 100_000_000;
+/// The first bytes of a gzip file.
+const GZIP: &[u8] = &[0x1f, 0x8b];
 
-/// Where a page is served.
+/// The address of a served page.
 #[derive(Serialize)]
 struct Address<'a> {
     address: &'a str,
 }
 
 impl Invocation<'_, '_> {
-    /// Writes a page that runs an agent by itself.
+    /// Writes an interactive page that runs an agent.
     pub(super) fn live(&self, args: &LiveArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
         let module = self.live_module(args.module.as_deref(), &plan)?;
         let generations = &args.generations;
-        let found = page::page(self.laboratory, (&plan, &directory), generations, &module, &args.html)?;
-        self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
+        let page = page::page(self.laboratory, (&plan, &directory), generations, &module, &args.html)?;
+        self.summary(args.json, &format!("{}\n", page.summary), &|| pretty(&page))
     }
 
-    /// Serves this page while the run goes on.
+    /// Serves this page while the run continues.
     pub(super) fn serve(&self, args: &ServeArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
         let module = self.live_module(args.module.as_deref(), &plan)?;
@@ -47,11 +47,11 @@ impl Invocation<'_, '_> {
         })
     }
 
-    /// The module of a file, or that of this program, which may lack the plan's world.
-    fn live_module(&self, given: Option<&Path>, plan: &Plan<'_>) -> Result<Cow<'_, [u8]>, Error> {
-        let Some(path) = given else {
-            let none = || Error::Usage("this program has no module for pages: give one with --module".into());
-            let (module, lacking) = self.laboratory.live_module().ok_or_else(none)?;
+    /// Returns the module of a file or of this program, which may lack the plan's world.
+    fn live_module(&self, file: Option<&Path>, plan: &Plan<'_>) -> Result<Cow<'_, [u8]>, Error> {
+        let Some(path) = file else {
+            let absent = || Error::Usage("this program has no module for pages: give one with --module".into());
+            let (module, lacking) = self.laboratory.live_module().ok_or_else(absent)?;
             let world = plan.settings.word(ENGINE).ok();
             return match lacking.iter().find(|lacks| world == Some(**lacks)) {
                 Some(world) => Err(Error::Usage(format!(
@@ -60,9 +60,9 @@ impl Invocation<'_, '_> {
                 None => Ok(Cow::Borrowed(module)),
             };
         };
-        let module = bounded::read_stream(path, MOST_MODULE)?;
-        if !COMPRESSED.iter().any(|begin| module.starts_with(begin)) {
-            return Err(Error::Usage("the module is not compressed by gzip or xz".into()));
+        let module = bounded::read_stream(path, MAX_MODULE_BYTES)?;
+        if !module.starts_with(GZIP) {
+            return Err(Error::Usage("the module is not compressed by gzip".into()));
         }
         Ok(Cow::Owned(module))
     }

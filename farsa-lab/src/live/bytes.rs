@@ -5,22 +5,22 @@ use std::fmt::Write as _;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Bytes that are written as text of two digits each: what repeats in them repeats in the text, which a page compresses.
+/// Bytes written as two hexadecimal digits each. Repetitions remain visible to the compression of a page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 
 impl Bytes {
-    /// Numbers one after the other.
+    /// Concatenates numbers, little-endian.
     pub(crate) fn from_floats<'f>(floats: impl IntoIterator<Item = &'f f32>) -> Self {
         Self(floats.into_iter().flat_map(|x| x.to_le_bytes()).collect())
     }
 
-    /// As numbers; what is left over of four bytes is none.
+    /// Returns the bytes as numbers. Trailing bytes are ignored.
     pub(crate) fn floats(&self) -> Vec<f32> {
         self.0.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
     }
 
-    /// Bytes of a text; none of any other text.
+    /// Parses hexadecimal digits.
     fn from_digits(text: &str) -> Option<Self> {
         let (pairs, rest) = text.as_bytes().as_chunks::<2>();
         let digit = |letter: u8| char::from(letter).to_digit(16);
@@ -51,11 +51,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_back_and_other_text_is_refused() {
-        let all = Bytes((0..=255).collect());
-        let text = serde_json::to_string(&all).unwrap();
+    fn bytes_round_trip_and_other_text_is_refused() {
+        let bytes = Bytes((0..=255).collect());
+        let text = serde_json::to_string(&bytes).unwrap();
         assert!(text.starts_with("\"000102") && text.ends_with("fdfeff\""));
-        assert_eq!(serde_json::from_str::<Bytes>(&text).unwrap(), all);
+        assert_eq!(serde_json::from_str::<Bytes>(&text).unwrap(), bytes);
         for wrong in ["\"0\"", "\"0g\"", "\"+1\"", "\"\u{e9}\"", "1"] {
             assert!(serde_json::from_str::<Bytes>(wrong).is_err(), "{wrong}");
         }

@@ -1,17 +1,17 @@
-//! A number for what a trial was like up to each step, which is another where a bit is.
+//! A hash of an episode after each step, which differs from the first different bit on.
 
 use farsa_body::ports::{BodyId, PairContact, PairId};
 use farsa_body::{Pose, Recorder};
 
-/// Folds all that is recorded into one number, and keeps what that is after each tick.
+/// Hashes everything that is recorded, and stores the hash after each tick.
 ///
-/// FNV-1a of 64 bits over the bytes of every number, in the order in which they are recorded; of that the upper half is kept.
+/// The hash is the upper half of the 64-bit FNV-1a of all numbers in the order of recording.
 #[derive(Debug, Clone)]
 pub(crate) struct Digest<R> {
-    /// Who is told the same.
+    /// Receives the same calls.
     inner: R,
     state: u64,
-    /// After each tick.
+    /// The hash after each tick.
     ticks: Vec<u32>,
 }
 
@@ -20,7 +20,7 @@ impl<R> Digest<R> {
         Self { inner, state: 0xcbf2_9ce4_8422_2325, ticks: Vec::new() }
     }
 
-    /// Who was told, and the numbers.
+    /// Returns the inner recorder and the hashes.
     pub(crate) fn into_parts(self) -> (R, Vec<u32>) {
         (self.inner, self.ticks)
     }
@@ -94,8 +94,8 @@ mod tests {
     use farsa_view::{Recording, Schema};
 
     #[test]
-    fn a_bit_changes_all_ticks_from_its_own_on() {
-        let told = |changed: Option<u32>| {
+    fn a_bit_changes_the_hash_of_its_tick_and_all_later_ones() {
+        let recorded = |changed: Option<u32>| {
             let mut digest = Digest::new(Recording::new(Schema::from_scalars(["x"])));
             for tick in 0..5 {
                 let flipped = u32::from(changed == Some(tick));
@@ -105,11 +105,11 @@ mod tests {
             }
             digest.into_parts()
         };
-        let (recording, intact) = told(None);
+        let (recording, intact) = recorded(None);
         assert_eq!((recording.times(), intact.len()), (&[0.0, 1.0, 2.0, 3.0, 4.0][..], 5));
         for tick in 0..5 {
-            let (_, other) = told(Some(tick));
-            let same: Vec<bool> = intact.iter().zip(&other).map(|(one, other)| one == other).collect();
+            let (_, other) = recorded(Some(tick));
+            let same: Vec<bool> = intact.iter().zip(&other).map(|(a, b)| a == b).collect();
             assert_eq!(same, (0..5).map(|at| at < tick).collect::<Vec<_>>());
         }
         // The empty hash of the source's table, folded with one byte `a`.

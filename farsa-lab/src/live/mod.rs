@@ -1,36 +1,32 @@
-//! An agent in memory, without files and threads: what a page in a browser runs by itself.
-//!
-//! - `page`: `farsa live`: a page that runs an agent by itself
-//! - `serve`: `farsa serve`: the page of a run that goes on
-//! - `news`: what a run that goes on has come to
-//! - `row`: the fitness of a generation for the viewer
-//! - `champion`: the best individual of a run
-//! - `script`: what a page carries of a run
-//! - `session`: the agent that a script describes, and its trials
-//! - `request`: what is asked of a session and what it answers, as JSON
-//! - `evolution`: a search that goes on, shared by sessions
-//! - `hands`: what is done to the bodies of a trial
-//! - `standing`: where a run stands
-//! - `bytes`: bytes in JSON
-//! - `digest`: a number for what a trial was like up to each step
+//! An agent in memory, without files and threads, for pages that run it in a browser.
 
+/// Bytes as text in JSON.
 mod bytes;
+/// The best individual of a run.
 #[cfg(feature = "command")]
 mod champion;
+/// A hash of an episode after each step.
 mod digest;
+/// Moves and pushes of the bodies in an episode.
+mod disturbances;
+/// A search continued in memory, shared by sessions.
 mod evolution;
-mod hands;
-#[cfg(feature = "command")]
-mod news;
+/// `farsa live`: an interactive page that runs an agent.
 #[cfg(feature = "command")]
 pub(crate) mod page;
+/// The part of a run that a page carries.
+pub(crate) mod page_run;
+/// Requests to a session and their answers, as JSON.
 mod request;
-#[cfg(feature = "command")]
-mod row;
-pub(crate) mod script;
+/// The state of a search, from which it continues.
+mod run_state;
+/// `farsa serve`: the page of a running run.
 #[cfg(feature = "command")]
 pub(crate) mod serve;
+/// The agent of a page and its episodes.
 mod session;
-mod standing;
+/// New generations and champions of a running run.
+#[cfg(feature = "command")]
+mod updates;
 
 pub use session::LiveSession;

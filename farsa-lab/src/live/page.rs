@@ -1,4 +1,4 @@
-//! `farsa live`: a page that runs an agent by itself.
+//! `farsa live`: an interactive page that runs an agent.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -8,11 +8,11 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::live::champion::champion;
-use crate::live::request::Film;
-use crate::live::row::Row;
-use crate::live::script::{Evolved, Script};
+use crate::live::page_run::{PageIndividual, PageRun};
+use crate::live::request::EpisodeRequest;
+use crate::live::run_state::RunState;
 use crate::live::session::{LiveSession, json};
-use crate::live::standing::Standing;
+use crate::live::updates::Row;
 use crate::run::begin;
 use crate::run::config_file::MAX_BYTES;
 use crate::run::laboratory::Laboratory;
@@ -23,32 +23,30 @@ use crate::store::bounded;
 use crate::store::directory::Directory;
 use crate::store::replace::write_page;
 
-/// Most generations of a page.
-const MOST_GENERATIONS: usize = 100;
-/// Most steps of a trial that a page can compare with the run's.
-const MOST_DIGESTS: usize = 100;
+/// Steps of a trial at which a page compares its episode with the run's.
+const DIGESTS_PER_TRIAL: usize = 100;
+/// Points of the fitness curve of a page.
+const CURVE_POINTS: usize = 400;
+/// The most bytes of a run's state in a page.
+const MAX_STATE_BYTES: usize = 400_000;
 
-/// Most generations of the run whose fitness a page shows.
-const MOST_HISTORY: usize = 400;
-/// Most bytes of where a run stands in a page that can go on with it.
-const MOST_STANDING: usize = 400_000;
-
-/// What the viewer is told of an agent before it runs.
+/// The description of an agent for the viewer.
 #[derive(Debug, Serialize)]
 struct About {
-    /// Kinds of trials.
+    /// The number of kinds of trials.
     trials: usize,
-    /// Whether bodies can be put elsewhere.
+    /// True if bodies can be moved.
     displaces: bool,
+    /// True if bodies can be pushed.
     pushes: bool,
-    /// The robots of which any can be recorded.
+    /// The names of the robots that can be recorded.
     robots: Vec<String>,
-    /// Of several populations, their names.
+    /// The names of the populations, none of a single one.
     populations: Vec<String>,
     individuals: Vec<AboutIndividual>,
-    /// Generations of the run with the fitness of their best and their mean.
+    /// The best and mean fitness of generations of the run.
     history: Vec<Row>,
-    /// Why evolution cannot go on in the page, if it cannot.
+    /// The reason why evolution cannot continue in the page, if it cannot.
     standstill: Option<String>,
 }
 
@@ -59,44 +57,44 @@ struct AboutIndividual {
     trials: Vec<AboutTrial>,
 }
 
-/// What a trial of the run came to.
+/// The result of a trial of the run.
 #[derive(Debug, Serialize)]
 struct AboutTrial {
     steps: u32,
     fitness: f64,
     success: bool,
-    /// Every how many steps there is a digest, and the digests up to the end.
+    /// The number of steps from one digest to the next.
     stride: usize,
     digests: Vec<u32>,
 }
 
-/// What a page was made of.
+/// The content of a written page.
 #[derive(Debug, Serialize)]
 pub(crate) struct LiveSummary {
     directory: String,
     file: String,
     generations: Vec<u32>,
     bytes: usize,
-    /// The same in a line of words.
+    /// The summary as one line of text.
     pub(crate) summary: String,
 }
 
-/// What a page is for.
+/// The purpose of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Use {
-    /// A file, in which evolution goes on.
+    /// A file in which evolution can continue.
     File,
-    /// A server that tells what the run comes to.
+    /// The page of `farsa serve`, which follows a run.
     Served,
 }
 
-/// A page and what is in it.
-pub(crate) struct Found {
+/// The text of a page and the generations in it.
+pub(crate) struct PageText {
     pub(crate) html: String,
     generations: Vec<u32>,
 }
 
-/// Writes a page in which the best individual of each of some generations, by default the champion, runs by `module`.
+/// Writes an interactive page of the best individual of each generation given, by default of the champion.
 ///
 /// # Errors
 /// Those of [`html`], and [`Error::Io`].
@@ -107,92 +105,89 @@ pub(crate) fn page(
     module: &[u8],
     path: &Path,
 ) -> Result<LiveSummary, Error> {
-    let Found { html, generations } = html(laboratory, (plan, directory), generations, module, Use::File)?;
+    let PageText { html, generations } = html(laboratory, (plan, directory), generations, module, Use::File)?;
     write_page(path, &html)?;
     let (directory, file) = (directory.path().display().to_string(), path.display().to_string());
     let summary = format!("{file}: {} bytes, {} individuals of {directory}", html.len(), generations.len());
     Ok(LiveSummary { directory, file, generations, bytes: html.len(), summary })
 }
 
-/// The page in which the best individual of each of some generations, by default the champion, runs by `module`.
+/// Returns the interactive page of the best individual of each generation given, by default of the champion.
 ///
 /// # Errors
-/// Those of [`champion`], [`Error::Usage`] for an experiment that needs files and for too many generations.
+/// Those of [`champion`], and [`Error::Usage`] for an experiment that needs files.
 pub(crate) fn html(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),
     generations: &[u32],
     module: &[u8],
     used: Use,
-) -> Result<Found, Error> {
+) -> Result<PageText, Error> {
     if let Some(file) = plan.experiment.files(&plan.condition, &plan.settings)?.first() {
-        return Err(Error::Usage(format!("a page has no files, and the run needs {}", file.display())));
+        return Err(Error::Usage(format!("a page cannot read files, and the run needs {}", file.display())));
     }
-    let wanted: BTreeSet<Option<u32>> = generations.iter().copied().map(Some).collect();
-    if wanted.len() > MOST_GENERATIONS {
-        return Err(Error::Usage(format!("{} generations; a page holds {MOST_GENERATIONS} at most", wanted.len())));
-    }
-    let wanted = if wanted.is_empty() { BTreeSet::from([None]) } else { wanted };
+    let chosen: BTreeSet<Option<u32>> = generations.iter().copied().map(Some).collect();
+    let chosen = if chosen.is_empty() { BTreeSet::from([None]) } else { chosen };
     let (mut individuals, mut from_above) = (Vec::new(), false);
-    for generation in wanted {
+    for generation in chosen {
         let (individual, view) = champion(plan, directory, generation)?;
         from_above = view == View::Top;
         individuals.push(individual);
     }
     let config = bounded::read_regular_text(&directory.config(), MAX_BYTES)?;
     let generations = individuals.iter().map(|individual| individual.generation).collect();
-    let (history, standing) = run_so_far(plan, directory)?;
-    let standing = match used {
-        Use::File => standing,
-        Use::Served => Err("the run goes on where it was started".into()),
+    let (history, state) = run_so_far(plan, directory)?;
+    let state = match used {
+        Use::File => state,
+        Use::Served => Err("the run continues in its own process".into()),
     };
-    let (standing, standstill) = standing.map_or_else(|why| (None, Some(why)), |standing| (Some(standing), None));
-    let script = Script { config, individuals, standing: None };
-    let text = json(&script)?;
-    let about = json(&About { history, standstill, ..about(laboratory, &script, &text)? })?;
-    let standing = standing.map(|standing| json(&standing)).transpose()?;
+    let (state, standstill) = state.map_or_else(|why| (None, Some(why)), |state| (Some(state), None));
+    let run = PageRun { config, individuals, state: None };
+    let script = json(&run)?;
+    let about = json(&About { history, standstill, ..about(laboratory, &run, &script)? })?;
+    let state = state.map(|state| json(&state)).transpose()?;
     let page = LivePage {
         title: plan.name(),
         from_above,
         module: module.into(),
         served: used == Use::Served,
-        standing,
+        state,
         about,
-        script: text,
+        script,
     };
     let html = page.html().map_err(|error| Error::Other(error.to_string()))?;
-    Ok(Found { html, generations })
+    Ok(PageText { html, generations })
 }
 
-/// What a run has come to, and where it stands, or why evolution cannot go on from there in a page.
-fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Result<Standing, String>), Error> {
+/// Returns the fitness curve of a run, and its state or the reason why evolution cannot continue from it.
+fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Result<RunState, String>), Error> {
     if !directory.checkpoint().is_file() {
-        return Ok((Vec::new(), Err("no evolution has made these genotypes".into())));
+        return Ok((Vec::new(), Err("these genotypes were not made by evolution".into())));
     }
     let checkpoint = Checkpoint::read(plan, directory)?;
-    let told = RunRecord::read(plan, directory, &checkpoint)?;
-    let stride = told.lines.len().div_ceil(MOST_HISTORY).max(1);
-    let last = told.lines.len().saturating_sub(1);
-    let lines = told.lines.iter().enumerate().filter(|(at, _)| at % stride == 0 || *at == last);
+    let record = RunRecord::read(plan, directory, &checkpoint)?;
+    let stride = record.lines.len().div_ceil(CURVE_POINTS).max(1);
+    let last = record.lines.len().saturating_sub(1);
+    let lines = record.lines.iter().enumerate().filter(|(at, _)| at % stride == 0 || *at == last);
     let lines = lines.map(|(at, line)| Row::new(at, line.row)).collect();
     let evaluator = plan.evaluator()?;
     let genotype = plan.genotype(evaluator.as_ref());
-    let mut progression = begin::search_state(plan, directory, &checkpoint, &told, &genotype)?;
-    let standing = Standing::of(&mut progression).ok_or("the strategy cannot save its state".to_owned());
-    let bounded = |standing: Standing| match standing.size() {
-        bytes if bytes > MOST_STANDING => {
-            Err(format!("where the run stands takes {bytes} bytes, and a page has room for {MOST_STANDING}"))
+    let mut search = begin::search_state(plan, directory, &checkpoint, &record, &genotype)?;
+    let state = RunState::of(&mut search).ok_or("the strategy cannot save its state".to_owned());
+    let bounded = |state: RunState| match state.size() {
+        bytes if bytes > MAX_STATE_BYTES => {
+            Err(format!("the state of the run takes {bytes} bytes, and a page holds at most {MAX_STATE_BYTES}"))
         }
-        _ => Ok(standing),
+        _ => Ok(state),
     };
-    Ok((lines, standing.and_then(bounded)))
+    Ok((lines, state.and_then(bounded)))
 }
 
-/// Runs every trial here, so that the page can compare its own.
-fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<About, Error> {
-    let mut session = LiveSession::open(laboratory, text)?;
+/// Runs every trial, so that the page can compare its own episodes.
+fn about(laboratory: &Laboratory<'_>, run: &PageRun, script: &str) -> Result<About, Error> {
+    let mut session = LiveSession::open(laboratory, script)?;
     let kinds = session.trials();
-    let mut told = About {
+    let mut about = About {
         trials: kinds,
         displaces: session.displaces(),
         pushes: session.pushes(),
@@ -202,18 +197,19 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
         history: Vec::new(),
         standstill: None,
     };
-    for (place, Evolved { generation, individual, .. }) in script.individuals.iter().enumerate() {
+    for (index, PageIndividual { generation, individual, .. }) in run.individuals.iter().enumerate() {
         let mut trials = Vec::new();
         for trial in 0..kinds as u32 {
-            let found = session.film(&Film::of_run(place, trial))?;
-            let stride = found.digests.len().div_ceil(MOST_DIGESTS).max(1);
-            let last = found.digests.len().saturating_sub(1);
-            let kept = found.digests.iter().enumerate().filter(|(tick, _)| (tick + 1) % stride == 0 || *tick == last);
-            let digests = kept.map(|(_, digest)| *digest).collect();
-            let (steps, fitness, success) = (found.steps, found.fitness, found.success);
+            let episode = session.episode(&EpisodeRequest::of_run(index, trial))?;
+            let stride = episode.digests.len().div_ceil(DIGESTS_PER_TRIAL).max(1);
+            let last = episode.digests.len().saturating_sub(1);
+            let compared =
+                episode.digests.iter().enumerate().filter(|(tick, _)| (tick + 1) % stride == 0 || *tick == last);
+            let digests = compared.map(|(_, digest)| *digest).collect();
+            let (steps, fitness, success) = (episode.steps, episode.fitness, episode.success);
             trials.push(AboutTrial { steps, fitness, success, stride, digests });
         }
-        told.individuals.push(AboutIndividual { generation: *generation, individual: *individual, trials });
+        about.individuals.push(AboutIndividual { generation: *generation, individual: *individual, trials });
     }
-    Ok(told)
+    Ok(about)
 }

@@ -1,19 +1,20 @@
-//! What is asked of a session and what it answers, as JSON.
+//! Requests to a session and their answers, as JSON.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
 use crate::experiment::{Displacement, Push};
 use crate::live::bytes::Bytes;
-use crate::live::script::Evolved;
+use crate::live::page_run::PageIndividual;
 
-/// What is asked.
+/// A request to a session.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// A trial, step by step.
-    Film(Film),
-    /// What comes of so many fresh trials, from one of a number on, with changes.
+    /// Run and record an episode.
+    #[serde(rename = "film")]
+    Episode(EpisodeRequest),
+    /// Evaluate `count` fresh trials from number `first`, with changes of the controller.
     Fresh {
         individual: usize,
         #[serde(default)]
@@ -22,81 +23,82 @@ pub(crate) enum Request {
         first: usize,
         count: usize,
     },
-    /// The names of what can be changed.
+    /// List the parts of the controller that can be changed.
     Names,
-    /// Another individual, to be asked for by the number that is the answer.
-    Add { individual: Evolved },
-    /// What a part of the generation that evolution has come to earns.
+    /// Add an individual.
+    Add { individual: PageIndividual },
+    /// Evaluate a part of the current generation.
     Share { part: usize, parts: usize },
-    /// What all parts have come to: the next generation is made.
+    /// Report the outcomes of all parts, from which the next generation is made.
     Tell { outcomes: Vec<Bytes> },
 }
 
-/// A trial of an individual, with changes of its controller, a list or none, and with bodies that are put elsewhere or pushed.
+/// An episode of an individual, with changes of its controller and with moves and pushes of bodies.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Film {
+pub(crate) struct EpisodeRequest {
     pub(crate) individual: usize,
-    pub(crate) trial: Trial,
+    pub(crate) trial: TrialRequest,
     #[serde(default)]
     pub(crate) lesion: String,
     #[serde(default)]
     pub(crate) moves: Vec<Displacement>,
     #[serde(default)]
     pub(crate) pushes: Vec<Push>,
-    /// Of several robots the one that is recorded.
+    /// The recorded robot, where there are several.
     #[serde(default)]
     pub(crate) watched: Option<u32>,
 }
 
-impl Film {
-    /// The trial as it was in the run.
+impl EpisodeRequest {
+    /// Requests a trial of the run.
     pub(crate) fn of_run(individual: usize, trial: u32) -> Self {
-        let (trial, lesion) = (Trial::Number(trial), String::new());
+        let (trial, lesion) = (TrialRequest::Number(trial), String::new());
         Self { individual, trial, lesion, moves: Vec::new(), pushes: Vec::new(), watched: None }
     }
 }
 
-/// Which trial.
+/// A trial of the run or a fresh one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Trial {
-    /// One of the run, by its number.
+pub(crate) enum TrialRequest {
+    /// A trial of the run, by its number.
     Number(u32),
-    /// One of `farsa test`, by its number there.
+    /// A trial of `farsa test`, by its number there.
     Fresh { number: usize, seed: u64 },
 }
 
-/// A trial that was run.
+/// A recorded episode.
 #[derive(Debug, Serialize)]
-pub(crate) struct Filmed {
-    /// As a page has it in `lives`.
-    pub(crate) film: Box<RawValue>,
-    /// What the trial was like up to each step.
+pub(crate) struct EpisodeAnswer {
+    /// An entry of `episodes` of a page.
+    #[serde(rename = "film")]
+    pub(crate) episode: Box<RawValue>,
+    /// The hash of the episode after each step.
     pub(crate) digests: Vec<u32>,
     pub(crate) steps: u32,
-    /// No number if it failed.
+    /// NaN if the episode failed.
     pub(crate) fitness: f64,
     pub(crate) success: bool,
 }
 
-/// The number by which an individual is asked for.
+/// The number of an added individual.
 #[derive(Debug, Serialize)]
-pub(crate) struct Added {
+pub(crate) struct AddedIndividual {
     pub(crate) individual: usize,
 }
 
-/// What a part of a generation came to.
+/// The outcomes of a part of a generation.
 #[derive(Debug, Serialize)]
-pub(crate) struct Shared {
+pub(crate) struct SharedOutcomes {
     pub(crate) outcomes: Bytes,
 }
 
-/// What came of fresh trials.
+/// The results of fresh trials.
 #[derive(Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Earned {
+pub(crate) struct FreshResults {
     pub(crate) trials: usize,
     pub(crate) successes: usize,
-    /// Of each trial; no number of one that failed.
+    /// The fitness of each trial, NaN for a failed one.
     pub(crate) fitness: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! `farsa serve`: the page of a run that goes on, for a browser on this machine.
+//! `farsa serve`: the page of a running run, for a browser on this machine.
 
 use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr};
@@ -10,21 +10,21 @@ use serde::Serialize;
 use tiny_http::{Header, Method, Request, Response, Server, StatusCode};
 
 use crate::error::Error;
-use crate::live::news::Known;
 use crate::live::page::{self, Use};
 use crate::live::session::json;
+use crate::live::updates::SeenState;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// How often a run is looked at.
-const LOOK: Duration = Duration::from_millis(500);
-/// After so many looks without news a word is said, so that a browser that has gone is noticed.
-const SILENT: u32 = 20;
-/// Most requests that are answered at once: a page that is open is one.
-const MOST_AT_ONCE: usize = 64;
+/// The interval at which the files of a run are checked.
+const INTERVAL: Duration = Duration::from_millis(500);
+/// Intervals without an event after which a comment is sent, which detects closed connections.
+const KEEP_ALIVE: u32 = 20;
+/// The most concurrent requests. Each open page is one.
+const MAX_CONCURRENT: usize = 64;
 
-/// What is served.
+/// A run and the module for its page.
 #[derive(Clone, Copy)]
 pub(crate) struct Served<'s> {
     pub(crate) laboratory: &'s Laboratory<'s>,
@@ -33,13 +33,12 @@ pub(crate) struct Served<'s> {
     pub(crate) module: &'s [u8],
 }
 
-/// Answers browsers of this machine until the process ends; `begun` hears the address.
+/// Answers browsers of this machine until the process ends. The address is passed to `begun`.
 ///
-/// Only what is asked of this address by its own page is answered: a page from elsewhere can name this machine, and a name from
-/// elsewhere can stand for it.
+/// Requests of other sites are refused: an external page can link to this machine, and an external name can resolve to it.
 ///
 /// # Errors
-/// [`Error::Usage`] for a port that cannot be had, those of `begun`, and [`Error::Other`] when nobody can be heard any more.
+/// [`Error::Usage`] for an unavailable port, those of `begun`, and [`Error::Io`] when the connection is lost.
 pub(crate) fn serve(served: Served<'_>, port: u16, begun: impl FnOnce(&str) -> Result<(), Error>) -> Result<(), Error> {
     let taken = |error| Error::Usage(format!("--port {port}: {error}"));
     let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;
@@ -48,98 +47,98 @@ pub(crate) fn serve(served: Served<'_>, port: u16, begun: impl FnOnce(&str) -> R
     let running = &AtomicUsize::new(0);
     thread::scope(|scope| {
         loop {
-            let request = server.recv().map_err(Error::io("hear", address.to_string().as_ref()))?;
-            if running.fetch_add(1, Ordering::Relaxed) >= MOST_AT_ONCE {
+            let request = server.recv().map_err(Error::io("listen to", address.to_string().as_ref()))?;
+            if running.fetch_add(1, Ordering::Relaxed) >= MAX_CONCURRENT {
                 running.fetch_sub(1, Ordering::Relaxed);
-                // Whether the answer arrives is the browser's business.
+                // The browser may already have closed the connection.
                 let _ = respond(request, 503, "text/plain", "too many pages are open");
                 continue;
             }
-            // Who does not read its answer keeps nobody else waiting.
-            let begun = Begun(running);
-            // A thread that cannot be started is one that ends.
+            // A slow reader does not delay others.
+            let active = Active(running);
+            // If the thread cannot be started, the closure and its count are dropped.
             let _ = thread::Builder::new().spawn_scoped(scope, move || {
-                let _begun = begun;
+                let _active = active;
                 served.answer(request, address);
             });
         }
     })
 }
 
-/// A request that is being answered, counted until its thread ends, however it does.
-struct Begun<'c>(&'c AtomicUsize);
+/// A request that is counted until its thread ends, even by a panic.
+struct Active<'c>(&'c AtomicUsize);
 
-impl Drop for Begun<'_> {
+impl Drop for Active<'_> {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
 impl Served<'_> {
-    /// Answers a request. Whether the answer arrives is the browser's business.
+    /// Answers a request. Errors of the connection are ignored.
     fn answer(self, request: Request, address: SocketAddr) {
         let url = request.url().to_owned();
         let path = url.split('?').next().unwrap_or_default();
         let refused = |request: Request, code: u16, why: &str| respond(request, code, "text/plain", why);
         let _ = match (request.method(), path) {
-            _ if !is_own(&request, path, address) => refused(request, 403, "only for pages of this address"),
+            _ if !is_same_origin(&request, path, address) => refused(request, 403, "only for pages of this address"),
             (Method::Get, "/") => match self.page() {
                 Ok(html) => respond(request, 200, "text/html", &html),
                 Err((code, why)) => respond(request, code, "text/html", &waiting(&why)),
             },
             (Method::Get, "/events") => match after(&request, &url) {
-                Some(generations) => self.tell(request, generations),
+                Some(generations) => self.stream(request, generations),
                 None => refused(request, 400, "from is a number of generations"),
             },
-            (Method::Get, _) => refused(request, 404, "there is no such page"),
+            (Method::Get, _) => refused(request, 404, "no such page"),
             _ => refused(request, 405, "only GET"),
         };
     }
 
-    /// The page of the run as it is now, or why there is none and with which code that is said.
+    /// Returns the current page of the run, or the HTTP status and the reason why there is none.
     fn page(&self) -> Result<String, (u16, String)> {
         if !self.directory.champion().is_file() {
             return Err((503, "No generation is finished yet.".into()));
         }
-        let found = page::html(self.laboratory, (self.plan, self.directory), &[], self.module, Use::Served);
-        found.map(|found| found.html).map_err(|error| (500, error.to_string()))
+        let page = page::html(self.laboratory, (self.plan, self.directory), &[], self.module, Use::Served);
+        page.map(|page| page.html).map_err(|error| (500, error.to_string()))
     }
 
-    /// Tells a browser what the run comes to, as long as it listens.
-    fn tell(&self, request: Request, generations: usize) -> io::Result<()> {
+    /// Sends new generations and champions as server-sent events, as long as the connection is open.
+    fn stream(&self, request: Request, generations: usize) -> io::Result<()> {
         let mut to = request.into_writer();
         let head = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n\
                     X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n";
         to.write_all(head.as_bytes())?;
         to.flush()?;
-        let (mut known, mut silent) = (Known::first(generations), 0);
+        let (mut seen, mut silent) = (SeenState::first(generations), 0);
         loop {
-            // What is being written at this moment is there at the next look.
-            let mut news = false;
-            if let Ok(Some(best)) = known.champions(self.plan, self.directory) {
+            // A file that is being written is read in the next interval.
+            let mut sent = false;
+            if let Ok(Some(best)) = seen.champions(self.plan, self.directory) {
                 event(&mut to, "champions", None, &best)?;
-                news = true;
+                sent = true;
             }
-            match known.rows(self.directory) {
+            match seen.rows(self.directory) {
                 Ok(rows) if !rows.is_empty() => {
                     let next = rows.last().map(|row| row.0 + 1);
                     event(&mut to, "fitness", next, &rows)?;
-                    news = true;
+                    sent = true;
                 }
                 _ => {}
             }
-            silent = if news { 0 } else { silent + 1 };
-            if silent == SILENT {
+            silent = if sent { 0 } else { silent + 1 };
+            if silent == KEEP_ALIVE {
                 silent = 0;
                 to.write_all(b":\n\n")?;
                 to.flush()?;
             }
-            thread::sleep(LOOK);
+            thread::sleep(INTERVAL);
         }
     }
 }
 
-/// Writes an event of a stream; with its number a browser asks for what comes after it when the connection was lost.
+/// Writes an event of a stream. After a lost connection a browser sends the number of the last event.
 fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Serialize) -> io::Result<()> {
     let number = number.map_or_else(String::new, |number| format!("id: {number}\n"));
     let data = json(data).map_err(io::Error::other)?;
@@ -147,26 +146,28 @@ fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Ser
     to.flush()
 }
 
-/// Whether a request is for this address by its own name, and from its own page or from none. A page from elsewhere that asks for a
-/// picture has no origin; browsers tell its site. It may link to the page, and not to the events, which last as long as its window.
-fn is_own(request: &Request, path: &str, address: SocketAddr) -> bool {
+/// Returns true if a request names this address and comes from its own page or from no page.
+///
+/// Images of external pages are requested without an origin, but with `Sec-Fetch-Site`. External pages may link to the page,
+/// but not to the events, which would stay open as long as the window.
+fn is_same_origin(request: &Request, path: &str, address: SocketAddr) -> bool {
     let port = address.port();
-    // A browser leaves out the port that is usual.
-    let usual = |name: &str| (port == 80).then(|| name.to_owned());
+    // Browsers omit the default port.
+    let default = |name: &str| (port == 80).then(|| name.to_owned());
     let names = ["127.0.0.1", "localhost"];
-    let mut own = names.iter().flat_map(|name| [Some(format!("{name}:{port}")), usual(name)]).flatten();
+    let mut hosts = names.iter().flat_map(|name| [Some(format!("{name}:{port}")), default(name)]).flatten();
     let header = |name: &'static str| {
         request.headers().iter().find(|header| header.field.equiv(name)).map(|header| header.value.as_str())
     };
     let host = header("Host").unwrap_or_default();
     let from_here = |origin: &str| origin.strip_prefix("http://") == Some(host);
-    let is_ours = |site| site == "same-origin" || site == "none";
+    let is_same_site = |site| site == "same-origin" || site == "none";
     let is_linked = path == "/" && header("Sec-Fetch-Dest") == Some("document");
-    let is_asked = is_linked || header("Sec-Fetch-Site").is_none_or(is_ours);
-    own.any(|name| name == host) && header("Origin").is_none_or(from_here) && is_asked
+    let is_allowed = is_linked || header("Sec-Fetch-Site").is_none_or(is_same_site);
+    hosts.any(|name| name == host) && header("Origin").is_none_or(from_here) && is_allowed
 }
 
-/// How many generations a listener knows: since it lost the connection, or as its page says.
+/// Returns the number of generations that a listener has received, from its last event or from the address.
 fn after(request: &Request, url: &str) -> Option<usize> {
     let last = request.headers().iter().find(|header| header.field.equiv("Last-Event-ID"));
     match last {
@@ -193,7 +194,7 @@ fn respond(request: Request, code: u16, kind: &str, text: &str) -> io::Result<()
     request.respond(response)
 }
 
-/// A page that says why there is none yet, and asks again.
+/// Returns a page with the reason why there is none yet, which reloads itself.
 fn waiting(why: &str) -> String {
     let page = maud::html! {
         (maud::DOCTYPE)

@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-/// Counts of a 16-bit quantity; one more says NaN in channels.
+/// The largest count of a 16-bit quantity. In channels 65535 is NaN.
 pub(crate) const COUNTS: f64 = 65534.0;
 
-/// The bytes of an episode, block by block.
+/// The bytes of an episode in named blocks.
 #[derive(Default)]
 pub(crate) struct Blocks {
     pub(crate) bytes: Vec<u8>,
-    /// Where each begins.
+    /// The offset of each block.
     pub(crate) starts: serde_json::Map<String, Value>,
 }
 
@@ -29,7 +29,7 @@ impl Blocks {
     }
 }
 
-/// Positions in a box, as counts.
+/// The bounding box of all positions, and the unit of their counts.
 pub(crate) struct Space {
     pub(crate) origin: [f64; 3],
     pub(crate) unit: f64,
@@ -41,7 +41,7 @@ impl Space {
         for position in positions {
             for k in 0..3 {
                 let x = f64::from(position[k]);
-                // A body that flies off to infinity must not take the others' precision with it.
+                // A diverging body must not spoil the precision of the others.
                 if x.abs() < 1e6 {
                     (low[k], high[k]) = (low[k].min(x), high[k].max(x));
                 }
@@ -54,7 +54,7 @@ impl Space {
 
     pub(crate) fn write(&self, position: [f32; 3], blocks: &mut Blocks) {
         for k in 0..3 {
-            // NaN becomes 0, what is too far goes to the border.
+            // NaN becomes 0, and positions outside are clamped.
             blocks.word(((f64::from(position[k]) - self.origin[k]) / self.unit).round() as u16);
         }
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::page::film::Film;
+use crate::page::episode_data::EpisodeData;
 use crate::recording::memory::Recording;
 use crate::recording::view::View;
 
@@ -14,7 +14,6 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/data.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/scene.js"),
-    include_str!("viewer/flat.js"),
     include_str!("viewer/view.js"),
     include_str!("viewer/strips.js"),
     include_str!("viewer/images.js"),
@@ -24,34 +23,33 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/main.js"),
 ];
 
-/// What a live page may do beyond a film: compile its module, in a worker that it makes itself.
+/// Additional permissions of a live page: to compile its module in a worker of its own.
 const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
-/// What a page that is served may do besides: ask who serves it.
+/// Additional permissions of a served page: also to connect to its server.
 const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";
 const LIVE_SCRIPT: &str =
     concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"), include_str!("viewer/move.js"));
 
-/// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
-/// and the network, all on one clock.
+/// A page of recorded episodes for a browser: bodies in space, time series and the network on one clock.
 ///
-/// It needs nothing but itself. The format of its data is described in `docs/replay-format.md` of the project.
+/// A page is one file without external resources. `docs/replay-format.md` of the project describes the format of its data.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,
-    episodes: Vec<Film>,
-    beside: Option<usize>,
+    episodes: Vec<EpisodeData>,
+    second: Option<usize>,
 }
 
 impl Page {
-    /// What every page has among its first 2000 bytes, and no other file by chance.
+    /// A text among the first 2000 bytes of every page, by which files are recognized as pages.
     pub const MARK: &'static str = "Make it again with farsa replay --html.";
 
-    /// A page without episodes.
+    /// Creates a page without episodes.
     pub fn new(title: &str) -> Self {
         Self { title: title.into(), ..Self::default() }
     }
 
-    /// The same page with another episode.
+    /// Returns the page with another episode.
     pub fn with(mut self, name: &str, recording: Recording) -> Self {
         self.add(name, Vec::new(), recording);
         self
@@ -59,37 +57,37 @@ impl Page {
 
     /// Adds an episode with facts about it, by name, such as its fitness.
     pub fn add(&mut self, name: &str, facts: Vec<(String, String)>, recording: Recording) {
-        self.episodes.push(Film { name: name.into(), facts, recording });
+        self.episodes.push(EpisodeData { name: name.into(), facts, recording });
     }
 
-    /// Number of episodes.
+    /// Returns the number of episodes.
     pub fn episodes(&self) -> usize {
         self.episodes.len()
     }
 
-    /// Shows the episode of this number, from 0, beside the first one when the page opens.
+    /// Shows the episode of this index next to the first one when the page opens.
     pub fn open_beside(&mut self, episode: usize) {
-        self.beside = Some(episode);
+        self.second = Some(episode);
     }
 
-    /// The data of an episode, as it stands in the page: JSON, docs/replay-format.md.
+    /// Returns the data of an episode as JSON, in the format of docs/replay-format.md.
     pub fn episode(&self, number: usize) -> Option<String> {
-        self.episodes.get(number).map(|film| film.data().to_string())
+        self.episodes.get(number).map(|episode| episode.json().to_string())
     }
 
-    /// The whole file.
+    /// Returns the HTML of the page.
     pub fn html(&self) -> String {
-        let top = self.episodes.first().is_some_and(|film| film.recording.schema().view == View::Top);
+        let top = self.episodes.first().is_some_and(|episode| episode.recording.schema().view == View::Top);
         let mut data = data_head(&self.title, top);
-        data["lives"] = self.episodes.iter().map(Film::data).collect();
-        if let Some(beside) = self.beside {
-            data["beside"] = beside.into();
+        data["episodes"] = self.episodes.iter().map(EpisodeData::json).collect();
+        if let Some(second) = self.second {
+            data["beside"] = second.into();
         }
-        composed(&self.title, &data, Kind::Film)
+        composed(&self.title, &data, Kind::Recorded)
     }
 }
 
-/// What the data of every page begin with.
+/// Returns the first keys of the data of every page.
 pub(crate) fn data_head(title: &str, from_above: bool) -> Value {
     json!({
         "format": "farsa-replay",
@@ -100,23 +98,23 @@ pub(crate) fn data_head(title: &str, from_above: bool) -> Value {
     })
 }
 
-/// What a page may do.
+/// The kind of a page, which decides its permissions and scripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Show what was recorded.
-    Film,
-    /// Run WebAssembly in workers of its own.
+    /// Shows recorded episodes.
+    Recorded,
+    /// Runs WebAssembly in its own workers.
     Live,
-    /// The same, and ask who serves it.
+    /// Runs WebAssembly and connects to its server.
     Served,
 }
 
-/// The page of these data.
+/// Composes the HTML of a page.
 pub(crate) fn composed(title: &str, data: &Value, kind: Kind) -> String {
-    // No text of a recording can end the element that holds it.
+    // A text of a recording must not end the script element.
     let data = data.to_string().replace('<', "\\u003c");
     let (policy, more) = match kind {
-        Kind::Film => ("", ""),
+        Kind::Recorded => ("", ""),
         Kind::Live => (LIVE_POLICY, LIVE_SCRIPT),
         Kind::Served => (SERVED_POLICY, LIVE_SCRIPT),
     };
@@ -139,13 +137,13 @@ pub(crate) fn composed(title: &str, data: &Value, kind: Kind) -> String {
     html
 }
 
-/// A script or a style without indentation, lines of comment and empty lines: a seventh of it.
+/// Removes indentation, comment lines and empty lines, a seventh of a script.
 fn lean(source: &str) -> String {
     let lines = source.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with("//"));
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Text as it stands in HTML.
+/// Escapes text for HTML.
 pub(crate) fn escaped(text: &str) -> String {
     let mut html = String::new();
     for letter in text.chars() {
@@ -160,7 +158,7 @@ pub(crate) fn escaped(text: &str) -> String {
     html
 }
 
-/// A number with as many digits as a reader wants.
+/// Formats a number for readers, with up to three decimals.
 pub fn readable(x: f64) -> String {
     let mut text = String::new();
     let decimals = if x.abs() >= 1000.0 {
@@ -198,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_back_is_what_was_told_within_the_stated_error() {
+    fn recorded_values_are_read_back_within_the_stated_error() {
         let robot = Tabletop::default().scene(&farsa_body::robots::ArmAndHand::default()).unwrap();
         let mut schema = Schema::from_robot(&robot).with_sensors(["a </script> <b>"]).with_scalars(["x [m]", "n"]);
         schema.points = vec!["p".into()];
@@ -221,7 +219,7 @@ mod tests {
         assert!(html.contains("<title>T &amp; &lt;T&gt;"));
         assert_eq!(html.matches("</script>").count(), 2);
         let page = data(&html);
-        let episode = &page["lives"][0];
+        let episode = &page["episodes"][0];
         let bytes = STANDARD.decode(episode["data"].as_str().unwrap()).unwrap();
         assert_eq!(episode["crc32"], crc32(&bytes));
         assert_eq!(episode["bytes"], bytes.len());
@@ -249,8 +247,8 @@ mod tests {
         );
         let value = |channel: u64, tick: u64| {
             let count = word(&bytes, start("channels") + 2 * (100 * channel + tick));
-            let of = |key: &str| channels[channel as usize][key].as_f64().unwrap();
-            (count != u16::MAX).then(|| (of("minimum") + of("scale") * f64::from(count), of("scale")))
+            let field = |key: &str| channels[channel as usize][key].as_f64().unwrap();
+            (count != u16::MAX).then(|| (field("minimum") + field("scale") * f64::from(count), field("scale")))
         };
         assert_eq!(value(0, 7), None);
         assert_eq!((value(1, 4), value(1, 5)), (Some((1.0, 1.0)), Some((2.0, 1.0))));
@@ -268,10 +266,10 @@ mod tests {
     }
 
     #[test]
-    fn images_are_read_back_in_their_colours() {
+    fn images_are_read_back_with_their_colors() {
         let schema = Schema::from_scalars(["x"]).with_image("left eye", [3, 2]).with_image("right eye", [1, 1]);
         let mut recording = Recording::new(schema);
-        // Those that are counts of 5, 6 and 5 bits come back exactly.
+        // Multiples of 1/31 and 1/63 are stored exactly.
         let color = |tick: usize, pixel: usize| [tick as f32 / 31.0, 1.0 - pixel as f32 / 63.0, 1.0];
         for tick in 0..4_usize {
             (0..6).for_each(|pixel| recording.pixel(0, pixel, color(tick / 2, pixel)));
@@ -281,14 +279,14 @@ mod tests {
             recording.tick(0.1 * tick as f64);
         }
         for tick in 0..4_usize {
-            let kept: Vec<[f32; 3]> = recording.image_at(tick, 0).unwrap().collect();
+            let image: Vec<[f32; 3]> = recording.image_at(tick, 0).unwrap().collect();
             let expected: Vec<[f32; 3]> = (0..6).map(|pixel| color(tick / 2, pixel)).collect();
-            assert_eq!(kept, expected);
+            assert_eq!(image, expected);
         }
         assert!(recording.image_at(2, 1).is_none() && recording.image_at(3, 2).is_none());
 
         let page = data(&Page::new("eyes").with("one", recording).html());
-        let episode = &page["lives"][0];
+        let episode = &page["episodes"][0];
         assert_eq!(
             episode["images"],
             json!([{"name": "left eye", "size": [3, 2]}, {"name": "right eye", "size": [1, 1]}])
@@ -314,10 +312,10 @@ mod tests {
     }
 
     #[test]
-    fn of_images_on_the_ground_the_changes_are_written() {
+    fn changes_of_images_on_the_ground_are_written() {
         let mut schema = Schema::from_scalars(["x"]).with_image("eye", [1, 1]);
-        let lying = |name: &str| ImageChannel::new(name, [2, 2]).on_ground([0.0, 1.0], [2.0, -0.1]);
-        schema.images = vec![lying("food"), schema.images[0].clone(), lying("traces")];
+        let ground = |name: &str| ImageChannel::new(name, [2, 2]).on_ground([0.0, 1.0], [2.0, -0.1]);
+        schema.images = vec![ground("food"), schema.images[0].clone(), ground("traces")];
         let mut recording = Recording::new(schema);
         for tick in 0..4_usize {
             (tick.min(2)..4).for_each(|pixel| recording.pixel(0, pixel, [0.0, 1.0, 0.0]));
@@ -328,10 +326,10 @@ mod tests {
             recording.tick(0.1 * tick as f64);
         }
         let page = data(&Page::new("food").with("one", recording).html());
-        let episode = &page["lives"][0];
+        let episode = &page["episodes"][0];
         assert_eq!(episode["images"], json!([{"name": "eye", "size": [1, 1]}]));
-        let told = |name: &str| json!({"name": name, "size": [2, 2], "ground": [0, 1, 2, -0.1]});
-        assert_eq!(episode["ground_images"], json!([told("food"), told("traces")]));
+        let description = |name: &str| json!({"name": name, "size": [2, 2], "ground": [0, 1, 2, -0.1]});
+        assert_eq!(episode["ground_images"], json!([description("food"), description("traces")]));
         let bytes = STANDARD.decode(episode["data"].as_str().unwrap()).unwrap();
         let start = |block: &str| episode["blocks"][block].as_u64().unwrap();
         let (green, red) = (63 << 5, 31 << 11);
@@ -339,13 +337,13 @@ mod tests {
         let words: Vec<u16> =
             (0..expected.len()).map(|i| word(&bytes, start("ground_pixels") + 2 * i as u64)).collect();
         assert_eq!(words, expected);
-        // The eye alone is among the others.
+        // Only the eye is an ordinary image.
         assert_eq!((word(&bytes, start("image_starts")), start("pixels") - start("image_starts")), (0, 4 * 4));
         assert_eq!(start("ground_pixels") - start("pixels"), 4);
     }
 
     #[test]
-    fn labels_stand_beside_names() {
+    fn labels_are_written_with_names() {
         let hostile = "</script><b>";
         let schema = Schema::from_scalars(["J4 [rad]", "x"]).with_sensors(["J1"]);
         let schema = schema.with_labels(&[("J4", "elbow extension"), ("J1", hostile)]);
@@ -354,25 +352,25 @@ mod tests {
         let html = Page::new("labels").with("one", recording).html();
         assert!(!html.contains(hostile));
         let page = data(&html);
-        let channels = page["lives"][0]["channels"].as_array().unwrap();
-        let told: Vec<_> = channels.iter().map(|c| (c["name"].as_str().unwrap(), c.get("label"))).collect();
-        assert_eq!(told, [("J4", Some(&json!("elbow extension"))), ("x", None), ("J1", Some(&json!(hostile)))]);
+        let channels = page["episodes"][0]["channels"].as_array().unwrap();
+        let labels: Vec<_> = channels.iter().map(|c| (c["name"].as_str().unwrap(), c.get("label"))).collect();
+        assert_eq!(labels, [("J4", Some(&json!("elbow extension"))), ("x", None), ("J1", Some(&json!(hostile)))]);
     }
 
     #[test]
-    fn a_page_of_nothing_is_a_page() {
+    fn a_page_may_be_empty() {
         let page = data(&Page::new("none").html());
-        assert_eq!(page["lives"], json!([]));
+        assert_eq!(page["episodes"], json!([]));
         let page = data(&Page::new("empty").with("nothing", Recording::default()).html());
-        assert_eq!(page["lives"][0]["ticks"], 0);
+        assert_eq!(page["episodes"][0]["ticks"], 0);
         assert!(Page::new(&"t".repeat(1000)).html()[..2000].contains(Page::MARK));
     }
 
     #[test]
     fn the_viewer_is_small() {
-        let [film, live] = [SCRIPTS.concat(), LIVE_SCRIPT.to_owned()].map(|script| lean(&script).len());
-        assert!(film + live <= 100_000, "{film} + {live} bytes of JavaScript");
-        let all = TEMPLATE.len() + lean(STYLE).len() + film;
-        assert!(all <= 96 * 1024, "{all} bytes of a film's page");
+        let [viewer, live] = [SCRIPTS.concat(), LIVE_SCRIPT.to_owned()].map(|script| lean(&script).len());
+        assert!(viewer + live <= 100_000, "{viewer} + {live} bytes of JavaScript");
+        let all = TEMPLATE.len() + lean(STYLE).len() + viewer;
+        assert!(all <= 96 * 1024, "{all} bytes of a page without data");
     }
 }

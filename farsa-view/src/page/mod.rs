@@ -1,16 +1,12 @@
-//! Pages for a browser.
-//!
-//! - `base91`: bytes as text
-//! - `blocks`: its numbers as bytes
-//! - `film`: an episode's data, with the format of docs/replay-format.md
-//! - `html`: recordings as one file
-//! - `live`: a page whose trials are run by the page itself
-//! - `viewer/`: the page's markup, style and scripts
+//! Pages for a browser. The markup, style and scripts are in `viewer/`.
 
-mod base91;
+/// The numbers of an episode as bytes.
 mod blocks;
-mod film;
+/// The data of an episode, in the format of docs/replay-format.md.
+mod episode_data;
+/// Recorded episodes as one HTML file.
 pub(crate) mod html;
+/// An interactive page that runs an agent.
 mod live;
 
 pub use html::{Page, readable};

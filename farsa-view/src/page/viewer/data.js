@@ -5,6 +5,8 @@
 const {abs, ceil, cos, floor, hypot, max, min, round, sin} = Math;
 
 class Damage extends Error {}
+// A browser that lacks what the page needs.
+class Unsupported extends Error {}
 
 function need(ok, text) {
 	if (!ok) throw new Damage(text);
@@ -12,6 +14,14 @@ function need(ok, text) {
 
 const whole = (x) => Number.isInteger(x) && x >= 0;
 const list = (n, make) => Array.from({length: n}, (_, i) => make(i));
+
+// The bytes of base64.
+function bytesOf(text) {
+	const letters = atob(text);
+	const bytes = new Uint8Array(letters.length);
+	for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
+	return bytes;
+}
 
 function crc32(bytes) {
 	const table = Int32Array.from(list(256, (c) => {
@@ -46,9 +56,7 @@ class Trial {
 		need([bodies, points, json.pairs, json.position_origin].every(Array.isArray), `a list ${of} is none`);
 		let bytes;
 		try {
-			const text = atob(json.data);
-			bytes = new Uint8Array(text.length);
-			for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+			bytes = bytesOf(json.data);
 		} catch {
 			need(false, `the data ${of} is not base64`);
 		}
@@ -239,9 +247,11 @@ function readPage(element) {
 	}
 	need(page?.format === "farsa-replay", "its data is not of the format farsa-replay");
 	need(page.version === 1, `its data is of version ${page.version}, this viewer reads version 1`);
-	need(page.lives?.length || page.live, "it holds no trial");
+	// Pages of earlier versions call the episodes `lives`.
+	const episodes = page.episodes ?? page.lives;
+	need(episodes?.length || page.live, "it holds no trial");
 	try {
-		return {...page, trials: page.lives.map((trial, i) => new Trial(trial, i))};
+		return {...page, trials: episodes.map((trial, i) => new Trial(trial, i))};
 	} catch (error) {
 		throw error instanceof Damage ? error : new Damage(`its data lacks something (${error.message})`);
 	}

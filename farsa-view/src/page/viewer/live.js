@@ -7,21 +7,23 @@ function inWorker() {
 	const opened = (script) => {
 		const own = new WebAssembly.Instance(module, {}).exports;
 		const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
-		const give = (text) => given(own, new TextEncoder().encode(text));
+		const give = (text) => {
+			const bytes = new TextEncoder().encode(text);
+			const at = own.input(bytes.length);
+			new Uint8Array(own.memory.buffer, at, bytes.length).set(bytes);
+		};
 		give(JSON.stringify(script));
 		const wrong = said(own.open());
 		if (wrong) throw new Error(wrong);
 		return (request) => (give(JSON.stringify(request)), JSON.parse(said(own.answer())));
 	};
 	const acts = {
-		async compile({packed, unpacker}) {
-			if (!packed.xz) return module = await compiled(packed);
-			// Browsers read no xz: a small module does, which they can read.
-			const own = new WebAssembly.Instance(await compiled(unpacker), {}).exports;
-			given(own, bytesOf(packed.xz, packed.bytes));
-			const length = own.unpack();
-			if (!length) throw new Error("the page's module cannot be unpacked");
-			return module = await WebAssembly.compile(new Uint8Array(own.memory.buffer, own.output(), length));
+		async compile({packed}) {
+			const headers = {"Content-Type": "application/wasm"};
+			const refused = (error) => {
+				throw new Error(`the page's module cannot be unpacked or compiled (${error.message})`);
+			};
+			return module = await WebAssembly.compileStreaming(new Response(unpacked(packed), {headers})).catch(refused);
 		},
 		take: (rest) => void ({module} = rest),
 		open: ({script}) => void (acts.session = opened(script)),
@@ -39,38 +41,12 @@ function inWorker() {
 	};
 }
 
-// Gives bytes to a module.
-function given(own, bytes) {
-	const at = own.input(bytes.length);
-	new Uint8Array(own.memory.buffer, at, bytes.length).set(bytes);
-}
-
-// The module that is packed by gzip.
-const compiled = (packed) => WebAssembly.compileStreaming(new Response(unpacked(packed), {headers: {"Content-Type": "application/wasm"}}));
-
-// The bytes that letters stand for.
-function bytesOf(letters, bytes) {
-	const found = new Uint8Array(bytes);
-	// Letters from `#` on; two of them stand for those that JSON and HTML would write longer.
-	const digit = (c) => (c === 33 ? 60 : c === 126 ? 92 : c) - 35;
-	for (let at = 0, to = 0, rest = 0, bits = 0; to < bytes; found[to++] = rest >> (bits -= 8)) {
-		for (; bits < 8; bits += 13, at += 2) rest = (rest & 127) << 13 | 91*digit(letters.charCodeAt(at)) + digit(letters.charCodeAt(at + 1));
-	}
-	return found;
-}
-
-// What is packed by gzip: a stream of its bytes.
-function unpacked({gzip, bytes}) {
-	const {writable, readable} = new DecompressionStream("gzip");
-	const writer = writable.getWriter();
-	// What goes wrong is heard of where the bytes are read.
-	for (const done of [writer.write(bytesOf(gzip, bytes)), writer.close()]) done.catch(() => {});
-	return readable;
-}
+// Decompresses base64 of gzip, as a stream.
+const unpacked = (text) => new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
 
 // A worker; `send` gives what it answers, in the order of sending.
 function worker() {
-	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";${given}${bytesOf}${unpacked}const compiled=${compiled};(${inWorker})()`], {type: "text/javascript"})));
+	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";${bytesOf}const unpacked=${unpacked};(${inWorker})()`], {type: "text/javascript"})));
 	const waiting = new Map();
 	worker.onmessage = ({data: {id, found, error}}) => {
 		const [done, failed] = waiting.get(id);
@@ -117,18 +93,17 @@ function shortened(script) {
 // Fills a live page with the first trial that it runs: with its first step before it has run, where that can be had. What it gives
 // is attached to the player, and then shows all of it.
 async function liveOf(page) {
-	need(capable, "this browser has no WebAssembly");
-	const {live: {module: packed, unpacker, script, about: {individuals}}} = page;
+	if (!capable) throw new Unsupported("it needs a browser with WebAssembly");
+	const {live: {module: packed, script, about: {individuals}}} = page;
 	// The trial of the run that earned most comes first.
 	const told = individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
 	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
 	const request = {do: "film", ...asked(state), lesion: ""};
-	const module = firstWorker("compile", {packed, unpacker}).catch((error) => {
+	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
 		const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
-		need(WebAssembly.validate(new Uint8Array(vectors)), "this browser's WebAssembly has no SIMD, which this page's module wants");
-		throw error;
+		throw WebAssembly.validate(new Uint8Array(vectors)) ? error : new Unsupported("it needs a browser with SIMD in WebAssembly");
 	});
 	const short = shortened(script);
 	const begun = short && firstWorker("once", {script: short, request}).catch(() => null);

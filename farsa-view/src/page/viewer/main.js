@@ -23,11 +23,11 @@ const short = (x, unit) => `${+x.toPrecision(2)} ${unit}`;
 const length = (m) => (m < 1e-3 ? short(m*1e3, "mm") : m < 1 ? short(m*100, "cm") : short(m, "m"));
 const options = (some) => some.map(([value, text]) => Object.assign(make("option", "", text), {value}));
 
-function fail(text) {
+function fail(text, remedy = " Make it again with farsa replay --html.") {
 	farsa.error = text;
 	$("app").hidden ||= !farsa.ready;
 	$("message").hidden = false;
-	$("message").textContent = `This page cannot be shown: ${text}. Make it again with farsa replay --html.`;
+	$("message").textContent = `This page cannot be shown: ${text}.${remedy}`;
 }
 
 // What the console and tests can ask for.
@@ -146,5 +146,8 @@ async function main() {
 
 window.onerror = (message) => fail(`the viewer failed (${message})`);
 document.addEventListener("DOMContentLoaded", () => {
-	main().catch((error) => fail(error instanceof Damage ? error.message : `the viewer failed (${error.message})`));
+	main().catch((error) => {
+		if (error instanceof Unsupported) fail(error.message, "");
+		else fail(error instanceof Damage ? error.message : `the viewer failed (${error.message})`);
+	});
 });

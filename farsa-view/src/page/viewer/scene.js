@@ -198,15 +198,11 @@ function metBy(placed, from, along) {
 }
 
 class Scene {
-	// Throws where there is no context to draw in.
+	// Throws Unsupported in a browser without WebGL 2.
 	constructor(canvas, restored) {
 		this.canvas = canvas;
-		this.open(canvas, restored);
-	}
-
-	open(canvas, restored) {
 		this.gl = canvas.getContext("webgl2", {alpha: false});
-		need(this.gl, "no context");
+		if (!this.gl) throw new Unsupported("it needs a browser with WebGL 2");
 		this.build();
 		canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
 		canvas.addEventListener("webglcontextrestored", () => (this.build(), restored()));

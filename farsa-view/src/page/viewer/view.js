@@ -40,22 +40,10 @@ function steer(canvas, camera, ask, centre) {
 
 const namesOf = (trails) => trails.slice(0, 4).map((trail) => trail.name).join(", ") + (trails[4] ? " ..." : "") || "nothing moves";
 
-// A canvas, what draws on it, and what is to be said of that: a page whose address ends with #flat does without WebGL.
-function pictureOf(ask) {
-	const canvas = make("canvas", "scene");
-	const asked = location.hash === "#flat";
-	try {
-		if (!asked) return {canvas, scene: new Scene(canvas, ask)};
-	} catch {
-		// No WebGL 2. The canvas may be bound to it nevertheless.
-	}
-	const other = make("canvas", "scene");
-	return {canvas: other, scene: new Flat(other), flat: asked ? "flat picture" : "flat picture: this browser offers no WebGL 2"};
-}
-
 // A picture with labels, to be moved with mouse and fingers.
 function viewOf(camera, ask) {
-	const {canvas, scene, flat} = pictureOf(ask);
+	const canvas = make("canvas", "scene");
+	const scene = new Scene(canvas, ask);
 	const [labels, caption, note] = [make("div", "labels"), make("figcaption"), make("span", "soft")];
 	const element = make("figure", "", canvas, labels, caption);
 	$("views").append(element);
@@ -86,7 +74,6 @@ function viewOf(camera, ask) {
 		const {long, newtons} = camera.arrow();
 		note.textContent = [
 			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
-			flat,
 			visible.trails ? `trails: ${namesOf(trial.trails)}` : "",
 			farsa.ready && tick >= trial.ticks - 1 ? "ended" : "",
 		].filter(Boolean).join(" · ");

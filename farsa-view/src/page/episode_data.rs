@@ -1,4 +1,4 @@
-//! An episode of a page: its data, with the format of docs/replay-format.md.
+//! The data of an episode in a page, in the format of docs/replay-format.md.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -16,16 +16,17 @@ use crate::shape::appearance::as_screens_take_it;
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::ShownWhile;
 
-/// A recorded episode with its name and what came of it.
+/// A recorded episode with its name and facts about its outcome.
 #[derive(Clone, Debug)]
-pub(super) struct Film {
+pub(super) struct EpisodeData {
     pub(super) name: String,
     pub(super) facts: Vec<(String, String)>,
     pub(super) recording: Recording,
 }
 
-impl Film {
-    pub(super) fn data(&self) -> Value {
+impl EpisodeData {
+    /// Returns the episode as JSON.
+    pub(super) fn json(&self) -> Value {
         let Self { name, facts, recording } = self;
         let schema = recording.schema();
         let ticks = recording.times().len();
@@ -49,7 +50,7 @@ impl Film {
         let mut last = vec![farsa_body::Pose::identity(); bodies.len()];
         for tick in 0..ticks {
             for (body, last) in bodies.iter().zip(&mut last) {
-                // A body that was not recorded stays where it was.
+                // A body that was not recorded keeps its last pose.
                 if let Some(pose) = recording.pose_at(tick, *body)
                     && pose.position.iter().chain(&pose.rotation).all(|x| x.is_finite())
                 {
@@ -116,7 +117,7 @@ impl Film {
         if let Some(network) = self.network() {
             data["network"] = network;
         }
-        // Last, so that a reader sees all names before the long line of numbers.
+        // The last key, so that people see all names before the long line of numbers.
         data["data"] = STANDARD.encode(&bytes).into();
         data
     }
@@ -160,7 +161,7 @@ impl Film {
                 value["color"] = hex(color).into();
             }
             if let Some(ShownWhile { channel, low, high }) = &object.shown {
-                // On a channel that there is not it is never seen.
+                // A shape that depends on an unknown channel is never shown.
                 let channel = columns.iter().position(|column| column == channel)?;
                 value["shown"] = json!([channel, low.max(f64::MIN), high.min(f64::MAX)]);
             }
@@ -175,52 +176,52 @@ impl Film {
         robot.pairs.iter().map(|pair| pair.colliders.map(name)).collect()
     }
 
-    /// Writes the values of all channels and says how to read them.
+    /// Writes the values of all channels and returns their descriptions.
     fn channels(&self, blocks: &mut Blocks) -> Vec<Value> {
         let recording = &self.recording;
         let ticks = recording.times().len();
         let rows: Vec<Vec<f64>> = (0..ticks).map(|tick| recording.row(tick).collect()).collect();
         blocks.begin("channels");
-        let mut told = Vec::new();
+        let mut descriptions = Vec::new();
         for (index, (_, channel)) in recording.schema().channels().enumerate() {
             let values = || rows.iter().map(|row| row[index]);
             let finite = || values().filter(|x| x.is_finite());
             let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
             let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-            // Whole numbers stay exact: phases, counts of contacts.
-            let whole = finite().all(|x| x.fract() == 0.0) && high - low <= COUNTS;
-            let scale = if whole { 1.0 } else { (high - low) / COUNTS };
+            // Integers stay exact: phases, numbers of contacts.
+            let integer = finite().all(|x| x.fract() == 0.0) && high - low <= COUNTS;
+            let scale = if integer { 1.0 } else { (high - low) / COUNTS };
             for x in values() {
                 blocks.word(if x.is_nan() { u16::MAX } else { ((x - low) / scale).round().min(COUNTS) as u16 });
             }
-            told.push(described(channel, low, scale));
+            descriptions.push(described(channel, low, scale));
         }
-        told
+        descriptions
     }
 
-    /// Writes what cameras saw and says how to read it.
+    /// Writes the images of cameras and returns their descriptions.
     fn images(&self, blocks: &mut Blocks) -> Vec<Value> {
         let images = self.recording.images();
-        let mut told = Vec::new();
+        let mut descriptions = Vec::new();
         blocks.begin("image_starts");
         for (number, image) in self.recording.schema().images.iter().enumerate() {
             if image.ground.is_none() {
                 images.starts(number).for_each(|start| blocks.long(start));
-                told.push(json!({"name": image.name, "size": image.size}));
+                descriptions.push(json!({"name": image.name, "size": image.size}));
             }
         }
         blocks.begin("pixels");
         images.pixels().iter().for_each(|pixel| blocks.word(*pixel));
-        told
+        descriptions
     }
 
-    /// The same of what lay on the ground, where something did.
+    /// Writes the changes of images on the ground and returns their descriptions.
     fn grounds(&self, blocks: &mut Blocks) -> Vec<Value> {
         let recording = &self.recording;
-        let mut told = Vec::new();
+        let mut descriptions = Vec::new();
         for (number, image) in recording.schema().images.iter().enumerate() {
             let Some([from, to]) = image.ground else { continue };
-            if told.is_empty() {
+            if descriptions.is_empty() {
                 blocks.begin("ground_pixels");
             }
             for tick in 0..recording.times().len() {
@@ -229,9 +230,9 @@ impl Film {
                 changes.iter().flat_map(|change| [change.pixel, change.shade]).for_each(|word| blocks.word(word));
             }
             let place = [from[0], from[1], to[0], to[1]].map(short);
-            told.push(json!({"name": image.name, "size": image.size, "ground": place}));
+            descriptions.push(json!({"name": image.name, "size": image.size, "ground": place}));
         }
-        told
+        descriptions
     }
 
     fn network(&self) -> Option<Value> {
@@ -240,7 +241,7 @@ impl Film {
             return None;
         }
         let layers = [&schema.sensors, &schema.neurons, &schema.outputs];
-        let channels = layers.into_iter().enumerate().flat_map(|(layer, of)| of.iter().map(move |x| (layer, x)));
+        let channels = layers.into_iter().enumerate().flat_map(|(layer, nodes)| nodes.iter().map(move |x| (layer, x)));
         let first = schema.scalars.len();
         let nodes: Vec<Value> = channels
             .enumerate()
@@ -250,13 +251,13 @@ impl Film {
             .map(|links| json!({"from": links.from, "to": links.to, "first": links.first}))
             .collect();
         let values: Vec<Value> = (schema.node_parameters.iter())
-            .map(|of| json!({"name": of.name, "nodes": of.nodes, "first": of.first}))
+            .map(|values| json!({"name": values.name, "nodes": values.nodes, "first": values.first}))
             .collect();
         Some(json!({"nodes": nodes, "links": links, "values": values}))
     }
 }
 
-/// A length of a shape to the millionth, with as few digits as that takes.
+/// Rounds a length to the micrometer, with as few digits as possible.
 fn short(x: f64) -> Value {
     let rounded = (x * 1e6).round() / 1e6;
     if rounded.fract() == 0.0 && rounded.abs() < 1e9 { (rounded as i64).into() } else { rounded.into() }
@@ -279,7 +280,7 @@ fn geometry_data(geometry: Geometry) -> Value {
 }
 
 fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
-    let mut told = json!({
+    let mut description = json!({
         "group": channel.group,
         "name": channel.name,
         "unit": channel.unit,
@@ -287,13 +288,13 @@ fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
         "scale": scale,
     });
     if !channel.label.is_empty() {
-        told["label"] = channel.label.as_str().into();
+        description["label"] = channel.label.as_str().into();
     }
     if let Some(range) = channel.range {
-        told["range"] = json!(range);
+        description["range"] = json!(range);
     }
     if !channel.words.is_empty() {
-        told["words"] = json!(channel.words);
+        description["words"] = json!(channel.words);
     }
-    told
+    description
 }

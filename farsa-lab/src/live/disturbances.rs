@@ -1,0 +1,54 @@
+//! Moves and pushes of bodies in an episode, with the world's numbers of bodies.
+
+use farsa_body::ports::BodyId;
+use farsa_view::Schema;
+
+use crate::error::Error;
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::{Displacement, Push};
+use crate::live::request::EpisodeRequest;
+
+/// The largest force [N], above which the simulated contacts lose their meaning.
+const MAX_FORCE: f32 = 1e5;
+
+/// Returns the moves and pushes of a request, with body numbers of the world instead of those of the page.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment without such bodies, an unknown body and an invalid pose or force.
+pub(crate) fn disturbances(
+    evaluator: &dyn Evaluator,
+    name: &str,
+    schema: &Schema,
+    request: &EpisodeRequest,
+) -> Result<(Vec<Displacement>, Vec<Push>), Error> {
+    let EpisodeRequest { moves, pushes, .. } = request;
+    for (verb, count, supported) in
+        [("moved", moves.len(), evaluator.displaces()), ("pushed", pushes.len(), evaluator.pushes())]
+    {
+        if count > 0 && !supported {
+            return Err(Error::Usage(format!("experiment `{name}` has no bodies that can be {verb}")));
+        }
+    }
+    let shown: Vec<BodyId> = schema.shown().collect();
+    let body = |body: u16| {
+        let unknown = || Error::Usage(format!("body {body} of {} (the first is 0)", shown.len()));
+        shown.get(usize::from(body)).map(|body| body.0).ok_or_else(unknown)
+    };
+    let displacement = |displacement: &Displacement| {
+        let Displacement { position, rotation, .. } = *displacement;
+        let length = rotation.iter().map(|x| x * x).sum::<f32>();
+        if !position.iter().all(|x| x.is_finite()) || !(0.5..2.0).contains(&length) {
+            return Err(Error::Usage(format!("a body at {position:?}, turned by {rotation:?}")));
+        }
+        Ok(Displacement { body: body(displacement.body)?, ..*displacement })
+    };
+    let push = |push: &Push| {
+        let Push { point, force, .. } = *push;
+        let bounded = force.iter().all(|x| x.abs() <= MAX_FORCE);
+        if !bounded || !point.iter().all(|x| x.is_finite()) {
+            return Err(Error::Usage(format!("a force of {force:?} N at {point:?}, at most {MAX_FORCE} N")));
+        }
+        Ok(Push { body: body(push.body)?, ..*push })
+    };
+    Ok((moves.iter().map(displacement).collect::<Result<_, _>>()?, pushes.iter().map(push).collect::<Result<_, _>>()?))
+}

@@ -1,0 +1,35 @@
+//! The state of a search, from which it continues.
+
+use farsa_evo::Snapshot as _;
+use serde::{Deserialize, Serialize};
+
+use crate::live::bytes::Bytes;
+use crate::run::search_state::SearchState;
+
+/// Everything that the next generations of a run depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RunState {
+    /// Finished generations.
+    pub(crate) generation: u32,
+    /// The saved state of the strategy.
+    pub(super) state: Bytes,
+    /// The parameters of the champions of all generations, population after population, where they are still opponents.
+    pub(super) hall: Bytes,
+    /// The statistics of all observations, where observations are normalized.
+    pub(super) observed: Option<Bytes>,
+}
+
+impl RunState {
+    /// Returns the state of a search, or `None` if the strategy cannot save its state.
+    pub(crate) fn of(search: &mut SearchState) -> Option<Self> {
+        let state = Bytes(search.search.snapshot()?.save());
+        let hall = Bytes::from_floats(search.hall().champions().iter().flatten().flatten());
+        let observed = search.observed.as_ref().map(|observed| Bytes(observed.save()));
+        Some(Self { generation: search.search.generation(), state, hall, observed })
+    }
+
+    /// Returns the number of bytes of all parts.
+    pub(crate) fn size(&self) -> usize {
+        self.state.0.len() + self.hall.0.len() + self.observed.as_ref().map_or(0, |observed| observed.0.len())
+    }
+}
