@@ -363,7 +363,7 @@ fn a_maze_is_searched_by_where_robots_end() {
     let log = bench.read("elites/strategy.csv");
     let elites = log.lines().last().and_then(|row| row.split(',').nth(1)).expect("a number of elites");
     assert_eq!(elites.parse(), Ok(ends.len() as f64));
-    for part in ["### What novelty-search says", "### What map-elites says", "| run | elites | qd score |"] {
+    for part in ["### Values of novelty-search", "### Values of map-elites", "| run | elites | qd score |"] {
         assert!(report.contains(part), "{part}: {report}");
     }
     let row = report.lines().find(|line| line.starts_with(&format!("| elites | {}.", ends.len())));

@@ -1,20 +1,16 @@
-//! A list of shares as bars with their intervals, as SVG: the success of each case of a test protocol with one column.
+//! Shares as bars with their intervals: the success of each case of a test protocol with one column.
 
 use maud::{Markup, html};
 
-use crate::figures::heat_map::{OUTLINE, percent, shown, width};
-use crate::figures::plot::{FONT, GRID, INK, MARGIN, PAPER};
+use crate::figures::svg::{GRID, INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width};
 
-/// Width of the picture, height of a bar's line, of the title and of what is below the bars.
-const WIDTH: f64 = 640.0;
+/// The height of the line of a bar, the top of the first and the room below the last.
 const LINE: f64 = 28.0;
-const HEAD: f64 = 48.0;
+const TOP: f64 = 48.0;
 const FOOT: f64 = 34.0;
-/// Room for the numbers at the right.
+/// The room for the numbers at the right.
 const NUMBERS: f64 = 66.0;
-/// Bars of the longest list that is drawn.
-const LARGEST: usize = 100;
-/// The colour of bars, which print shows as a middle grey.
+/// The color of bars, a middle gray in print.
 const BAR: &str = "#56B4E9";
 
 /// A list of shares.
@@ -28,50 +24,37 @@ pub(crate) struct BarList<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bar<'a> {
     pub(crate) label: &'a str,
-    /// From 0 to 1; not a number where it is not known.
+    /// A share from 0 to 1, or NaN.
     pub(crate) share: f64,
     /// The ends of the interval.
     pub(crate) interval: [f64; 2],
+    /// True for a held-out case.
     pub(crate) outlined: bool,
 }
 
-fn at(x: f64) -> String {
-    format!("{}", (10.0 * x).round() / 10.0)
-}
-
 impl BarList<'_> {
-    /// The picture; text in it is text, so that no font is needed. None of a list that is too long to be read as one.
+    /// Draws the figure, or nothing for an empty list or one that is too long to be readable.
     pub(crate) fn draw(&self) -> Option<String> {
-        if !(1..=LARGEST).contains(&self.bars.len()) {
+        if !(1..=MAX_CASES).contains(&self.bars.len()) {
             return None;
         }
         let longest = self.bars.iter().map(|bar| width(bar.label)).fold(0.0, f64::max);
-        let left = f64::from(MARGIN) + longest + 12.0;
+        let left = MARGIN + longest + 12.0;
         let room = WIDTH - left - NUMBERS;
-        let low = HEAD + LINE * self.bars.len() as f64;
-        let held_out = self.bars.iter().any(|bar| bar.outlined);
-        let height = low + FOOT;
-        let picture = html! {
-            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", at(WIDTH), at(height)))
-                width=(at(WIDTH)) height=(at(height)) font-family=(FONT.0) font-size="16" {
-                rect width="100%" height="100%" fill=(PAPER) {}
-                text x=(MARGIN) y="28" font-size="20" fill=(INK) { (self.title) }
-                @for part in 0..=4_u8 {
-                    @let x = left + room * f64::from(part) / 4.0;
-                    path d=(format!("M{} {}V{}", at(x), at(HEAD - 4.0), at(low))) stroke=(GRID) {}
-                    text x=(at(x)) y=(at(low + 20.0)) text-anchor="middle" font-size="14" fill=(INK) {
-                        (percent(f64::from(part) / 4.0))
-                    }
-                }
-                @for (number, bar) in self.bars.iter().enumerate() {
-                    (bar.draw([left, HEAD + LINE * number as f64], room))
-                }
-                @if held_out {
-                    text x=(MARGIN) y=(at(low + 20.0)) font-size="14" fill=(OUTLINE) { "outlined: held out" }
-                }
+        let bottom = TOP + LINE * self.bars.len() as f64;
+        let content = html! {
+            (title(self.title))
+            @for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                @let x = left + room * share;
+                path d=(format!("M{} {}V{}", at(x), at(TOP - 4.0), at(bottom))) stroke=(GRID) {}
+                (note([x, bottom + 20.0], "middle", INK, &percent(share)))
+            }
+            @for (number, bar) in self.bars.iter().enumerate() { (bar.draw([left, TOP + LINE * number as f64], room)) }
+            @if self.bars.iter().any(|bar| bar.outlined) {
+                (note([MARGIN, bottom + 20.0], "start", OUTLINE, "outlined: held out"))
             }
         };
-        Some(picture.into_string() + "\n")
+        Some(figure([WIDTH, bottom + FOOT], &content))
     }
 }
 

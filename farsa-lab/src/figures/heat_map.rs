@@ -1,36 +1,26 @@
-//! A table of shares as SVG, darker where a share is larger: the success of each case of a test protocol.
+//! A table of shares, darker where a share is larger: the success of each case of a test protocol.
 
 use maud::{Markup, html};
 
-use crate::figures::plot::{FONT, INK, MARGIN, PAPER};
+use crate::figures::svg::{INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width};
 
-/// Width that the picture has at least, and what a column may have.
-const WIDTH: f64 = 640.0;
+/// The least and the largest width of a column.
 const COLUMN: [f64; 2] = [54.0, 130.0];
-/// Height of a row, with the second line of its cells and without.
+/// The heights of a row, of the title and of the scale below the map.
 const ROW: f64 = 46.0;
-/// Height of the title, and of the scale below the map.
-const HEAD: f64 = 44.0;
+const TOP: f64 = 44.0;
 const SCALE: f64 = 58.0;
-/// A letter of the labels is about so wide.
-const LETTER: f64 = 8.6;
-/// Letters of a label that are shown; all of them are in its tip.
-const LONGEST: usize = 28;
-/// Rows and columns of the largest map that is drawn.
-const LARGEST: usize = 100;
-/// The colours of the shares 0 and 1, which differ in lightness too, so that print shows the difference.
+/// The colors of the shares 0 and 1, which differ in lightness, too, for print.
 const PALE: [f64; 3] = [236.0, 244.0, 250.0];
 const DARK: [f64; 3] = [0.0, 46.0, 98.0];
-/// Letters on pale and on dark cells, which a dark page does not exchange.
+/// Text on pale and on dark cells, which a dark page does not replace.
 const LETTERS: [&str; 2] = ["#101418", "#FEFEFE"];
-/// What surrounds cases that were held out.
-pub(crate) const OUTLINE: &str = "#D55E00";
 
 /// A table of shares.
 #[derive(Debug, Default)]
 pub(crate) struct HeatMap<'a> {
     pub(crate) title: &'a str,
-    /// What rows and columns are; may be empty.
+    /// The names of rows and columns, may be empty.
     pub(crate) axes: [&'a str; 2],
     pub(crate) rows: &'a [&'a str],
     pub(crate) columns: &'a [&'a str],
@@ -40,100 +30,72 @@ pub(crate) struct HeatMap<'a> {
 /// A cell of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HeatCell {
-    /// Numbers of the row and the column.
+    /// The indices of the row and the column.
     pub(crate) place: [usize; 2],
-    /// From 0 to 1; not a number where it is not known.
+    /// A share from 0 to 1, or NaN.
     pub(crate) share: f64,
-    /// What stands below it.
+    /// The text below the share.
     pub(crate) below: String,
+    /// True for a held-out case.
     pub(crate) outlined: bool,
 }
 
-/// The colour of a share.
-pub(crate) fn shade(share: f64) -> String {
+/// Returns the color of a share.
+fn shade(share: f64) -> String {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let [red, green, blue] = [0, 1, 2].map(|i| (PALE[i] + share * (DARK[i] - PALE[i])).round() as u8);
     format!("#{red:02X}{green:02X}{blue:02X}")
 }
 
-/// A share in percent, with as many digits as it needs to stand in a cell.
-pub(crate) fn percent(share: f64) -> String {
-    if share.is_finite() { format!("{:.0} %", 100.0 * share) } else { "–".into() }
-}
-
-/// The beginning of a label that fits.
-pub(crate) fn shown(label: &str) -> String {
-    match label.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", label.get(..end).unwrap_or_default()),
-        None => label.into(),
-    }
-}
-
-/// About how wide a label is.
-pub(crate) fn width(label: &str) -> f64 {
-    LETTER * shown(label).chars().count() as f64
-}
-
-/// Coordinates are short in the file.
-fn at(x: f64) -> String {
-    format!("{}", (10.0 * x).round() / 10.0)
-}
-
-/// Where everything stands.
+/// The places of the parts.
 struct Places {
     left: f64,
     top: f64,
     column: f64,
-    /// Whether the names of the columns lie at an angle, because they are wider than the columns.
+    /// True if the names of the columns are wider than the columns and therefore slanted.
     slanted: bool,
     size: [f64; 2],
 }
 
 impl HeatMap<'_> {
-    /// The picture; text in it is text, so that no font is needed. None of a table that is too large to be read as one.
+    /// Draws the figure, or nothing for an empty table or one that is too large to be readable.
     pub(crate) fn draw(&self) -> Option<String> {
         let [rows, columns] = [self.rows.len(), self.columns.len()];
-        if rows.max(columns) > LARGEST || rows.min(columns) == 0 {
+        if rows.max(columns) > MAX_CASES || rows.min(columns) == 0 {
             return None;
         }
         let places = self.places();
-        let [width, height] = places.size;
-        let picture = html! {
-            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", at(width), at(height)))
-                width=(at(width)) height=(at(height)) font-family=(FONT.0) font-size="16" {
-                rect width="100%" height="100%" fill=(PAPER) {}
-                text x=(MARGIN) y="28" font-size="20" fill=(INK) { (self.title) }
-                (self.labels(&places))
-                @for cell in self.cells { (cell.draw(&places)) }
-                (self.scale(&places))
-            }
+        let content = html! {
+            (title(self.title)) (self.labels(&places))
+            @for cell in self.cells { (cell.draw(&places)) }
+            (self.scale(&places))
         };
-        Some(picture.into_string() + "\n")
+        Some(figure(places.size, &content))
     }
 
     fn places(&self) -> Places {
         let longest = |labels: &[&str]| labels.iter().map(|label| width(label)).fold(0.0, f64::max);
         let (rows, columns) = (longest(self.rows), longest(self.columns));
-        let left = f64::from(MARGIN) + rows.max(width(self.axes[0])) + 12.0;
+        let left = MARGIN + rows.max(width(self.axes[0])) + 12.0;
         let count = self.columns.len() as f64;
-        let column = ((WIDTH - left - f64::from(MARGIN)) / count).clamp(COLUMN[0], COLUMN[1]);
+        let column = ((WIDTH - left - MARGIN) / count).clamp(COLUMN[0], COLUMN[1]);
         let slanted = columns + 8.0 > column;
-        // At 45 degrees the last label reaches beyond the map.
+        // At 45 degrees the last label extends beyond the map.
         let (up, beyond) = if slanted { (0.71 * columns + 14.0, 0.71 * columns) } else { (26.0, 0.0) };
         let axis = if self.axes[1].is_empty() { 0.0 } else { 24.0 };
-        let top = HEAD + axis + up;
-        let right = left + column * count + beyond.max(f64::from(MARGIN));
+        let top = TOP + axis + up;
+        let right = left + column * count + beyond.max(MARGIN);
         let size = [right.max(WIDTH), top + ROW * self.rows.len() as f64 + SCALE];
         Places { left, top, column, slanted, size }
     }
 
-    /// The names of rows, columns and axes.
+    /// Draws the names of rows, columns and axes.
     fn labels(&self, places: &Places) -> Markup {
         let Places { left, top, column, slanted, .. } = *places;
         let [row_axis, column_axis] = self.axes;
         html! {
             @if !column_axis.is_empty() {
-                text x=(at(left)) y=(at(HEAD + 14.0)) fill=(INK) font-style="italic" { (shown(column_axis)) }
+                text x=(at(left)) y=(at(TOP + 14.0)) fill=(INK) font-style="italic" { (shown(column_axis)) }
             }
             @if !row_axis.is_empty() {
                 text x=(MARGIN) y=(at(top - 10.0)) fill=(INK) font-style="italic" { (shown(row_axis)) }
@@ -156,24 +118,24 @@ impl HeatMap<'_> {
         }
     }
 
-    /// What the colours mean, and the outline.
+    /// Draws the scale of the colors and the outline.
     fn scale(&self, places: &Places) -> Markup {
         const STEPS: usize = 10;
         let y = places.size[1] - SCALE + 22.0;
         let x = places.left + 42.0;
         let text = y + 13.0;
         html! {
-            text x=(at(x - 8.0)) y=(at(text)) text-anchor="end" fill=(INK) font-size="14" { "0 %" }
+            (note([x - 8.0, text], "end", INK, "0 %"))
             @for step in 0..=STEPS {
                 rect x=(at(x + 10.0 * step as f64)) y=(at(y)) width="10.2" height="16"
                     fill=(shade(step as f64 / STEPS as f64)) {}
             }
             @let end = x + 10.0 * (STEPS + 1) as f64;
-            text x=(at(end + 8.0)) y=(at(text)) fill=(INK) font-size="14" { "100 %" }
+            (note([end + 8.0, text], "start", INK, "100 %"))
             @if self.cells.iter().any(|cell| cell.outlined) {
                 rect x=(at(end + 76.0)) y=(at(y - 1.0)) width="24" height="18" fill="none" stroke=(OUTLINE)
                     stroke-width="3" stroke-dasharray="6 3" {}
-                text x=(at(end + 108.0)) y=(at(text)) fill=(INK) font-size="14" { "held out" }
+                (note([end + 108.0, text], "start", INK, "held out"))
             }
         }
     }
@@ -207,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_stands_in_its_row_and_column_and_is_darker_where_its_share_is_larger() {
+    fn a_cell_is_in_its_row_and_column_and_darker_for_a_larger_share() {
         let cells = [cell([0, 0], 0.0, false), cell([0, 1], 0.5, false), cell([1, 1], 1.0, true)];
         let axes = ["action", "object"];
         let map =
@@ -234,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_not_drawn() {
+    fn unreadable_tables_are_not_drawn() {
         let many: Vec<String> = (0..101).map(|row| row.to_string()).collect();
         let many: Vec<&str> = many.iter().map(String::as_str).collect();
         assert_eq!(HeatMap { rows: &many, columns: &["a"], ..HeatMap::default() }.draw(), None);

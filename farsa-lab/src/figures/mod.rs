@@ -1,36 +1,39 @@
-//! Curves and the statistics in them.
-//!
-//! - `bar_list`: shares as bars with their intervals
-//! - `bootstrap`: how far a median would move with other runs
-//! - `fixture`: the numbers of another program that the tests here compare with
-//! - `heat_map`: a table of shares as SVG, darker where a share is larger
-//! - `log_curves`: the log of a run as curves: `fitness.svg`
-//! - `mann_whitney`: an exact test of two groups of values, and a normal one where they are many
-//! - `normal`: the standard normal distribution
-//! - `plot`: Curves over generations as SVG
-//! - `principal_components`: the two directions in which points differ most
-//! - `proportion`: shares of successes: their intervals, and whether two of them differ
-//! - `rates`: shares over a number, as curves with their intervals, as SVG
-//! - `scatter`: points in two dimensions as SVG, darker where a third value is larger
-//! - `series`: the values of a curve, thinned out as they come
-//! - `significant`: Numbers for people, with four significant digits
-//! - `statistics`: Order statistics over a few runs
-//! - `trajectories`: curves in a plane, a small picture for each case, as SVG
+//! Figures as SVG, and the statistics in them.
 
+/// Shares as bars with their intervals.
 pub(crate) mod bar_list;
+/// Bootstrap intervals of a median.
 pub(crate) mod bootstrap;
+/// Curves over generations.
+pub(crate) mod chart;
+/// Results of other programs for the tests.
 #[cfg(test)]
 mod fixture;
+/// A table of shares, darker where a share is larger.
 pub(crate) mod heat_map;
+/// The curves of a run's log: `fitness.svg`.
 pub(crate) mod log_curves;
+/// The Mann-Whitney U test.
 pub(crate) mod mann_whitney;
+/// The standard normal distribution.
 mod normal;
-pub(crate) mod plot;
+/// A plane with two axes.
+mod plane;
+/// The first two principal components.
 pub(crate) mod principal_components;
+/// Intervals of shares, and Fisher's exact test.
 pub(crate) mod proportion;
+/// Shares over a number, as curves with their intervals.
 pub(crate) mod rates;
+/// Points in two dimensions, darker where a third value is larger.
 pub(crate) mod scatter;
+/// The values of a curve, thinned while they are added.
 pub(crate) mod series;
+/// Numbers with four significant digits.
 pub(crate) mod significant;
+/// Order statistics of a few runs.
 pub(crate) mod statistics;
+/// Frame, colors, legend and coordinates of all figures.
+pub(crate) mod svg;
+/// Curves in a plane, a panel for each case.
 pub(crate) mod trajectories;

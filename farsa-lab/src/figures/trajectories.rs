@@ -1,37 +1,28 @@
-//! Curves in a plane, a small picture for each case, as SVG: the internal states of a test protocol.
-
-use std::fmt::Write as _;
+//! Curves in a plane, a panel for each case: the internal states of a test protocol.
 
 use farsa_num::crc32;
 use maud::{Markup, html};
 
-use crate::figures::heat_map::{OUTLINE, shown};
-use crate::figures::plot::{FONT, GRID, INK, Limits, MARGIN, PAPER};
+use crate::figures::plane::{Limits, Plane};
+use crate::figures::svg::{COLORS, GRID, HEAD, INK, MARGIN, MAX_CASES, OUTLINE, PAPER, WIDTH, at, figure, note, shown, title};
 
-/// Width of the picture, and heights of the title, of a panel's label and of the line below.
-const WIDTH: f64 = 640.0;
-const HEAD: f64 = 44.0;
+/// The heights of a panel's label and of the text below, and the gap between panels.
 const LABEL: f64 = 24.0;
 const FOOT: f64 = 40.0;
-/// What lies between panels.
 const GAP: f64 = 10.0;
-/// How large a panel is at most, and how many columns there are at most.
-const LARGEST: f64 = 300.0;
-const COLUMNS: usize = 6;
-/// More panels than these are not told apart.
-const MOST_PANELS: usize = 60;
-/// More points of a curve than these are not seen; every k-th is drawn then.
-const MOST_POINTS: usize = 100;
-/// The colour of a panel's own curves.
-const CURVE: &str = "#0072B2";
+/// The largest side of a panel and the largest number of columns.
+const MAX_SIDE: f64 = 300.0;
+const MAX_COLUMNS: usize = 6;
+/// Points of a curve, of which longer curves keep every k-th.
+const MAX_POINTS: usize = 100;
 
 /// A plane with curves of several cases.
 #[derive(Debug, Default)]
 pub(crate) struct Trajectories<'a> {
     pub(crate) title: &'a str,
-    /// What lies to the right, and what upwards.
+    /// The names of the lower and the vertical axis.
     pub(crate) axes: [String; 2],
-    /// How many panels stand beside each other.
+    /// The number of panels in a row.
     pub(crate) columns: usize,
     pub(crate) panels: &'a [Panel],
 }
@@ -41,89 +32,59 @@ pub(crate) struct Trajectories<'a> {
 pub(crate) struct Panel {
     pub(crate) label: String,
     pub(crate) curves: Vec<Vec<[f64; 2]>>,
+    /// True for a held-out case.
     pub(crate) outlined: bool,
 }
 
-fn at(x: f64) -> String {
-    format!("{}", (10.0 * x).round() / 10.0)
-}
-
-/// The plane in a panel.
-struct Plane {
-    across: Limits,
-    up: Limits,
-    side: f64,
-}
-
-impl Plane {
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let part = |x: f64, limits: &Limits| (x * limits.part - limits.low) / (limits.high - limits.low);
-        [self.side * part(x, &self.across), self.side * (1.0 - part(y, &self.up))]
-    }
-
-    /// A curve as the data of a path.
-    fn path(&self, curve: &[[f64; 2]]) -> String {
-        let stride = curve.len().div_ceil(MOST_POINTS).max(1);
-        // The last point belongs to it whatever the stride is.
-        let points = curve.iter().rev().step_by(stride).rev();
-        let mut data = String::new();
-        for (number, point) in points.enumerate() {
-            let [x, y] = self.place(*point).map(at);
-            // Writing into a string cannot fail.
-            let _ = write!(data, "{}{x} {y}", if number == 0 { 'M' } else { 'L' });
-        }
-        data
-    }
+/// Returns the points of a curve in a plane, thinned from its end.
+fn line(plane: &Plane, curve: &[[f64; 2]]) -> String {
+    let stride = curve.len().div_ceil(MAX_POINTS).max(1);
+    plane.points(curve.iter().rev().step_by(stride).rev().copied())
 }
 
 impl Trajectories<'_> {
-    /// The picture; text in it is text, so that no font is needed. None where there is no curve, or too many panels.
+    /// Draws the figure, or nothing without curves, with too many panels and with values that are not finite.
     pub(crate) fn draw(&self) -> Option<String> {
         let points = || self.panels.iter().flat_map(|panel| panel.curves.iter().flatten());
-        if !(1..=MOST_PANELS).contains(&self.panels.len()) || points().next().is_none() {
+        if !(1..=MAX_CASES).contains(&self.panels.len()) || points().next().is_none() {
             return None;
         }
         if points().flatten().any(|x| !x.is_finite()) {
             return None;
         }
-        let columns = self.columns.clamp(1, COLUMNS);
-        let room = WIDTH - 2.0 * f64::from(MARGIN) + GAP;
-        let side = (room / columns as f64 - GAP).min(LARGEST);
+        let columns = self.columns.clamp(1, MAX_COLUMNS);
+        let room = WIDTH - 2.0 * MARGIN + GAP;
+        let side = (room / columns as f64 - GAP).min(MAX_SIDE);
         let [across, up] = [0, 1].map(|axis| Limits::of(points().map(|point| point[axis])));
-        let plane = Plane { across, up, side };
-        let rows = self.panels.len().div_ceil(columns);
-        let bottom = HEAD + (side + LABEL + GAP) * rows as f64;
-        let height = bottom + FOOT;
-        let curves = self.panels.iter().flat_map(|panel| &panel.curves);
-        let all: String = curves.map(|curve| plane.path(curve)).collect();
-        // Pictures on one page share their names.
-        let name = format!("all-{:08x}", crc32(all.as_bytes()));
+        let plane = Plane { left: 0.0, top: 0.0, right: side, bottom: side, across, up };
+        let bottom = HEAD + (side + LABEL + GAP) * self.panels.len().div_ceil(columns) as f64;
+        let lines: Vec<String> =
+            self.panels.iter().flat_map(|panel| &panel.curves).map(|curve| line(&plane, curve)).collect();
+        // Figures on one page share their names.
+        let name = format!("all-{:08x}", crc32(lines.concat().as_bytes()));
         let corner = |number: usize| {
-            let x = f64::from(MARGIN) + (side + GAP) * (number % columns) as f64;
+            let x = MARGIN + (side + GAP) * (number % columns) as f64;
             [x, HEAD + LABEL + (side + LABEL + GAP) * (number / columns) as f64]
         };
-        let picture = html! {
-            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", at(WIDTH), at(height)))
-                width=(at(WIDTH)) height=(at(height)) font-family=(FONT.0) font-size="15" {
-                rect width="100%" height="100%" fill=(PAPER) {}
-                defs { path id=(name) d=(all) fill="none" stroke=(GRID) stroke-width="1" {} }
-                text x=(MARGIN) y="28" font-size="20" fill=(INK) { (self.title) }
-                @for (number, panel) in self.panels.iter().enumerate() { (panel.draw(corner(number), &plane, &name)) }
-                text x=(MARGIN) y=(at(bottom + 6.0)) font-size="14" fill=(INK) { "→ " (self.axes[0]) }
-                text x=(MARGIN) y=(at(bottom + 26.0)) font-size="14" fill=(INK) { "↑ " (self.axes[1]) }
-                @if self.panels.iter().any(|panel| panel.outlined) {
-                    text x=(at(WIDTH - f64::from(MARGIN))) y=(at(bottom + 6.0)) text-anchor="end" font-size="14"
-                        fill=(OUTLINE) { "dashed: held out" }
-                }
+        let content = html! {
+            defs {
+                g id=(name) fill="none" stroke=(GRID) { @for line in &lines { polyline points=(line) {} } }
+            }
+            (title(self.title))
+            @for (number, panel) in self.panels.iter().enumerate() { (panel.draw(corner(number), &plane, &name)) }
+            (note([MARGIN, bottom + 6.0], "start", INK, &format!("→ {}", self.axes[0])))
+            (note([MARGIN, bottom + 26.0], "start", INK, &format!("↑ {}", self.axes[1])))
+            @if self.panels.iter().any(|panel| panel.outlined) {
+                (note([WIDTH - MARGIN, bottom + 6.0], "end", OUTLINE, "dashed: held out"))
             }
         };
-        Some(picture.into_string() + "\n")
+        Some(figure([WIDTH, bottom + FOOT], &content))
     }
 }
 
 impl Panel {
     fn draw(&self, [x, y]: [f64; 2], plane: &Plane, all: &str) -> Markup {
-        let side = at(plane.side);
+        let side = at(plane.right);
         html! {
             text x=(at(x)) y=(at(y - 7.0)) fill=(INK) { title { (self.label) } (shown(&self.label)) }
             g transform=(format!("translate({} {})", at(x), at(y))) {
@@ -134,7 +95,7 @@ impl Panel {
                 }
                 use href=(format!("#{all}")) {}
                 @for curve in &self.curves {
-                    path d=(plane.path(curve)) fill="none" stroke=(CURVE) stroke-width="1.6" stroke-opacity="0.75" {}
+                    polyline points=(line(plane, curve)) fill="none" stroke=(COLORS[0]) stroke-width="1.6" stroke-opacity="0.75" {}
                     @if let [Some(first), Some(last)] = [curve.first(), curve.last()] {
                         @let [start, end] = [first, last].map(|point| plane.place(*point));
                         circle cx=(at(start[0])) cy=(at(start[1])) r="3" fill=(PAPER) stroke=(INK) {}
@@ -155,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn every_panel_has_its_own_curves_before_those_of_all() {
+    fn every_panel_shows_its_curves_above_all_curves() {
         let line = vec![[0.0, 0.0], [1.0, 2.0]];
         let panels = [
             panel("TOUCH <red>", vec![line.clone(), vec![[1.0, 0.0], [0.5, 0.5]]]),
@@ -168,22 +129,23 @@ mod tests {
         }
         assert_eq!((svg.matches("<use ").count(), svg.matches("stroke-width=\"1.6\"").count()), (2, 3));
         assert_eq!(svg.matches("r=\"3.5\"").count(), 3);
-        // The plane has a margin of a 20th: 0 and 1 of 1, and 0 and 2 of 2, upwards.
+        // The plane has a margin of a twentieth.
         let side = 0.5 * (640.0 - 36.0 - 10.0);
         let [low, high] = [0.05 / 1.1 * side, 1.05 / 1.1 * side].map(at);
-        assert!(svg.contains(&format!("M{low} {high}L{high} {low}")), "no {low} {high} in {svg}");
+        assert!(svg.contains(&format!("{low},{high} {high},{low}")), "no {low} {high} in {svg}");
     }
 
     #[test]
-    fn long_curves_keep_their_ends_and_what_cannot_be_drawn_is_not() {
+    fn long_curves_keep_their_ends_and_invalid_ones_are_not_drawn() {
         let long: Vec<[f64; 2]> = (0..1001).map(|i| [f64::from(i), 0.0]).collect();
         let panels = [panel("a", vec![long])];
         let draw = |panels: &[Panel]| Trajectories { columns: 1, panels, ..Trajectories::default() }.draw();
         let svg = draw(&panels).unwrap();
-        assert!(svg.matches('L').count() <= 200 && svg.contains("r=\"3.5\""), "{svg}");
+        let line = svg.split("<polyline ").nth(1).unwrap();
+        assert!(line.matches(',').count() <= 101 && svg.contains("r=\"3.5\""), "{svg}");
         assert_eq!(draw(&[]), None);
         assert_eq!(draw(&[panel("a", vec![])]), None);
         assert_eq!(draw(&[panel("a", vec![vec![[f64::NAN, 0.0]]])]), None);
-        assert_eq!(draw(&vec![panel("a", vec![vec![[0.0; 2]]]); 61]), None);
+        assert_eq!(draw(&vec![panel("a", vec![vec![[0.0; 2]]]); 101]), None);
     }
 }

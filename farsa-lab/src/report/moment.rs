@@ -1,6 +1,6 @@
 //! When runs are compared: at a generation, or after as many evaluations where their generations differ in size.
 
-use crate::figures::plot::Across;
+use crate::figures::chart::Across;
 use crate::report::run::{Group, Run};
 
 /// Points of a curve over evaluations.

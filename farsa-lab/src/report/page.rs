@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::figures::plot::{GRID, INK, PAPER};
+use crate::figures::svg::{GRID, INK, PAPER};
 
 /// A page.
 #[derive(Debug, Default)]

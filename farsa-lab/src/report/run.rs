@@ -1,7 +1,6 @@
 //! A run as a report reads it, and runs that differ in their seeds alone.
 
 use std::cmp::Ordering;
-use std::path::Path;
 use std::time::Duration;
 
 use crate::error::Error;
@@ -73,13 +72,10 @@ impl<'e> Run<'e> {
         let evaluator = plan.evaluator()?;
         let kept = if plan.strategy()?.collection().is_some() {
             let search = resumed(&plan, &directory, &checkpoint, &told.record)?;
-            CollectionTable::new(&search, evaluator.as_ref())
-                .map(|table| table.drawn(&search, &plan.name()))
-                .transpose()
+            CollectionTable::new(&search, evaluator.as_ref()).map(|table| table.drawn(&search, &plan.name()))
         } else {
-            Ok(None)
+            None
         };
-        let kept = kept.map_err(|why| Error::damaged(Path::new("the picture of what is kept"), why))?;
         let RunRecord { lines, diagnostics, .. } = told;
         let (populations, terms) = (evaluator.info().populations, evaluator.info().terms);
         let populations = if populations.len() > 1 { populations } else { Vec::new() };

@@ -33,11 +33,11 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
         blocks.push(Block::Table(table));
     }
     blocks.push(Block::Subheading("Fitness".into()));
-    blocks.push(Block::Figures(figures(&groups)?));
+    blocks.push(Block::Figures(figures(&groups)));
     if runs.len() > 1 {
         blocks.extend(outcome(&groups, success));
     }
-    blocks.extend(strategies(&groups)?);
+    blocks.extend(strategies(&groups));
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
     blocks.extend(protocols(&groups));

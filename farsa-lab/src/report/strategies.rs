@@ -1,17 +1,14 @@
-//! What strategies say of their generations beside the fitness, and what they keep.
+//! Values that strategies report per generation, and the archives that they keep.
 
-use std::path::Path;
-
-use crate::error::Error;
-use crate::figures::plot::Chart;
+use crate::figures::chart::Chart;
 use crate::figures::statistics::median;
 use crate::report::curves::curves;
 use crate::report::moment::Moment;
 use crate::report::page::{Block, Figure, Table};
 use crate::report::run::{Group, Run, short};
 
-/// For each strategy that says something or keeps something its curves, its last numbers, and what each run has kept.
-pub(crate) fn strategies(groups: &[Group<'_>]) -> Result<Vec<Block>, Error> {
+/// Returns curves, last values and archives of each strategy that has them.
+pub(crate) fn strategies(groups: &[Group<'_>]) -> Vec<Block> {
     let mut names: Vec<&str> = Vec::new();
     for run in groups.iter().flat_map(|group| &group.runs) {
         let name = run.plan.definition().name();
@@ -21,31 +18,30 @@ pub(crate) fn strategies(groups: &[Group<'_>]) -> Result<Vec<Block>, Error> {
     }
     let mut blocks = Vec::new();
     for name in names {
-        let of_it = |group: &&Group<'_>| group.runs.iter().any(|run| run.plan.definition().name() == name);
-        let own: Vec<Group<'_>> = groups.iter().filter(of_it).cloned().collect();
-        blocks.push(Block::Subheading(format!("What {name} says")));
-        blocks.extend(said(&own)?);
-        let kept = own.iter().flat_map(|group| &group.runs).filter_map(|run| {
-            let caption = format!("{}: what it has kept, by the last generation.", run.name());
+        let has_strategy = |group: &&Group<'_>| group.runs.iter().any(|run| run.plan.definition().name() == name);
+        let groups: Vec<Group<'_>> = groups.iter().filter(has_strategy).cloned().collect();
+        blocks.push(Block::Subheading(format!("Values of {name}")));
+        blocks.extend(values(&groups));
+        let archives = groups.iter().flat_map(|group| &group.runs).filter_map(|run| {
+            let caption = format!("{}: the archive or front of the last generation.", run.name());
             Some(Figure { kind: "archive", picture: run.kept.clone()?, caption })
         });
-        let kept: Vec<Figure> = kept.collect();
-        if !kept.is_empty() {
-            blocks.push(Block::Figures(kept));
+        let archives: Vec<Figure> = archives.collect();
+        if !archives.is_empty() {
+            blocks.push(Block::Figures(archives));
         }
     }
-    Ok(blocks)
+    blocks
 }
 
-/// Curves and last numbers of runs of one strategy.
-fn said(groups: &[Group<'_>]) -> Result<Vec<Block>, Error> {
-    let refused = |why: String| Error::damaged(Path::new("the figure of a strategy"), why);
+/// Returns curves and last values of runs of one strategy.
+fn values(groups: &[Group<'_>]) -> Vec<Block> {
     let diagnostics = groups.iter().flat_map(|group| &group.runs).find_map(|run| run.plan.definition().diagnostics());
     let charts = diagnostics.map_or(&[][..], |diagnostics| diagnostics.charts);
     let columns = charts.iter().flat_map(|chart| chart.curves.iter().map(move |(name, label)| (chart, *name, *label)));
     let columns: Vec<_> = columns.enumerate().collect();
     if columns.is_empty() {
-        return Ok(Vec::new());
+        return Vec::new();
     }
     let across = Moment::common(groups).axis(groups);
     let number = |run: &Run<'_>, generation: usize, column: usize| {
@@ -56,7 +52,7 @@ fn said(groups: &[Group<'_>]) -> Result<Vec<Block>, Error> {
     for &(column, (chart, name, label)) in &columns {
         let title = format!("{}, {label}", chart.title);
         let curves = curves(groups, across, &|run, generation| number(run, generation, column));
-        let picture = Chart { title: title.clone(), axis: chart.axis, across, curves }.draw().map_err(refused)?;
+        let picture = Chart { title: title.clone(), axis: chart.axis, across, curves }.draw();
         figures.push(Figure { kind: "strategy", picture, caption: format!("{title}, in every generation.") });
         table.head.push(name.into());
     }
@@ -67,11 +63,11 @@ fn said(groups: &[Group<'_>]) -> Result<Vec<Block>, Error> {
             table.rows.push([run.name()].into_iter().chain(numbers).collect());
         }
         if group.runs.len() > 1 {
-            let of_all = |column: usize| group.runs.iter().map(|run| last(run, column)).collect::<Vec<_>>();
-            let medians = columns.iter().map(|(column, _)| median(&of_all(*column)).map(short).unwrap_or_default());
+            let column_values = |column: usize| group.runs.iter().map(|run| last(run, column)).collect::<Vec<_>>();
+            let medians = columns.iter().map(|(column, _)| median(&column_values(*column)).map(short).unwrap_or_default());
             table.rows.push([format!("median, {}", group.label)].into_iter().chain(medians).collect());
         }
     }
-    let text = "Of the last generation of each run; the last row of a condition is the median of its runs.";
-    Ok(vec![Block::Figures(figures), Block::Text(text.into()), Block::Table(table)])
+    let text = "Values of the last generation of each run. The last row of a condition is the median of its runs.";
+    vec![Block::Figures(figures), Block::Text(text.into()), Block::Table(table)]
 }

@@ -40,15 +40,11 @@ impl CollectionTable {
         let members = members(search);
         let [csv, svg] = directory.diagnostics("archive");
         replace(&csv, &self.csv(&members).map_err(|why| Error::damaged(&csv, why))?)?;
-        let picture = self.picture(&members, title).map_err(|why| Error::damaged(&svg, why))?;
-        replace(&svg, picture.as_bytes())
+        replace(&svg, self.picture(&members, title).as_bytes())
     }
 
-    /// The picture alone.
-    ///
-    /// # Errors
-    /// The words of what draws, should it refuse.
-    pub(crate) fn drawn(&self, search: &Search, title: &str) -> Result<String, String> {
+    /// Draws the archive or front.
+    pub(crate) fn drawn(&self, search: &Search, title: &str) -> String {
         self.picture(&members(search), title)
     }
 
@@ -68,7 +64,7 @@ impl CollectionTable {
     }
 
     /// The first two descriptor values, or one and the fitness, or the first two objectives.
-    fn picture(&self, members: &[Member<'_>], title: &str) -> Result<String, String> {
+    fn picture(&self, members: &[Member<'_>], title: &str) -> String {
         let mut axes: Vec<(&str, Option<[f64; 2]>)> =
             self.descriptors.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
         axes.extend(self.objectives.iter().map(|name| (name.as_str(), None)));

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::figures::plot;
-use crate::figures::plot::{Chart, Curve};
+use crate::figures::chart::{self, Chart, Curve};
 use crate::figures::series::Series;
 use crate::store::append_log::AppendLog;
 use crate::store::directory::Directory;
@@ -68,8 +67,7 @@ impl DiagnosticsTable {
         let Some(table) = &mut self.0 else { return Ok(()) };
         table.file.check()?;
         table.file.sync()?;
-        let plot = table.plot(title).map_err(|why| Error::damaged(&table.picture, why))?;
-        replace(&table.picture, plot.as_bytes())
+        replace(&table.picture, table.plot(title).as_bytes())
     }
 }
 
@@ -87,7 +85,7 @@ fn line(generation: usize, row: &[f64], curves: &mut [Series]) -> String {
 }
 
 impl Table {
-    fn plot(&self, title: &str) -> Result<String, String> {
+    fn plot(&self, title: &str) -> String {
         let mut curves = self.curves.iter().enumerate();
         let charts = self.diagnostics.charts.iter().map(|chart| {
             let named = chart.curves.iter().zip(&mut curves);
@@ -100,6 +98,6 @@ impl Table {
             let curves = curves.collect();
             Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves, ..Chart::default() }
         });
-        plot::stack(&charts.collect::<Vec<_>>())
+        chart::stack(&charts.collect::<Vec<_>>())
     }
 }

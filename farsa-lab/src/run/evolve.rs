@@ -255,9 +255,7 @@ impl<'d> Run<'d> {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
         self.manifest.write(&directory.manifest())?;
-        let plot = self.curves.draw(&self.title, &self.names);
-        let plot = plot.map_err(|why| Error::damaged(&directory.plot(), why))?;
-        replace(&directory.plot(), plot.as_bytes())
+        replace(&directory.plot(), self.curves.draw(&self.title, &self.names).as_bytes())
     }
 
     fn summary(&self) -> Summary {

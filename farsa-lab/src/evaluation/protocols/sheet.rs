@@ -11,8 +11,7 @@ use crate::evaluation::kept::Kept;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
 use crate::evaluation::test::Subject;
 use crate::experiment::protocol::{Case, Protocol};
-use crate::figures::heat_map::OUTLINE;
-use crate::figures::plot::{FONT, INK, MARGIN, PAPER};
+use crate::figures::svg::{FONT, INK, MARGIN, OUTLINE, PAPER};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::{create_results, refuse_existing};
@@ -152,7 +151,7 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
     };
     let picture = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", all[0], all[1])) width=(all[0]) height=(all[1])
-            font-family=(FONT.0) font-size="16" {
+            font-family=(FONT) font-size="16" {
             rect width="100%" height="100%" fill=(PAPER) {}
             text x=(margin) y="28" font-size="18" fill=(INK) { (title) }
             @for (number, case) in cases.iter().enumerate() { (draw(number, case)) }
