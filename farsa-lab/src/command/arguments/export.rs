@@ -1,4 +1,4 @@
-//! The words of `farsa export`, and the formats of files.
+//! Arguments of `farsa export`, with the formats of files.
 
 use std::path::PathBuf;
 
@@ -17,13 +17,13 @@ pub(crate) struct ExportArgs {
 
 #[derive(Subcommand)]
 pub(crate) enum ExportWhat {
-    /// Write the robot with everything around it as a model file
+    /// Write the robot and its surroundings as a model file
     Robot(ExportRobotArgs),
-    /// Write the controller of a run's champion, with what it senses and drives
+    /// Write the controller of a champion with its sensors and motors
     Controller(ExportControllerArgs),
-    /// Write the genes of a run's champion as a .gen file, for `import` and `evaluate`
+    /// Write the genes of a champion as a .gen file, for `import` and `evaluate`
     Genotype(ExportGenotypeArgs),
-    /// Write how the trials of `test` start
+    /// Write the starts of the trials of `test`
     Starts(ExportStartsArgs),
 }
 
@@ -32,13 +32,13 @@ pub(crate) struct ExportControllerArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// Of which population, where there are several
+    /// The population, where there are several
     #[arg(long, value_name = "NAME")]
     pub(crate) population: Option<String>,
-    /// Of which kind the file is
+    /// The format of the file
     #[arg(long, value_enum)]
     pub(crate) format: ControllerFormat,
-    /// A new file [default: the standard output]
+    /// A new file [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 }
@@ -48,10 +48,10 @@ pub(crate) struct ExportGenotypeArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// Of which population, where there are several
+    /// The population, where there are several
     #[arg(long, value_name = "NAME")]
     pub(crate) population: Option<String>,
-    /// A new file [default: the standard output]
+    /// A new file [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 }
@@ -61,16 +61,16 @@ pub(crate) struct ExportStartsArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// Trials of the test
+    /// The number of trials
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
-    /// The test's seed
+    /// The seed of the test
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
-    /// Of which kind the file is
+    /// The format of the file
     #[arg(long, value_enum)]
     pub(crate) format: DataFormat,
-    /// A new file [default: the standard output]
+    /// A new file [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 }
@@ -78,18 +78,18 @@ pub(crate) struct ExportStartsArgs {
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ExportRobotArgs {
-    /// The experiment, or the directory of a run: of its champion where bodies evolve
+    /// The experiment or the directory of a run, for its champion where bodies evolve
     #[arg(value_name = "EXPERIMENT")]
     pub(crate) experiment: String,
-    /// Of which population of a run, where there are several
+    /// The population of a run, where there are several
     #[arg(long, value_name = "NAME")]
     pub(crate) population: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
-    /// Of which kind the file is
+    /// The format of the file
     #[arg(long, value_enum)]
     pub(crate) format: ModelFormat,
-    /// A new file [default: the standard output]
+    /// A new file [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 }
@@ -108,8 +108,8 @@ impl ValueEnum for ModelFormat {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
-            Self::Mjcf => ("mjcf", "MuJoCo's own: joints, inertias, contact pairs, actuators, starts"),
-            Self::Urdf => ("urdf", "The robot alone: joints, inertias, shapes"),
+            Self::Mjcf => ("mjcf", "MuJoCo: joints, inertias, contact pairs, actuators, starts"),
+            Self::Urdf => ("urdf", "The robot only: joints, inertias, shapes"),
         };
         Some(PossibleValue::new(name).help(help))
     }
@@ -122,8 +122,8 @@ impl ValueEnum for ControllerFormat {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
-            Self::Json => ("json", "Names and numbers, of the body too"),
-            Self::Bytes => ("bytes", "The network for a board's flash: checked and used where it lies"),
+            Self::Json => ("json", "Names and numbers, including the body"),
+            Self::Bytes => ("bytes", "The network for the flash memory of a board"),
             Self::Rust => ("rust", "The network as constants of a Rust program"),
             Self::Safetensors => ("safetensors", "The network as tables for Python"),
         };

@@ -1,4 +1,4 @@
-//! The words of the commands about files that describe experiments.
+//! Arguments of the subcommands for experiment files.
 
 use std::path::PathBuf;
 
@@ -9,9 +9,9 @@ use crate::command::arguments::shared::VariantArgs;
 /// `farsa new`.
 #[derive(Args)]
 pub(crate) struct NewArgs {
-    /// What the experiment is to be called; written is NAME.toml
+    /// The name of the experiment, written to NAME.toml
     pub(crate) name: String,
-    /// What to begin with [default: the first]; an unknown name lists them
+    /// The template; an unknown name lists all [default: the first]
     #[arg(long, value_name = "TEMPLATE")]
     pub(crate) from: Option<String>,
 }
@@ -19,11 +19,11 @@ pub(crate) struct NewArgs {
 /// `farsa check`.
 #[derive(Args)]
 pub(crate) struct CheckArgs {
-    /// The file, or an experiment that is built in
+    /// A file or a built-in experiment
     pub(crate) experiment: String,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
-    /// Draw what is connected to what into an SVG file
+    /// Draw the connections into an SVG file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) graph: Option<PathBuf>,
     /// Write JSON

@@ -1,4 +1,4 @@
-//! The words of the commands about genotypes from elsewhere.
+//! Arguments of the subcommands for external genotypes.
 
 use std::path::PathBuf;
 
@@ -11,12 +11,11 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
 use crate::run::plan::{MAX_SEED, Plan};
 
-/// The setting that `--ir-tables` is short for.
+/// The setting of `--ir-tables`.
 const INFRARED_TABLES: &str = "robot.infrared_tables";
-/// A setting's key in a comment would want the marks of code, which a terminal shows as they are.
 const IR_TABLES: &str = "Tables of the infrared sensors (robot.infrared_tables)";
 
-/// What the genotypes are genotypes of, beside the experiment.
+/// The condition, settings and tables that genotypes belong to.
 #[derive(Args)]
 pub(crate) struct GenotypeVariant {
     #[command(flatten)]
@@ -26,10 +25,10 @@ pub(crate) struct GenotypeVariant {
 }
 
 impl GenotypeVariant {
-    /// An experiment under this condition with these settings and tables.
+    /// Returns the plan of an experiment under this condition with these settings and tables.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables that the experiment has no setting for.
+    /// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables without a setting of the experiment.
     pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
         let mut plan = self.variant.plan(experiment)?;
         if let Some(directory) = &self.ir_tables {
@@ -48,12 +47,12 @@ impl GenotypeVariant {
         Ok(plan)
     }
 
-    /// Whether nothing is said.
+    /// Returns true without any option.
     pub(crate) fn is_empty(&self) -> bool {
         self.ir_tables.is_none() && self.variant.condition.is_none() && self.variant.set.is_empty()
     }
 
-    /// What `--set` first says of a setting.
+    /// Returns the first value of `--set` for a setting.
     pub(crate) fn set(&self, key: &str) -> Option<&Value> {
         self.variant.set.iter().find(|(set, _)| set == key).map(|(_, value)| value)
     }
@@ -66,23 +65,22 @@ pub(crate) struct EvaluateArgs {
     pub(crate) experiment: String,
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
-    /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
-    /// their names
+    /// Genes as integers with commas, once per population, in order or by name
     #[arg(long, value_name = "[NAME=]G,G,...", allow_hyphen_values = true, required_unless_present_any = ["genes_file", "stdin"])]
     pub(crate) genes: Vec<String>,
-    /// A file with the genes: a .gen file of the original FARSA, or a list; of several populations as --genes
+    /// A .gen file of the original FARSA or a list, once per population
     #[arg(long, value_name = "[NAME=]FILE", value_hint = ValueHint::FilePath)]
     pub(crate) genes_file: Vec<PathBuf>,
-    /// Which of the file's genotypes, from 0 [default: its only one]; of several files once for each
+    /// The genotype in the file, from 0, once per file [default: the only one]
     #[arg(long, value_name = "N", requires = "genes_file")]
     pub(crate) genotype: Vec<usize>,
-    /// Read parameters as JSON lines and answer each with a line, in trials as those of a run: for optimisers of one's own
+    /// Read parameters as JSON lines and answer each with a line, in the trials of a run, for custom optimizers
     #[arg(long, conflicts_with_all = ["genes", "genes_file", "trials", "json"])]
     pub(crate) stdin: bool,
     /// Random trials
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
     pub(crate) trials: u32,
-    /// Where the random numbers come from, as in a test; never those of a run, except with --stdin
+    /// The seed, as in a test; with --stdin as in a run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -101,23 +99,22 @@ impl EvaluateArgs {
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ImportArgs {
-    /// .gen files of the original FARSA; the first genotype becomes the champion. Of several populations one file for each
-    /// in their order, or any number as POPULATION=FILE, as many genotypes for each. Or one configuration of the original,
-    /// .ini or .conf, of which an experiment file is made
+    /// .gen files, whose first genotype becomes the champion, one per population or POPULATION=FILE, or a configuration
+    /// (.ini, .conf) of the original FARSA
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
-    /// The experiment that they are genotypes of
+    /// The experiment of the genotypes
     #[arg(long, value_name = "NAME")]
     pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
-    /// Where the random numbers of replayed trials come from [default: 1]
+    /// The seed of replayed trials [default: 1]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: Option<u64>,
-    /// The new directory; of a configuration the new file [default: its name with .toml, here]
+    /// The new directory, or for a configuration the new file [default: NAME.toml]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(crate) out: Option<PathBuf>,
-    /// Write nothing where a line of a configuration cannot be carried over as it is
+    /// Write nothing if a line of a configuration cannot be converted exactly
     #[arg(long)]
     pub(crate) strict: bool,
     /// Write the summary as JSON

@@ -1,4 +1,4 @@
-//! The words of `farsa merge`.
+//! Arguments of `farsa merge`.
 
 use std::path::PathBuf;
 
@@ -8,13 +8,13 @@ use crate::merge::Merge;
 
 #[derive(Args)]
 pub(crate) struct MergeArgs {
-    /// Runs, or directories that hold some at any depth, such as those of several machines
+    /// Runs, or directories that contain runs at any depth
     #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     directories: Vec<PathBuf>,
-    /// Copy the finished runs into this directory, under the names that they have; nothing is overwritten
+    /// Copy finished runs into this directory under their names, without overwriting
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
-    /// A new file for the table of all runs [default without --out: the standard output]
+    /// A new file for the table of all runs [default without --out: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) csv: Option<PathBuf>,
     /// Write the summary as JSON
@@ -27,7 +27,7 @@ impl MergeArgs {
         Merge { directories: &self.directories, out: self.out.as_deref(), csv: self.csv.as_deref() }
     }
 
-    /// Whether the table goes to the standard output.
+    /// Returns true if the table is written to standard output.
     pub(crate) fn prints(&self) -> bool {
         self.out.is_none() && self.csv.is_none() && !self.json
     }

@@ -1,19 +1,18 @@
-//! The words of the command line.
-//!
-//! - `export`: those of `farsa export`, and the formats of files
-//! - `files`: those of the commands about files that describe experiments
-//! - `genotypes`: those of the commands about genotypes from elsewhere, `farsa evaluate` and `farsa import`
-//! - `merge`: those of `farsa merge`
-//! - `robot`: those of `farsa robot`
-//! - `shared`: those that several commands have
-//! - `subcommands`: all subcommands, and the words of those that are short
-//! - `sweep`: those of `farsa sweep`
+//! Arguments of the command line.
 
+/// `farsa export`, with the formats of files.
 pub(crate) mod export;
+/// `farsa new` and `farsa check`.
 pub(crate) mod files;
+/// `farsa evaluate` and `farsa import`.
 pub(crate) mod genotypes;
+/// `farsa merge`.
 pub(crate) mod merge;
+/// `farsa robot`.
 pub(crate) mod robot;
+/// Arguments that several subcommands share.
 pub(crate) mod shared;
+/// All subcommands, with the arguments of the shorter ones.
 pub(crate) mod subcommands;
+/// `farsa sweep`.
 pub(crate) mod sweep;

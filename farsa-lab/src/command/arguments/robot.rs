@@ -1,4 +1,4 @@
-//! The words of `farsa robot`.
+//! Arguments of `farsa robot`.
 
 use std::path::PathBuf;
 
@@ -14,31 +14,31 @@ pub(crate) struct RobotArgs {
     /// A URDF or MJCF file
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// The folder that all files named in it must lie in [default: its own]
+    /// The folder that contains all files named in it [default: its own]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) root: Option<PathBuf>,
-    /// A folder with packages, for meshes at package://; may be repeated
+    /// A folder of packages for meshes at package://, repeatable
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) packages: Vec<PathBuf>,
-    /// Let a URDF's root move freely instead of standing fixed
+    /// Let the root of a URDF move freely instead of fixing it
     #[arg(long)]
     pub(crate) floating: bool,
-    /// Leave meshes out
+    /// Omit meshes
     #[arg(long)]
     pub(crate) without_meshes: bool,
-    /// Give what moves without a mass this one [kg]
+    /// The mass of moving bodies without mass [kg]
     #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = not_negative)]
     pub(crate) least_mass: f64,
-    /// Give what moves at least these moments of inertia [kg m2]
+    /// The least moments of inertia of moving bodies [kg m2]
     #[arg(long, value_name = "KGM2", default_value_t = 0.0, value_parser = not_negative)]
     pub(crate) least_inertia: f64,
-    /// Give impossible moments of inertia their mean
+    /// Replace impossible moments of inertia by their mean
     #[arg(long)]
     pub(crate) balance: bool,
-    /// Write the robot back, as a file of this kind
+    /// Also write the robot in this format
     #[arg(long, value_enum)]
     pub(crate) format: Option<ModelFormat>,
-    /// A new file to write it to [default: the standard output]
+    /// A new file for it [default: standard output]
     #[arg(long, value_name = "FILE", requires = "format", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
     /// Write JSON

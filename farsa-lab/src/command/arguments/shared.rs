@@ -1,4 +1,4 @@
-//! The words of the command line that several commands share.
+//! Arguments that several subcommands share.
 
 use std::thread;
 
@@ -13,19 +13,19 @@ use crate::run::config_file;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
-/// What of an experiment is meant.
+/// The condition and settings of an experiment.
 #[derive(Args)]
 pub(crate) struct VariantArgs {
-    /// One of its conditions [default: its first]
+    /// A condition of the experiment [default: the first]
     #[arg(long, value_name = "NAME")]
     pub(crate) condition: Option<String>,
-    /// Change a setting; may be repeated
+    /// Change a setting, repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = config_file::assignment)]
     pub(crate) set: Vec<(String, Value)>,
 }
 
 impl VariantArgs {
-    /// An experiment under this condition with these settings.
+    /// Returns the plan of an experiment under this condition with these settings.
     ///
     /// # Errors
     /// [`Error::Unknown`] and [`Error::Setting`].
@@ -44,7 +44,7 @@ impl VariantArgs {
     }
 }
 
-/// What evaluates the trials.
+/// The threads and lanes of an evaluation.
 #[derive(Args)]
 pub(crate) struct WorkerArgs {
     #[command(flatten)]
@@ -54,7 +54,7 @@ pub(crate) struct WorkerArgs {
 }
 
 impl WorkerArgs {
-    /// Threads with a set-up each.
+    /// Creates a pool of threads.
     ///
     /// # Errors
     /// Those of [`Pool::new`].
@@ -62,7 +62,7 @@ impl WorkerArgs {
         Pool::new(plan, self.threads(), self.lanes())
     }
 
-    /// Whether a plan can be evaluated so; with one thread, which is made sooner than all.
+    /// Checks that a plan can be evaluated, with one thread to save time.
     ///
     /// # Errors
     /// Those of [`Pool::new`].
@@ -70,7 +70,7 @@ impl WorkerArgs {
         Pool::new(plan, 1, self.lanes()).map(drop)
     }
 
-    /// The same where processes share the processors: without a number of threads, each takes its part of them.
+    /// Creates a pool for one of several processes, by default with its part of the processors.
     ///
     /// # Errors
     /// Those of [`Pool::new`].
@@ -90,7 +90,7 @@ impl WorkerArgs {
 
 #[derive(Args)]
 struct Threads {
-    /// Threads to use [default: all processors]; the results are the same with any number
+    /// Threads; results do not depend on their number [default: all processors]
     #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=4096))]
     threads: Option<u16>,
 }
@@ -101,22 +101,21 @@ impl Threads {
     }
 }
 
-/// In which world.
+/// The world of the trials.
 #[derive(Args)]
 pub(crate) struct WorldArgs {
-    /// The world to run in, where the experiment has a choice (world.engine): articulated or arena, or rapier if built with
-    /// it [default: the run's own]
+    /// The world, where the experiment has several (world.engine): articulated, arena or rapier [default: the run's]
     #[arg(long = "world", value_name = "NAME")]
     pub(crate) name: Option<String>,
 }
 
-/// How many trials at once.
+/// Parallel trials.
 #[derive(Args)]
 struct LanesArgs {
-    /// Trials side by side in each thread; the results are the same with any number
+    /// Parallel trials per thread; results do not depend on them
     #[arg(long, value_name = "L", default_value = "auto", value_parser = PossibleValuesParser::new(["1", "8", "16", "auto"]))]
     lanes: String,
-    /// Instructions for trials side by side; the results are the same with any
+    /// Instructions of parallel trials; results do not depend on them
     #[arg(long, value_name = "SET", default_value = "auto", value_parser = simd())]
     simd: Simd,
 }
@@ -124,7 +123,7 @@ struct LanesArgs {
 #[derive(Clone, Copy)]
 struct Simd(Option<&'static str>);
 
-/// The name of an instruction set, or none for `auto`.
+/// Parses the name of an instruction set, `None` for `auto`.
 fn simd() -> impl clap::builder::TypedValueParser<Value = Simd> {
     let known = |name: String| Simd(SIMD.into_iter().find(|known| *known == name));
     PossibleValuesParser::new(SIMD.into_iter().chain(["auto"])).map(known)

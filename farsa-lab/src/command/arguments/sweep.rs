@@ -1,4 +1,4 @@
-//! The words of `farsa sweep`.
+//! Arguments of `farsa sweep`.
 
 use std::path::PathBuf;
 
@@ -9,19 +9,19 @@ use crate::sweep::work::Which;
 
 #[derive(Args)]
 pub(crate) struct SweepArgs {
-    /// A configuration with tables [grid] (every combination) and [list] (side by side) of the settings that vary
+    /// A configuration with tables [grid] (every combination) and [list] (n-th values together) of the settings that vary
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// Only the K-th point, from 1: for one task of an array
+    /// Only the K-th point, from 1, for a task of a scheduler's array
     #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
     point: Option<u32>,
     /// Only the K-th replication of each point, from 1
     #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
     replication: Option<u32>,
-    /// Check all points and list them with what is finished; nothing is begun
+    /// Check and list all points with their finished runs, without starting any
     #[arg(long)]
     pub(crate) list: bool,
-    /// The directory of the points' directories [default: runs/FILE without its end]
+    /// The parent directory of the points [default: runs/FILE without extension]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
     #[command(flatten)]
