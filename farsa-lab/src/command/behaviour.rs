@@ -1,4 +1,4 @@
-//! What is said of an individual beside its fitness, in words and as JSON.
+//! Objectives and behavior of an experiment, as text and JSON.
 
 use std::fmt::Write as _;
 
@@ -7,16 +7,16 @@ use serde::Serialize;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::parameter::Parameter;
 
-/// The objectives and descriptors of an experiment; the JSON form has these names.
+/// The objectives and measures of an experiment, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct BehaviourInfo {
-    /// For strategies of several objectives, the fitness first.
+    /// The objectives of multi-objective strategies, the fitness first.
     objectives: Vec<String>,
-    /// What behaviour is described by.
+    /// The measures of behavior.
     descriptors: Vec<DescriptorInfo>,
 }
 
-/// A value that describes a behaviour, and its range.
+/// A measure of behavior and its range.
 #[derive(Serialize)]
 struct DescriptorInfo {
     name: String,
@@ -24,7 +24,7 @@ struct DescriptorInfo {
 }
 
 impl BehaviourInfo {
-    /// Those of an experiment, which may have none.
+    /// Returns the objectives and measures of an experiment, if any.
     pub(crate) fn new(behaviour: Option<&dyn Behaviour>) -> Self {
         let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
         let descriptors = behaviour.map(Behaviour::descriptors).unwrap_or_default();
@@ -35,10 +35,10 @@ impl BehaviourInfo {
         }
     }
 
-    /// A line for each of the two, where there are any.
+    /// Returns a line for objectives and one for measures, where there are any.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         if self.objectives.len() > 1 {
             let _ = writeln!(text, "objectives: {}", self.objectives.join(", "));
         }

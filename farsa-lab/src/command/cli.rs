@@ -1,4 +1,4 @@
-//! The command: `main` for any set of experiments.
+//! `main` for any set of experiments.
 
 use std::ffi::OsString;
 use std::io::{self, Write as _};
@@ -44,27 +44,29 @@ use crate::strategy::settings::{GENERATIONS, POPULATION};
 use crate::sweep::SweepFile;
 use crate::sweep::work::{self, Sweep};
 
-/// Runs the command over these experiments with the process's arguments: the whole of a `main`.
+/// Runs the command with the arguments of the process over these experiments, as a complete `main`.
 ///
-/// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C, SIGTERM or SIGHUP, or 75 when a
-/// scheduler of a cluster has started it; 1 otherwise.
+/// The exit code is 0 for success and 2 for an invalid command line or configuration. After Ctrl-C, SIGTERM or SIGHUP it is
+/// 130, or 75 if a scheduler of a cluster has started the process. It is 1 for other errors.
 pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
     Laboratory::new(experiments).main()
 }
 
-/// The same on one of several ranks that were given the same command: together they evaluate the trials of `run`, everything else
-/// is rank 0's. Only rank 0 writes files and says what goes wrong, and all end with its exit code.
+/// Runs the command on one of several ranks with the same arguments.
+///
+/// The ranks evaluate the trials of `run` together. Only rank 0 writes files and reports errors, and all ranks end with its
+/// exit code.
 pub fn main_on_ranks(experiments: &[&dyn Experiment], ranks: &dyn Ranks) -> ExitCode {
     Laboratory::new(experiments).main_on_ranks(ranks)
 }
 
 impl Laboratory<'_> {
-    /// Runs the command over this laboratory with the process's arguments, as [`main`] does.
+    /// Runs the command with the arguments of the process over this laboratory, as [`main`] does.
     pub fn main(&self) -> ExitCode {
         execute(self, &Alone)
     }
 
-    /// The same on one of several ranks, as [`main_on_ranks`] does.
+    /// Runs the command on one of several ranks, as [`main_on_ranks`] does.
     pub fn main_on_ranks(&self, ranks: &dyn Ranks) -> ExitCode {
         execute(self, ranks)
     }
@@ -80,7 +82,7 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
             let text = error.to_string();
             let _ = exchange.begin(Err(Error::Usage(text.trim_start_matches("error: ").into())));
             if !exchange.is_follower() {
-                // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
+                // Help and version are printed here, too, with exit code 0. A failure to print cannot be reported.
                 let _ = error.print();
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
@@ -98,10 +100,10 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     ExitCode::from(dismissed.map_or_else(|error| invocation.told(Err(error)), |()| code))
 }
 
-/// Reads a command line, whose first word is the program's.
+/// Parses a command line, whose first word is the program.
 ///
 /// # Errors
-/// What is wrong with it; help and version, which are printed instead, as well.
+/// Invalid arguments, and requests for help and version.
 pub(crate) fn read(
     program: &str,
     laboratory: &Laboratory<'_>,
@@ -110,7 +112,7 @@ pub(crate) fn read(
     read_by(&mut manual::command(program, laboratory), words)
 }
 
-/// The same by what the command says of itself.
+/// Parses a command line with the help of this program.
 pub(crate) fn read_by(
     command: &mut clap::Command,
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
@@ -118,20 +120,20 @@ pub(crate) fn read_by(
     Cli::from_arg_matches(&command.try_get_matches_from_mut(words)?)
 }
 
-/// What the user calls this program.
+/// Returns the name of the program.
 fn program() -> String {
     let path = std::env::args_os().next().map(PathBuf::from);
     let name = path.and_then(|path| path.file_name()?.to_str().map(str::to_owned));
-    // The suffix of Windows is no part of what is typed.
+    // The suffix of Windows is not typed.
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
 }
 
 impl<'e> Invocation<'e, '_> {
-    /// Says what went wrong, on rank 0, and returns the exit code.
+    /// Reports an error on rank 0, and returns the exit code.
     fn told(&self, result: Result<(), Error>) -> u8 {
         match result {
             Ok(()) => 0,
-            // The reader has seen enough: `farsa replay ... | head`.
+            // A closed pipe is no error: `farsa replay ... | head`.
             Err(error) if replay::reader_left(&error) => 0,
             Err(error) => {
                 if !self.exchange.is_follower() {
@@ -272,7 +274,7 @@ impl<'e> Invocation<'e, '_> {
         self.summary(json, &found.text(), &|| pretty(&found))
     }
 
-    /// Says what came of the command; JSON that was asked for is no summary that quiet leaves out.
+    /// Prints the summary, or JSON even with `--quiet`.
     pub(super) fn summary(&self, json: bool, text: &str, all: &dyn Fn() -> Result<String, Error>) -> Result<(), Error> {
         match (json, self.quiet) {
             (true, _) => say(&all()?),
@@ -281,12 +283,12 @@ impl<'e> Invocation<'e, '_> {
         }
     }
 
-    /// The experiment of this name.
+    /// Returns the experiment of a name.
     pub(super) fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
         self.laboratory.experiment(name, "")
     }
 
-    /// A run that exists, with the plan in its configuration.
+    /// Returns an existing run with the plan of its configuration.
     pub(super) fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
         let plan = Plan::from_file(self.laboratory, &ConfigFile::read_regular(&directory.config())?)?;
@@ -310,8 +312,7 @@ impl<'e> Invocation<'e, '_> {
         bench::bench(&plan, &sample, pool, args.seconds)
     }
 
-    /// Runs of one plan with one seed after the other, or only that of a number from 1; each is begun, gone on with, or finished
-    /// already.
+    /// Starts, continues or skips the replications of a plan, or only the one of a number from 1.
     pub(crate) fn replicate(&self, args: &RunArgs, count: u32, only: Option<u32>) -> Result<Replications, Error> {
         let (_, plan) = self.planned_from_file(args)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
@@ -320,7 +321,7 @@ impl<'e> Invocation<'e, '_> {
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
-    /// Brings runs together; their table goes to the standard output where no other place was named.
+    /// Merges runs, with their table on standard output by default.
     fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
         let found = args.merge().make(self.laboratory)?;
         if !args.prints() {
@@ -332,7 +333,7 @@ impl<'e> Invocation<'e, '_> {
         say(&found.table)
     }
 
-    /// The runs of all points of a file, or what there is of them.
+    /// Makes or lists the runs of all points of a sweep.
     fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
         let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
         let sweep = Sweep::new(&file, self.laboratory, &root)?;
@@ -347,7 +348,7 @@ impl<'e> Invocation<'e, '_> {
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
         let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
         let (directory, plan) = self.planned(args, file.as_ref())?;
-        // What is refused leaves no directory behind.
+        // A refused run leaves no directory.
         let pool = self.pool(args, &plan)?;
         let directory = if let Some(directory) = directory {
             self.same_names(args, file.as_ref(), &plan, &directory)?;
@@ -360,7 +361,7 @@ impl<'e> Invocation<'e, '_> {
         evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
     }
 
-    /// Moves a run aside that is where another is to be, if that was asked for and the other can begin.
+    /// Renames an existing run for `--force`, if the new one can start.
     fn make_room(&self, force: bool, plan: &Plan<'_>, path: &Path) -> Result<(), Error> {
         if !force {
             return Ok(());
@@ -373,7 +374,7 @@ impl<'e> Invocation<'e, '_> {
         Ok(())
     }
 
-    /// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.
+    /// Refuses to resume a run of another experiment. Settings and seed are compared with the checkpoint later.
     fn same_names(
         &self,
         args: &RunArgs,
@@ -409,17 +410,17 @@ impl<'e> Invocation<'e, '_> {
         Ok(())
     }
 
-    /// The threads of this rank.
+    /// Creates the threads of this rank.
     pub(crate) fn pool(&self, args: &RunArgs, plan: &Plan<'e>) -> Result<Pool<'e>, Error> {
         Ok(args.workers.pool_shared(plan, self.sharing)?.on(self.exchange.clone()))
     }
 
-    /// What the command line and the file that it names ask for.
+    /// Returns the plan of the command line and its file.
     pub(crate) fn planned_from_file(&self, args: &RunArgs) -> Result<(Option<Directory>, Plan<'e>), Error> {
         self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())
     }
 
-    /// What the command line and its file ask for, and the directory that is to be gone on with.
+    /// Returns the plan of the command line and its file, and the directory to resume.
     fn planned(&self, args: &RunArgs, file: Option<&ConfigFile>) -> Result<(Option<Directory>, Plan<'e>), Error> {
         let (directory, mut plan) = match &args.resume {
             Some(path) => {
@@ -446,7 +447,7 @@ impl<'e> Invocation<'e, '_> {
         Ok((directory, plan))
     }
 
-    /// The defaults of the experiment and condition that are named on the command line or else in the file.
+    /// Returns the defaults of the experiment and condition of the command line or the file.
     fn fresh(&self, args: &RunArgs, file: Option<&ConfigFile>) -> Result<Plan<'e>, Error> {
         let named = file.filter(|file| file.experiment.is_some());
         let experiment = match (&args.experiment, named) {
@@ -477,12 +478,12 @@ impl<'e> Invocation<'e, '_> {
     }
 }
 
-/// Prints what a person reads; names from elsewhere in it do not reach the terminal as they are.
+/// Prints text for people, with control characters of external names escaped.
 pub(super) fn tell(text: &str) -> Result<(), Error> {
     say(&*escaped(text))
 }
 
-/// Prints data, as they are.
+/// Prints data unchanged.
 pub(super) fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_ref()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))

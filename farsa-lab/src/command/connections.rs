@@ -1,4 +1,4 @@
-//! What is connected to what: sensors with inputs, outputs with motors, terms with the fitness.
+//! The connections of an experiment: sensors with inputs, outputs with motors, terms with the fitness.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::Plan;
 
-/// The parts of an experiment and their channels; the JSON form has these names.
+/// The parts of an experiment and their channels, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct Connections {
     experiment: String,
@@ -30,14 +30,14 @@ pub(crate) struct Connections {
     step_seconds: f64,
 }
 
-/// A parameter that is searched for, from what the smallest gene stands for to what the largest does.
+/// An evolved parameter with its values for the smallest and the largest gene.
 #[derive(Serialize)]
 struct Searched {
     name: String,
     ends: [f64; 2],
 }
 
-/// Channels that belong together, with their names.
+/// A group of channels with their names.
 #[derive(Serialize)]
 struct Group {
     name: String,
@@ -45,12 +45,12 @@ struct Group {
     /// The first channel and the one after the last.
     channels: [usize; 2],
     names: Vec<String>,
-    /// The unit of what each channel stands for, where that is known and has one.
+    /// The unit of each channel, where it is known.
     units: Vec<String>,
 }
 
 impl Group {
-    /// How many channels there are, and of what unit if it is one.
+    /// Returns the number of channels, and their unit if they share one.
     fn count(&self) -> String {
         let [from, to] = self.channels;
         let count = format!("{} {}", to - from, if to - from == 1 { "channel" } else { "channels" });
@@ -61,7 +61,7 @@ impl Group {
     }
 }
 
-/// The units of what the channels of sensors and motors stand for, of an experiment whose controllers say so.
+/// Returns the units of the channels of sensors and motors, where controllers describe them.
 fn units(task: &dyn Task) -> [Vec<String>; 2] {
     let middle: Vec<f32> = task.info().parameters.iter().map(|it| (0.5 * (it.ends[0] + it.ends[1])) as f32).collect();
     let Some(controller) = task.exports().and_then(|exports| exports.controller(&middle)) else {
@@ -82,7 +82,7 @@ fn units(task: &dyn Task) -> [Vec<String>; 2] {
     [sensors.collect(), motors.collect()]
 }
 
-/// Groups one after the other, with the names of their channels and the units of what these stand for.
+/// Returns consecutive groups with the names and units of their channels.
 fn groups(groups: &[ChannelGroup], names: &[String], units: &[String]) -> Vec<Group> {
     let mut first = 0;
     let group = |group: &ChannelGroup| {
@@ -96,10 +96,10 @@ fn groups(groups: &[ChannelGroup], names: &[String], units: &[String]) -> Vec<Gr
 }
 
 impl Connections {
-    /// Those of a plan, whose experiment is made for it.
+    /// Returns the connections of a plan.
     ///
     /// # Errors
-    /// What keeps the experiment from being made.
+    /// Those of creating the experiment.
     pub(crate) fn new(plan: &Plan<'_>) -> Result<Self, Error> {
         let task = plan.evaluator()?;
         let (schema, Description { sensors, motors, network, steps, step_seconds, .. }) =
@@ -128,11 +128,11 @@ impl Connections {
         })
     }
 
-    /// In words.
+    /// Returns the connections as text.
     pub(crate) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.experiment, self.summary);
         let width = self.sensors.iter().chain(&self.motors).map(|group| group.name.chars().count()).max().unwrap_or(0);
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         for (what, groups) in [("inputs", &self.sensors), ("outputs", &self.motors)] {
             let _ = writeln!(text, "\n{what} of the network:");
             for Group { name, meaning, channels: [first, end], .. } in groups {
@@ -146,7 +146,7 @@ impl Connections {
         text + &self.behaviour.text()
     }
 
-    /// As a drawing: sensors on the left, the network, motors on the right, and the terms below.
+    /// Draws sensors on the left, the network, motors on the right and the terms below.
     pub(crate) fn svg(&self) -> String {
         let rows = self.sensors.len().max(self.motors.len()).max(1);
         let terms = self.terms.len().max(1);
@@ -174,7 +174,7 @@ impl Connections {
                 };
                 arrow(svg, from_to);
                 let near = [0.5 * (side + end), 0.75 * y + 0.25 * at - 4.0];
-                // What stands on a line stays legible.
+                // Text on a line remains readable.
                 let [width, high] = [6.6 * label.len() as f64, 14.0];
                 let [x, y] = [near[0] - 0.5 * width, near[1] - 11.0];
                 let _ = writeln!(
@@ -202,7 +202,7 @@ impl Connections {
     }
 }
 
-/// The drawing's width, its rows, and where its columns begin.
+/// The width, the rows and the columns of the drawing.
 const WIDTH: f64 = 900.0;
 const TOP: f64 = 50.0;
 const ROW: f64 = 56.0;
@@ -212,7 +212,7 @@ const SENSORS: f64 = 20.0;
 const NETWORK: f64 = 345.0;
 const MOTORS: f64 = 670.0;
 
-/// Channels counted from 1: `3` or `3-8`.
+/// Formats channels counted from 1: `3` or `3-8`.
 fn span(first: usize, end: usize) -> String {
     if end == first + 1 { end.to_string() } else { format!("{}-{end}", first + 1) }
 }
@@ -223,7 +223,7 @@ fn boxed(svg: &mut String, [x, y, width, height]: [f64; 4], lines: [&str; 2], co
         "<rect x=\"{x}\" y=\"{y:.1}\" width=\"{width}\" height=\"{height}\" rx=\"5\" fill=\"{color}\" stroke=\"#555\"/>"
     );
     let middle = x + 0.5 * width;
-    // A long line goes on in a second one.
+    // A long line continues in a second one.
     let words = wrapped(lines[0], 32);
     let count = words.len() as f64 + 1.0;
     let first = y + 0.5 * height - 8.0 * (count - 1.0) + 4.0;
@@ -233,7 +233,7 @@ fn boxed(svg: &mut String, [x, y, width, height]: [f64; 4], lines: [&str; 2], co
     text_at(svg, [middle, first + 16.0 * (count - 1.0)], "middle", 11, lines[1]);
 }
 
-/// A text in lines of so many letters at most, broken between words, of which three are shown.
+/// Breaks a text between words into at most three lines of the given length.
 fn wrapped(text: &str, most: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {

@@ -1,4 +1,4 @@
-//! `farsa export`: of what, and where to.
+//! `farsa export`: sources and files.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::export::files;
 use crate::run::laboratory::FILE;
 
 impl Invocation<'_, '_> {
-    /// The content of the file that is exported, and its path, if it has one.
+    /// Returns the content of the exported file and its path, if it has one.
     pub(super) fn exported(&self, what: ExportWhat) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
         match what {
             ExportWhat::Robot(args) => Ok((self.exported_robot(&args)?.into_bytes(), args.out)),
@@ -30,7 +30,7 @@ impl Invocation<'_, '_> {
         }
     }
 
-    /// The robot of an experiment, or of a run; where a directory is called like an experiment, the experiment's.
+    /// Returns the robot of an experiment or of a run. The name of an experiment takes precedence over a directory.
     fn exported_robot(&self, args: &ExportRobotArgs) -> Result<String, Error> {
         let ExportRobotArgs { experiment: name, population, variant, format, .. } = args;
         let (path, found) = (Path::new(name), self.find(name));

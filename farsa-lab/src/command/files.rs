@@ -13,7 +13,7 @@ use crate::run::laboratory::{FILE, Template};
 use crate::store::replace::create_results;
 
 impl Invocation<'_, '_> {
-    /// Writes a file that an experiment can be made of.
+    /// Writes an experiment file from a template.
     pub(super) fn new_file(&self, args: &NewArgs) -> Result<(), Error> {
         let templates = self.laboratory.files()?.templates;
         let names = || templates.iter().map(|template| template.name);
@@ -25,13 +25,13 @@ impl Invocation<'_, '_> {
             let asked = args.from.as_deref().unwrap_or_default();
             let mut list = Error::unknown("--from", "template", asked, names()).to_string();
             for Template { name, summary, .. } in templates {
-                // Writing into a string cannot fail.
+                // Writing to a string cannot fail.
                 let _ = write!(list, "\n  {name}: {summary}");
             }
             return Err(Error::Usage(list));
         };
         let path = PathBuf::from(format!("{}{FILE}", args.name.strip_suffix(FILE).unwrap_or(&args.name)));
-        // Refused before it is written: the name becomes that of the experiment.
+        // The file name becomes the name of the experiment, so it is checked first.
         (self.laboratory.files()?.read)(&path.display().to_string(), text, None, self.laboratory.strategies())?;
         create_results(&[(path.clone(), text)])?;
         let (program, path) = (self.program, path.display());
@@ -39,7 +39,7 @@ impl Invocation<'_, '_> {
         if self.quiet { Ok(()) } else { tell(&next) }
     }
 
-    /// Checks an experiment, and tells or draws what is connected to what.
+    /// Checks an experiment, and lists or draws its connections.
     pub(super) fn check(&self, args: &CheckArgs) -> Result<(), Error> {
         let plan = args.variant.plan(self.laboratory.experiment(&args.experiment, "")?)?;
         plan.strategy()?;

@@ -18,26 +18,26 @@ use crate::store::bounded;
 use crate::store::replace::create_results;
 use crate::strategy::settings::POPULATION;
 
-/// What names of configurations end with.
+/// The suffixes of configuration files.
 const CONFIGURATIONS: [&str; 2] = ["ini", "conf"];
-/// The most remarks that are told one by one.
+/// The most remarks that are listed.
 const MOST_TOLD: usize = 1000;
 
-/// What came of a configuration.
+/// The result of importing a configuration.
 #[derive(Debug, Serialize)]
 struct Summary<'i> {
     file: String,
-    /// What is lost, or other here than it was there.
+    /// Differences from the original.
     left: &'i [LeftOut],
-    /// What changes nothing that comes out.
+    /// Remarks without effect on results.
     without_effect: &'i [LeftOut],
-    /// How many more there are of both.
+    /// The number of further remarks.
     more_left: usize,
     more_without_effect: usize,
 }
 
 impl Invocation<'_, '_> {
-    /// Imports what the files are: genotypes, or a configuration.
+    /// Imports genotypes or a configuration.
     pub(super) fn import(&self, args: &ImportArgs) -> Result<(), Error> {
         match &*args.files {
             [path] if args.experiment.is_none() && is_configuration(path) => self.import_configuration(args, path),
@@ -65,7 +65,7 @@ impl Invocation<'_, '_> {
         self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
     }
 
-    /// Writes an experiment file, and tells what is other there.
+    /// Writes an experiment file, and reports differences from the original.
     fn import_configuration(&self, args: &ImportArgs, path: &Path) -> Result<(), Error> {
         if !args.variant.is_empty() || args.seed.is_some() {
             let why = "a configuration has its own settings and seeds: --condition, --set, --ir-tables and --seed are for genotypes";
@@ -89,7 +89,7 @@ impl Invocation<'_, '_> {
         }
         create_results(&[(out, text)])?;
         let mut said = String::new();
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(said, "{}: from {}", OneLine(&name), OneLine(path.display()));
         let _ = writeln!(
             said,
@@ -109,7 +109,7 @@ impl Invocation<'_, '_> {
     }
 }
 
-/// Says on standard error what is lost; that nobody reads it is no reason to fail.
+/// Reports differences on standard error. A closed pipe is no error.
 fn tell_left(left: &[LeftOut], lost: usize) {
     let mut errors = io::stderr().lock();
     for remark in left.iter().take(MOST_TOLD) {
@@ -125,7 +125,7 @@ fn has_ending(path: &Path) -> bool {
     path.extension().is_some_and(|end| CONFIGURATIONS.iter().any(|known| end.eq_ignore_ascii_case(known)))
 }
 
-/// Whether a file is a configuration, by its name, or by its first line that is no comment.
+/// Returns true for a configuration, by its name or its first line that is no comment.
 fn is_configuration(path: &Path) -> bool {
     let begins = |text: String| {
         let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with(['#', ';']));
@@ -134,7 +134,7 @@ fn is_configuration(path: &Path) -> bool {
     has_ending(path) || (path.is_file() && bounded::read_stream_text(path, MAX_BYTES).is_ok_and(begins))
 }
 
-/// The file here for a configuration: its name in letters that names of experiments have.
+/// Returns the experiment file for a configuration, with a valid name.
 fn file_of(path: &Path) -> PathBuf {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
     let name: String =

@@ -1,4 +1,4 @@
-//! `farsa list` and `farsa info`: what there is and what it is made of.
+//! `farsa list` and `farsa info`: experiments and their parts.
 
 use std::fmt::Write as _;
 
@@ -14,23 +14,23 @@ use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
 use crate::run::plan::Plan;
 
-/// Most names of a kind that are listed before the last.
+/// The most names of a kind that are listed before the last.
 const MOST_NAMES: usize = 12;
 
-/// The experiments, one a line, with their conditions.
+/// Returns a line per experiment with its conditions.
 pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {
     let width = experiments.iter().map(|experiment| experiment.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for experiment in experiments {
         let (name, summary, conditions) = (experiment.name(), experiment.summary(), experiment.conditions().join(", "));
         let conditions = if conditions.is_empty() { conditions } else { format!(" [{conditions}]") };
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{name:width$}  {summary}{conditions}");
     }
     text
 }
 
-/// The same as JSON.
+/// Returns the experiments as JSON.
 pub(crate) fn list_as_json(experiments: &[&dyn Experiment]) -> Result<String, Error> {
     let list: Vec<Entry> = experiments
         .iter()
@@ -50,7 +50,7 @@ struct Entry {
     conditions: &'static [&'static str],
 }
 
-/// Everything about an experiment under a condition; the JSON form has these names.
+/// The description of an experiment under a condition, with the names of its JSON.
 #[derive(Serialize)]
 struct Info {
     experiment: String,
@@ -67,29 +67,29 @@ struct Info {
     genes: usize,
     genome_bits: usize,
     trials: usize,
-    /// Most steps of a trial.
+    /// The most steps of a trial.
     steps: usize,
     step_seconds: f64,
     fitness_terms: Vec<String>,
     #[serde(flatten)]
     behaviour: BehaviourInfo,
-    /// What `farsa test --protocol` offers.
+    /// The protocols of `farsa test --protocol`.
     protocols: Vec<ProtocolInfo>,
-    /// What `farsa test --lesion` can change: kinds of changes, and the names that each knows.
+    /// The parts that `farsa test --lesion` can change, by kind.
     lesions: Vec<PartNames>,
     settings: Vec<SettingInfo>,
 }
 
-/// What there is to know of a test protocol.
+/// The description of a test protocol.
 #[derive(Serialize)]
 struct ProtocolInfo {
     name: String,
     summary: String,
-    /// How many.
+    /// The number of cases.
     cases: usize,
-    /// How many of them are of a kind that was not trained.
+    /// The number of held-out cases.
     held_out: usize,
-    /// Of each case, unless others are asked for.
+    /// The default number of trials per case.
     trials: u32,
 }
 
@@ -100,7 +100,7 @@ impl ProtocolInfo {
     }
 }
 
-/// What there is to know of a setting.
+/// The description of a setting.
 #[derive(Serialize)]
 pub(super) struct SettingInfo {
     key: String,
@@ -123,7 +123,7 @@ impl SettingInfo {
         }
     }
 
-    /// The same in a line of words and one that says what it is.
+    /// Returns a line with the setting and a line with its meaning.
     pub(super) fn text(&self, setting: &Setting) -> String {
         let Self { key, unit, allowed, source, doc, .. } = self;
         let value = setting.default_value();
@@ -176,16 +176,16 @@ fn json(value: &Value) -> serde_json::Value {
     }
 }
 
-/// All about an experiment as JSON.
+/// Returns the description of an experiment as JSON.
 pub(crate) fn as_json(plan: &Plan<'_>) -> Result<String, Error> {
     pretty(&Info::from_plan(plan)?)
 }
 
-/// All about an experiment in words.
+/// Returns the description of an experiment as text.
 pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let info = Info::from_plan(plan)?;
     let mut text = format!("{}: {}\n", info.experiment, info.summary);
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     if !info.condition.is_empty() {
         let _ = writeln!(text, "condition: {} (of {})", info.condition, info.conditions.join(", "));
     }

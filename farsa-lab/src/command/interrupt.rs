@@ -1,4 +1,4 @@
-//! Signals that ask a run to stop, and the exit code that asks a scheduler to start it again.
+//! Signals that stop a run, and the exit code with which a scheduler restarts it.
 
 use std::fs;
 use std::io::{self, Write as _};
@@ -11,27 +11,26 @@ use std::time::Duration;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// What a process ends with that wants to be started again: `EX_TEMPFAIL` of sysexits.h.
+/// The exit code of a process to be restarted: `EX_TEMPFAIL` of sysexits.h.
 pub(crate) const START_AGAIN: u8 = 75;
 /// The exit code of [`Error::Interrupted`](crate::Error::Interrupted), which is that of a shell after Ctrl-C.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// A flag that becomes true when the user or the system asks the process to stop: SIGINT, SIGTERM and SIGHUP. The second time
-/// the process ends at once.
+/// Returns a flag that SIGINT, SIGTERM and SIGHUP set. A second signal ends the process at once.
 ///
-/// A signal that was ignored when the process began stays ignored, as `nohup` wants it.
+/// Signals that were ignored at the start of the process remain ignored, as under `nohup`.
 pub(crate) fn stop_on_signals() -> &'static AtomicBool {
     static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     STOP.get_or_init(|| {
         let stop = Arc::new(AtomicBool::new(false));
         let ignored = ignored();
         for signal in signals().iter().copied().filter(|signal| ignored >> (signal - 1) & 1 == 0) {
-            // In this order: the first signal finds the flag unset. Without handlers a signal ends the process, and resuming works
-            // all the same.
+            // In this order, the first signal finds the flag unset. Without handlers a signal ends the process, which can be
+            // resumed as well.
             let _ = flag::register_conditional_shutdown(signal, 128 + signal, stop.clone());
             let _ = flag::register(signal, stop.clone());
         }
-        // The handler itself may not print.
+        // Signal handlers must not print.
         let heard = stop.clone();
         let _ = thread::Builder::new().name("signals".into()).spawn(move || {
             while !heard.load(Ordering::Relaxed) {
@@ -53,14 +52,14 @@ fn signals() -> [i32; 2] {
     [SIGINT, SIGTERM]
 }
 
-/// The signals that this process was told to ignore, signal n at bit n - 1, where the system says so.
+/// Returns the ignored signals, signal n at bit n - 1, where the system provides them.
 fn ignored() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     line.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Whether a scheduler of a cluster has started this process.
+/// Returns true if a scheduler of a cluster has started this process.
 pub(crate) fn under_scheduler() -> bool {
     // Slurm, PBS and Torque, LSF, Grid Engine, OAR, Flux, HTCondor.
     let names =

@@ -1,18 +1,18 @@
-//! The command as it was called: under which name, over which experiments, and with which ranks.
+//! The name, experiments and ranks of a call of the command.
 
 use std::rc::Rc;
 
 use crate::ranks::exchange::Exchange;
 use crate::run::laboratory::Laboratory;
 
-/// The command as it was called.
+/// A call of the command.
 pub(crate) struct Invocation<'e, 'a> {
-    /// What the user calls this program.
+    /// The name of the program.
     pub(crate) program: &'a str,
     pub(crate) laboratory: &'a Laboratory<'e>,
     pub(crate) quiet: bool,
-    /// The ranks that were given the same command.
+    /// The ranks with the same command.
     pub(crate) exchange: Rc<Exchange<'e>>,
-    /// How many of them share this one's processors.
+    /// The number of ranks that share the processors of this one.
     pub(crate) sharing: usize,
 }

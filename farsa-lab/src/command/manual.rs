@@ -1,4 +1,4 @@
-//! What the command says about itself: help with examples, completions, and pages of the manual.
+//! Help with examples, completions and manual pages.
 
 use std::fs;
 use std::path::Path;
@@ -13,11 +13,11 @@ use crate::error::Error;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// Without headings and spare lines, and the options in one, so that a screen of 24 lines has room for the tour, which follows.
+/// The help of the program, short enough for 24 lines together with the first tour.
 const TEMPLATE: &str = "{about}\n{usage-heading} {usage}; -q: no progress and no summary\n{subcommands}\n";
 
-/// The words of the command line; those for several ranks are shown by programs that go by such a name.
-fn words(program: &str) -> Command {
+/// Returns the arguments of the command line, with those for ranks if the program is named after MPI.
+fn arguments(program: &str) -> Command {
     let command = Cli::command();
     if program.ends_with("-mpi") {
         return command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
@@ -25,7 +25,7 @@ fn words(program: &str) -> Command {
     command
 }
 
-/// The command line under the name of the program, with examples about its own first experiment.
+/// Returns the command line of a program, with examples for its first experiment.
 pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
     let first = laboratory.experiments().first();
     let experiment = first.map_or("EXPERIMENT", |experiment| experiment.name());
@@ -41,21 +41,21 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
     };
     let tour = [format!("run {experiment} --generations 20"), format!("replay {run} --html trial.html")];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
-    let mut command = words(program)
+    let mut command = arguments(program)
         .name(program.to_owned())
         .bin_name(program.to_owned())
         .version(version(program))
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
-    for (name, lines) in examples_of_each(program, experiment, &run, &other) {
+    for (name, lines) in subcommand_examples(program, experiment, &run, &other) {
         command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
     }
     command
 }
 
-/// Examples for each subcommand: about an experiment, one of its runs and, as an option, another of its conditions.
-fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> Vec<(&'static str, Vec<String>)> {
+/// Returns examples for each subcommand, with an experiment, one of its runs and another condition.
+fn subcommand_examples(program: &str, experiment: &str, run: &str, other: &str) -> Vec<(&'static str, Vec<String>)> {
     vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
@@ -147,13 +147,13 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
     ]
 }
 
-/// The version of this crate, under whose name a program of somebody else must not give it.
+/// Returns the version, marked as that of FARSA in other programs.
 fn version(program: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     if program == "farsa" { version.into() } else { format!("(FARSA {version})") }
 }
 
-/// A script that lets a shell complete the command, experiments and conditions included.
+/// Returns a script of completions, with the names of experiments, conditions and strategies.
 pub(crate) fn completions(shell: Shell, program: &str, laboratory: &Laboratory<'_>) -> String {
     let names: Vec<&'static str> = laboratory.experiments().iter().map(|experiment| experiment.name()).collect();
     let mut conditions: Vec<&'static str> = Vec::new();
@@ -163,41 +163,41 @@ pub(crate) fn completions(shell: Shell, program: &str, laboratory: &Laboratory<'
         }
     }
     let mut command = command(program, laboratory);
-    // The command itself takes any word, and says which name is the nearest.
-    let known = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
-    let taught = |subcommand: Command| {
+    // The command itself accepts any name and suggests the nearest valid one.
+    let possible = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
+    let with_names = |subcommand: Command| {
         subcommand
-            .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
-            .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
+            .mut_arg("experiment", |arg| arg.value_parser(possible(&names)))
+            .mut_arg("condition", |arg| arg.value_parser(possible(&conditions)))
     };
     for subcommand in ["info", "run", "bench", "evaluate", "import"] {
-        command = command.mut_subcommand(subcommand, taught);
+        command = command.mut_subcommand(subcommand, with_names);
     }
-    command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", taught));
+    command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", with_names));
     command = command.mut_subcommand("draw", |subcommand| {
         subcommand.mut_arg("camera", |arg| arg.value_parser(PossibleValuesParser::new(Camera::NAMES)))
     });
     let strategies: Vec<&'static str> = laboratory.strategies().iter().map(|strategy| strategy.name()).collect();
     for subcommand in ["info", "run", "strategies"] {
-        let taught = |subcommand: Command| subcommand.mut_arg("strategy", |arg| arg.value_parser(known(&strategies)));
-        command = command.mut_subcommand(subcommand, taught);
+        let with_names = |subcommand: Command| subcommand.mut_arg("strategy", |arg| arg.value_parser(possible(&strategies)));
+        command = command.mut_subcommand(subcommand, with_names);
     }
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, program, &mut script);
     String::from_utf8_lossy(&script).into_owned()
 }
 
-/// The first page of the manual.
+/// Returns the first manual page.
 pub(crate) fn page(program: &str, laboratory: &Laboratory<'_>) -> Result<String, Error> {
     let mut command = command(program, laboratory);
     command.build();
     render(command)
 }
 
-/// Writes all pages into a directory and returns how many they are.
+/// Writes all manual pages into a directory and returns their number.
 ///
 /// # Errors
-/// [`Error::Usage`] when one of them is there already, [`Error::Io`].
+/// [`Error::Usage`] for an existing page, [`Error::Io`].
 pub(crate) fn pages(directory: &Path, program: &str, laboratory: &Laboratory<'_>) -> Result<usize, Error> {
     let mut command = command(program, laboratory);
     command.build();

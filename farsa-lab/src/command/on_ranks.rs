@@ -1,4 +1,4 @@
-//! The command on several ranks: what all do before and around what rank 0 does.
+//! The command on several ranks, of which rank 0 executes it.
 
 use std::rc::Rc;
 
@@ -13,24 +13,24 @@ use crate::run::plan::Plan;
 use crate::run::replications::Replications;
 use crate::run::worker::Worker;
 
-/// What a rank does after all have agreed to begin.
+/// The role of a rank.
 pub(crate) enum Part {
-    /// It executes the command, and the others wait for its orders.
+    /// The rank executes the command, and the others wait for its orders.
     Leads,
-    /// It has followed to the end, with this exit code.
+    /// The rank has followed to the end, with this exit code.
     Followed(u8),
 }
 
-/// Whether the other ranks wait for the orders of the one that executes a command.
+/// True if the other ranks wait for orders.
 pub(crate) fn awaits_orders(command: &Command) -> bool {
     matches!(command, Command::Run(RunArgs { groups: None, .. }))
 }
 
 impl Invocation<'_, '_> {
-    /// Makes sure that all ranks were given the same command, and follows rank 0 on every other.
+    /// Checks that all ranks have the same command, and follows rank 0 on all others.
     ///
     /// # Errors
-    /// [`Error::Rank`] for the first rank that was given something else or cannot begin; the others then end, too.
+    /// [`Error::Rank`] for the first rank that has another command or cannot start. The others then end, too.
     pub(crate) fn take_part(&self, command: &Command) -> Result<Part, Error> {
         if self.exchange.is_alone() {
             return Ok(Part::Leads);
@@ -38,14 +38,14 @@ impl Invocation<'_, '_> {
         self.exchange.begin(self.facts(command))?;
         match command {
             _ if !self.exchange.is_follower() => Ok(Part::Leads),
-            // Each group has a rank that leads it.
+            // Each group has its coordinator.
             Command::Run(RunArgs { groups: Some(_), .. }) => Ok(Part::Leads),
             Command::Run(args) => self.follow(args).map(Part::Followed),
             _ => Ok(Part::Followed(0)),
         }
     }
 
-    /// What all ranks must have been given alike; how many threads and lanes is each rank's own business.
+    /// Returns the arguments that must be equal on all ranks. Threads and lanes may differ.
     fn facts(&self, command: &Command) -> Result<Facts, Error> {
         let Command::Run(args) = command else { return Ok(vec![("command".into(), "another than run".into())]) };
         let number = |number: Option<u32>| number.map_or_else(|| "none".into(), |number| number.to_string());
@@ -71,19 +71,18 @@ impl Invocation<'_, '_> {
         worker.follow(&self.exchange)
     }
 
-    /// Tells the other ranks that the command is over.
+    /// Ends the other ranks.
     ///
     /// # Errors
-    /// Those of the ranks' messages.
+    /// Those of sending messages.
     pub(crate) fn dismiss(&self, code: u8) -> Result<(), Error> {
         if self.exchange.is_alone() { Ok(()) } else { self.exchange.command(Some(&WorkerCommand::End(code))).map(drop) }
     }
 
-    /// Replications in groups of ranks side by side: each group makes every so manieth of them. None on the ranks that say nothing
-    /// of it.
+    /// Makes replications in parallel groups of ranks, in turn. Returns `None` on ranks without a summary.
     ///
     /// # Errors
-    /// [`Error::Usage`] for more groups than ranks, and on rank 0 the first error of a group; the other groups go on to their end.
+    /// [`Error::Usage`] for more groups than ranks, and on rank 0 the first error of a group. Other groups continue.
     pub(crate) fn replicate_in_groups(
         &self,
         args: &RunArgs,
@@ -119,7 +118,7 @@ impl Invocation<'_, '_> {
         if rank > 0 {
             return Ok(None);
         }
-        // All are finished: this only reads what came of them.
+        // All runs are finished, so this only reads their results.
         let reader = Invocation { quiet: true, exchange: Rc::default(), ..part };
         reader.replicate(args, count, None).map(Some)
     }

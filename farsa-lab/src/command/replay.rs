@@ -38,12 +38,12 @@ impl Invocation<'_, '_> {
         }
     }
 
-    /// Says what a replay came to, beside the steps.
+    /// Prints the summary of a replay.
     fn replayed<S: Serialize>(&self, args: &ReplayArgs, mut found: Replayed<S>) -> Result<(), Error> {
         found.file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
         if args.json {
             let summary = pretty(&found)?;
-            // The standard output is free only when the steps went elsewhere.
+            // Standard output is free only if the steps are written to a file.
             if found.file.is_some() {
                 return say(&summary);
             }

@@ -1,4 +1,4 @@
-//! `farsa strategies`: what a run can search with.
+//! `farsa strategies`: the strategies of runs.
 
 use std::fmt::Write as _;
 
@@ -9,14 +9,14 @@ use crate::error::Error;
 use crate::json::pretty;
 use crate::strategy::definition::StrategyDefinition;
 
-/// The strategies with their settings, in words.
+/// Returns the strategies with their settings as text.
 pub(super) fn as_text(strategies: &[&'static dyn StrategyDefinition]) -> String {
     let mut text = String::new();
     for strategy in strategies {
         let blank = if text.is_empty() { "" } else { "\n" };
         let summary = strategy.summary();
         let summary = if summary.is_empty() { String::new() } else { format!(": {summary}") };
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{blank}{}{summary}", strategy.name());
         for setting in strategy.settings() {
             text.push_str(&SettingInfo::new(&setting).text(&setting));
@@ -25,7 +25,7 @@ pub(super) fn as_text(strategies: &[&'static dyn StrategyDefinition]) -> String 
     text
 }
 
-/// The same as JSON.
+/// Returns the strategies as JSON.
 pub(super) fn as_json(strategies: &[&'static dyn StrategyDefinition]) -> Result<String, Error> {
     let entry = |strategy: &&'static dyn StrategyDefinition| Entry {
         name: strategy.name(),
