@@ -179,7 +179,8 @@ pub(crate) fn completions(shell: Shell, program: &str, laboratory: &Laboratory<'
     });
     let strategies: Vec<&'static str> = laboratory.strategies().iter().map(|strategy| strategy.name()).collect();
     for subcommand in ["info", "run", "strategies"] {
-        let with_names = |subcommand: Command| subcommand.mut_arg("strategy", |arg| arg.value_parser(possible(&strategies)));
+        let with_names =
+            |subcommand: Command| subcommand.mut_arg("strategy", |arg| arg.value_parser(possible(&strategies)));
         command = command.mut_subcommand(subcommand, with_names);
     }
     let mut script = Vec::new();

@@ -22,7 +22,8 @@ fn is_common(argument: &Arg) -> bool {
 fn item(argument: &Arg) -> String {
     let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
     let values = argument.get_possible_values();
-    let values: Vec<&str> = values.iter().filter(|_| argument.get_long().is_some()).map(|value| value.get_name()).collect();
+    let values: Vec<&str> =
+        values.iter().filter(|_| argument.get_long().is_some()).map(|value| value.get_name()).collect();
     let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
     let defaults: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
     let default = if defaults.is_empty() || argument.get_num_args().is_some_and(|count| !count.takes_values()) {

@@ -2,7 +2,9 @@
 
 use maud::{Markup, html};
 
-use crate::figures::svg::{GRID, INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width};
+use crate::figures::svg::{
+    GRID, INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width,
+};
 
 /// The height of the line of a bar, the top of the first and the room below the last.
 const LINE: f64 = 28.0;

@@ -62,7 +62,8 @@ impl Rates<'_> {
             return None;
         }
         let names: Vec<(&str, &str)> = self.curves.iter().map(|curve| curve.name).zip(COLORS).collect();
-        let (legend, top) = if names.iter().all(|(name, _)| name.is_empty()) { (html! {}, HEAD) } else { legend(&names) };
+        let (legend, top) =
+            if names.iter().all(|(name, _)| name.is_empty()) { (html! {}, HEAD) } else { legend(&names) };
         let shares: Vec<(f64, String)> = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| (share, percent(share))).into();
         let across = Limits::exact([*values.first()?, *values.last()?]);
         let plane = Plane::new(top, HEIGHT, across, Limits::exact([0.0, 1.0]), &shares);

@@ -44,7 +44,8 @@ impl Scatter<'_> {
         let stride = self.points.len().div_ceil(MAX_POINTS).max(1);
         let points = self.points.iter().step_by(stride).filter(|([x, y], _)| x.is_finite() && y.is_finite());
         let color = |value: f64| {
-            let share = Some(shade.position(value)).filter(|share| share.is_finite()).map_or(0.0, |x| x.clamp(0.0, 1.0));
+            let share =
+                Some(shade.position(value)).filter(|share| share.is_finite()).map_or(0.0, |x| x.clamp(0.0, 1.0));
             let [red, green, blue] = [0, 1, 2].map(|i| (PALE[i] + share * (DARK[i] - PALE[i])) as u8);
             format!("#{red:02X}{green:02X}{blue:02X}")
         };

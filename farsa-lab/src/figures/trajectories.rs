@@ -4,7 +4,9 @@ use farsa_num::crc32;
 use maud::{Markup, html};
 
 use crate::figures::plane::{Limits, Plane};
-use crate::figures::svg::{COLORS, GRID, HEAD, INK, MARGIN, MAX_CASES, OUTLINE, PAPER, WIDTH, at, figure, note, shown, title};
+use crate::figures::svg::{
+    COLORS, GRID, HEAD, INK, MARGIN, MAX_CASES, OUTLINE, PAPER, WIDTH, at, figure, note, shown, title,
+};
 
 /// The heights of a panel's label and of the text below, and the gap between panels.
 const LABEL: f64 = 24.0;

@@ -64,7 +64,8 @@ fn values(groups: &[Group<'_>]) -> Vec<Block> {
         }
         if group.runs.len() > 1 {
             let column_values = |column: usize| group.runs.iter().map(|run| last(run, column)).collect::<Vec<_>>();
-            let medians = columns.iter().map(|(column, _)| median(&column_values(*column)).map(short).unwrap_or_default());
+            let medians =
+                columns.iter().map(|(column, _)| median(&column_values(*column)).map(short).unwrap_or_default());
             table.rows.push([format!("median, {}", group.label)].into_iter().chain(medians).collect());
         }
     }
