@@ -20,18 +20,18 @@ use crate::strategy::settings::NORMALISE;
 /// The formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ModelFormat {
-    /// MuJoCo's own.
+    /// MuJoCo's format.
     Mjcf,
-    /// The robot alone.
+    /// The robot only.
     Urdf,
 }
 
 /// The formats of controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ControllerFormat {
-    /// Names and numbers, of the body too.
+    /// Names and numbers, including the body.
     Json,
-    /// The network for a board's flash.
+    /// The network for the flash memory of a board.
     Bytes,
     /// The network as constants of a Rust program.
     Rust,
@@ -39,11 +39,12 @@ pub(crate) enum ControllerFormat {
     Safetensors,
 }
 
-/// The robot of an experiment under a condition and its settings. With the directory of a run, and the population that is
-/// named, it is that of its champion where bodies are made of parameters.
+/// Returns the robot of an experiment under a condition and its settings.
+///
+/// With the directory of a run it is the robot of the population's champion where bodies evolve.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment without bodies; of a run's champion as [`controller`].
+/// [`Error::Usage`] for an experiment without bodies, and those of [`controller`] for the champion of a run.
 pub(crate) fn robot(
     plan: &Plan<'_>,
     run: Option<(&Directory, Option<&str>)>,
@@ -56,7 +57,7 @@ pub(crate) fn robot(
             let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
             Some(champion.parameters(plan, directory, evaluator.as_ref())?)
         }
-        // All its populations have the same robot.
+        // All populations have the same robot.
         (Some((_, population @ Some(_))), None) => {
             Populations { experiment: name, names: &names }.one("--population", population)?;
             None
@@ -68,7 +69,7 @@ pub(crate) fn robot(
         (Some(parameters), Some(bodies)) => bodies.schema_with(parameters).robot,
         _ => evaluator.info().schema.robot,
     };
-    // What a robot of the plane steps by is no step of its dynamics.
+    // The control step of a planar robot is not a step of dynamics.
     let step = if own.is_some() { 0.0 } else { evaluator.info().description.step_seconds };
     let robot = own.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
@@ -78,7 +79,7 @@ pub(crate) fn robot(
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
 }
 
-/// The champion of a run, of one of its populations.
+/// The champion of a population of a run.
 struct Champion {
     generation: u32,
     individual: u32,
@@ -88,7 +89,7 @@ struct Champion {
 }
 
 impl Champion {
-    /// Reads it; of several populations that of the one named.
+    /// Reads the champion of the given population.
     fn read(
         plan: &Plan<'_>,
         directory: &Directory,
@@ -106,15 +107,14 @@ impl Champion {
         Ok(Self { generation, individual, population, genes, normalisation })
     }
 
-    /// What its genes mean.
+    /// Returns the parameters of its genes.
     fn parameters(&self, plan: &Plan<'_>, directory: &Directory, evaluator: &dyn Evaluator) -> Result<Vec<f32>, Error> {
         let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
         self.genes.decode(&plan.genotype(evaluator)).ok_or_else(damaged)
     }
 }
 
-/// What a MuJoCo model says beside the robot: what the experiment says, else this time between two steps, where it is above 0,
-/// and gravity 9.81 m/s2 downwards.
+/// Returns the options of a MuJoCo model: those of the experiment, otherwise the given time step [s] and gravity 9.81 m/s2.
 fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
     let own = evaluator.exports().and_then(Exports::mjcf_options);
     own.unwrap_or_else(|| {
@@ -123,17 +123,17 @@ fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
     })
 }
 
-/// Whose controller it is.
+/// The origin of a controller.
 #[derive(Serialize)]
 struct Whose<'a> {
-    /// Grows when the meaning of a field changes.
+    /// The version of the meaning of fields.
     format: u32,
     experiment: &'a str,
     condition: &'a str,
     seed: u64,
     generation: u32,
     individual: u32,
-    /// Of which population, where there are several.
+    /// The population, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     population: Option<&'a str>,
     #[serde(flatten)]
@@ -152,18 +152,18 @@ impl Whose<'_> {
     }
 }
 
-/// How the trials of a test start.
+/// The starts of the trials of a test.
 #[derive(Serialize)]
 struct Trials<'a> {
     format: u32,
     experiment: &'a str,
     condition: &'a str,
-    /// The test's, not the run's.
+    /// The seed of the test, not of the run.
     seed: u64,
     starts: Vec<StartExport>,
 }
 
-/// Refuses champions that are nothing without what their observations are normalised by.
+/// Refuses champions with normalized observations.
 fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Directory) -> Result<(), Error> {
     match normalisation {
         None => Ok(()),
@@ -175,7 +175,7 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
     }
 }
 
-/// The champion's genes as a `.gen` file, reals as a list; of several populations that of the one named.
+/// Returns the champion's genes as a `.gen` file, or real parameters as a list.
 ///
 /// # Errors
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
@@ -194,7 +194,7 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
     })
 }
 
-/// The champion's controller of a run, as the content of a file; of several populations that of the one named.
+/// Returns the content of a file with the champion's controller.
 ///
 /// # Errors
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Unknown`] for the
@@ -229,7 +229,7 @@ pub(crate) fn controller(
     }
 }
 
-/// How the trials of `farsa test` start.
+/// Returns the starts of the trials of `farsa test`.
 ///
 /// # Errors
 /// [`Error::Usage`] for an experiment whose starts cannot be exported.

@@ -1,9 +1,8 @@
 //! Controllers, starts, genotypes and robots as files for other programs.
-//!
-//! - `controller_formats`: a controller in the formats of boards and of Python: bytes, Rust source, tables
-//! - `files`: `farsa export`: robots, controllers, genotypes and starts as files for other programs
-//! - `robot_file`: `farsa robot`: what is in a model file of a robot
 
+/// A controller in the formats of boards and of Python.
 mod controller_formats;
+/// `farsa export`.
 pub(crate) mod files;
+/// `farsa robot`.
 pub(crate) mod robot_file;

@@ -1,4 +1,4 @@
-//! `farsa robot`: what is in a model file of a robot.
+//! `farsa robot`: the content of a model file.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -14,7 +14,7 @@ use crate::escaped::{OneLine, shortened};
 use crate::export::files::ModelFormat;
 use crate::store::bounded::read_stream_text;
 
-/// What was read.
+/// The content of a model file.
 #[derive(Serialize)]
 pub(crate) struct Summary {
     robot: String,
@@ -33,7 +33,7 @@ struct JointSummary {
     kind: &'static str,
     segment: String,
     parent: String,
-    /// None if it has no end.
+    /// `None` for a joint without limits.
     range: [Option<f64>; 2],
     armature: f64,
     damping: f64,
@@ -44,9 +44,9 @@ struct JointSummary {
 /// Reads a model file.
 ///
 /// # Errors
-/// [`Error::Other`] with what is wrong with the file, and the argument that could help.
+/// [`Error::Other`] for an invalid file, with the option that could help.
 pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error> {
-    // A pipe is waited for, but not for ever.
+    // A pipe is read with a time limit.
     let piped = fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let read = if piped {
         let text = read_stream_text(file, u64::try_from(options.limits.bytes).unwrap_or(u64::MAX))?;
@@ -66,7 +66,7 @@ pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error
     })
 }
 
-/// The robot as a file of this kind.
+/// Returns the robot as a file of this format.
 ///
 /// # Errors
 /// [`Error::Other`] if it cannot be written.
@@ -79,7 +79,7 @@ pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String,
 }
 
 impl Summary {
-    /// What was read of the robot in this file.
+    /// Returns the description of the robot in a file.
     pub(crate) fn new(file: &Path, reading: &Imported) -> Self {
         let robot = &reading.robot;
         let joints = robot.joints().map(|id| {
@@ -129,7 +129,7 @@ impl Summary {
 
     pub(crate) fn text(&self) -> String {
         let Self { robot, file, segments, joints, colliders, pairs, mass, notes } = self;
-        // Names are columns: a long one would widen every line.
+        // A long name would widen every line.
         let line = |text: &str| OneLine(shortened(text)).to_string();
         let mut text = format!(
             "{}: {}\n{segments} segments of {mass:.4} kg, {} joints, {colliders} colliders, {pairs} pairs\n",
@@ -137,7 +137,7 @@ impl Summary {
             line(robot),
             joints.len()
         );
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let width =
             |of: fn(&JointSummary) -> &str| joints.iter().map(|j| line(of(j)).chars().count()).max().unwrap_or(0);
         let (names, carried) = (width(|joint| &joint.name), width(|joint| &joint.segment));

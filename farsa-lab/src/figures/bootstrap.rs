@@ -1,16 +1,17 @@
-//! How far a median would move with other runs.
+//! The bootstrap interval of a median.
 
 use farsa_num::Stream;
 
 use crate::figures::statistics::Quartiles;
 
-/// Resamples, as many as leave the ends of the interval to chance by a hundredth of its length or so.
+/// The number of resamples, enough for ends with an error of about a hundredth of the interval.
 pub(crate) const RESAMPLES: usize = 10_000;
-/// Where the random numbers come from: always here, so that the same values have the same interval on every page.
+/// A fixed seed, so that equal values have equal intervals on every page.
 const SEED: u64 = 1979;
 
-/// The ends of the 95 % interval of the median by the percentile method of [Efron1979]; none of less than two values, or where one
-/// is not a number.
+/// Returns the 95 % interval of the median by the percentile method of [Efron1979].
+///
+/// Returns `None` for fewer than two values and for NaN.
 ///
 /// Deviation: the quantiles of the resampled medians are interpolated, as quartiles are.
 pub(crate) fn median_interval(values: &[f64]) -> Option<[f64; 2]> {
@@ -67,8 +68,8 @@ mod tests {
         for n in [5_usize, 11, 21, 31] {
             let values: Vec<f64> = (0..n).map(|x| x as f64).collect();
             let [low, high] = median_interval(&values).unwrap();
-            // The value at which the exact distribution of the resampled median passes the share, or the next one where it does so
-            // within the error of the resamples.
+            // The value at which the exact distribution of the resampled median reaches the share, or the next one within the
+            // error of the resamples.
             for (found, share) in [(low, 0.025), (high, 0.975)] {
                 let near = |shift: f64| (0..n).find(|k| median_within(n, k + 1) >= share + shift).unwrap() as f64;
                 let [least, most] = [near(-0.008), near(0.008)];
@@ -86,7 +87,7 @@ mod tests {
         assert_eq!(median_interval(&values), median_interval(&turned));
         assert_eq!(median_interval(&[2.0; 5]), Some([2.0; 2]));
         assert_eq!((median_interval(&[1.0]), median_interval(&[1.0, f64::NAN])), (None, None));
-        // A generation in which all failed is minus infinity, and a value like others.
+        // A generation of failed evaluations is minus infinity, an ordinary value.
         let [low, high] = median_interval(&[f64::NEG_INFINITY, 1.0, 2.0]).unwrap();
         assert_eq!((low, high), (f64::NEG_INFINITY, 2.0));
     }

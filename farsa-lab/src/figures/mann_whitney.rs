@@ -1,27 +1,27 @@
-//! An exact test of two groups of values, and a normal one where they are many.
+//! The Mann-Whitney U test, exact for small groups.
 
 use crate::figures::normal::upper_tail;
 
-/// Most values of both groups whose arrangements are counted: beyond it that takes too long.
+/// The most values of both groups for the exact test, which takes too long beyond that.
 const MOST: usize = 200;
 
-/// How two groups of values differ.
+/// The comparison of two groups of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Comparison {
     /// Mann and Whitney's U of the first group: pairs in which its value is the larger, ties as one half.
     pub(crate) u: f64,
-    /// U by the number of pairs: the probability that a value of the first group is larger than one of the second.
+    /// U divided by the number of pairs, the probability that a value of the first group is the larger one.
     pub(crate) larger: f64,
-    /// The probability of a U at least as far from its mean, were the groups formed by chance; two-sided.
+    /// The two-sided probability of a U at least as far from its mean in random groups.
     pub(crate) p: f64,
-    /// Whether `p` was counted; else it is that of a normal distribution.
+    /// True for an exact `p`, false for the normal approximation.
     pub(crate) exact: bool,
 }
 
-/// Compares two groups by [Mann1947]; none if one has less than two values, or one is not a number.
+/// Compares two groups by [Mann1947], or returns `None` for fewer than two values in a group and for NaN.
 ///
-/// Up to 200 values p is exact: counted over all ways to divide the very values at hand, with ties, too. Beyond it is the
-/// normal approximation with the corrections for ties and continuity that `SciPy` makes.
+/// Up to 200 values p is exact, also with ties. It counts all ways to divide the given values. Beyond that p is the normal
+/// approximation with the corrections of `SciPy` for ties and continuity.
 pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
     let (n, m, all) = (first.len(), second.len(), first.len() + second.len());
     if n < 2 || m < 2 || first.iter().chain(second).any(|x| x.is_nan()) {
@@ -30,7 +30,7 @@ pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
     let mut sorted: Vec<(f64, bool)> =
         first.iter().map(|&x| (x, true)).chain(second.iter().map(|&x| (x, false))).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Ranks from 1, equals sharing their mean; doubled, they are whole numbers.
+    // Ranks from 1, with the mean rank for ties. Doubled ranks are integers.
     let mut ranks: Vec<usize> = Vec::with_capacity(all);
     for equals in sorted.chunk_by(|a, b| a.0 == b.0) {
         let before = ranks.len();
@@ -43,10 +43,10 @@ pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
     Some(Comparison { u, larger: u / (n * m) as f64, p, exact })
 }
 
-/// The share of the ways to choose `n` of the ranks whose sum is at least as far from the mean as this one.
+/// Returns the share of the choices of `n` ranks whose sum is at least as far from the mean as this one.
 fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
     let all = ranks.len();
-    // ways[k][s]: in how many ways k of the values have ranks that add up to s.
+    // ways[k][s] is the number of choices of k values whose ranks add up to s.
     let largest: usize = ranks.iter().sum();
     let mut ways = vec![vec![0.0_f64; largest + 1]; n + 1];
     ways[0][0] = 1.0;
@@ -66,7 +66,7 @@ fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
     far / total
 }
 
-/// The same from the normal distribution of U.
+/// Returns the normal approximation of that share.
 fn approximated(sorted: &[(f64, bool)], n: usize, u: f64) -> f64 {
     let [n, all] = [n, sorted.len()].map(|count| count as f64);
     let m = all - n;
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn groups_that_do_not_overlap_have_the_smallest_p_there_is() {
-        // One of the 20 ways to divide six values, and its mirror image.
+        // Six values are divided in 20 ways, of which this one and its mirror image count.
         let apart = compare(&[4.0, 5.0, 6.0], &[1.0, 2.0, 3.0]).unwrap();
         assert_eq!((apart.u, apart.larger, apart.p), (9.0, 1.0, 0.1));
         let mirrored = compare(&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]).unwrap();
@@ -112,7 +112,7 @@ mod tests {
         // SciPy's documentation of `mannwhitneyu`: U = 17, exact p = 0.1111.
         assert_eq!((found.u, pairs), (17.0, 17));
         assert!((found.p - 14.0 / 126.0).abs() < 1e-15, "{found:?}");
-        // Ranks 1, 2.5 against 2.5, 4: four of the six divisions are as far from the mean of 5 as 3.5 is.
+        // Ranks 1, 2.5 against 2.5, 4. Four of the six divisions are as far from the mean of 5 as 3.5 is.
         let tied = compare(&[1.0, 2.0], &[2.0, 3.0]).unwrap();
         assert_eq!((tied.u, tied.larger, tied.p), (0.5, 0.125, 4.0 / 6.0));
         assert_eq!(compare(&[1.0, 1.0], &[1.0, 1.0]).unwrap().p, 1.0);

@@ -4,12 +4,12 @@ use farsa_num::exp;
 
 /// 1 / sqrt(2 pi).
 const DENSITY_AT_0: f64 = 0.398_942_280_401_432_7;
-/// From here on the continued fraction converges faster than the series.
+/// The value from which the continued fraction converges faster than the series.
 const FAR: f64 = 2.5;
-/// Terms of the fraction, enough from there on to the last digits.
+/// The number of terms of the fraction, enough for all digits.
 const TERMS: u32 = 200;
 
-/// The probability of a value above `z`; NaN for NaN.
+/// Returns the probability of a value above `z`, or NaN for NaN.
 ///
 /// Source: [Abramowitz1964] 26.2.11 (series) and 26.2.14 (continued fraction, evaluated from its end). Relative error below
 /// 1e-13 up to z = 30.
@@ -28,7 +28,7 @@ pub(crate) fn upper_tail(z: f64) -> f64 {
         term *= z * z / odd;
         sum += term;
     }
-    // NaN has no term above anything.
+    // Comparisons with NaN are false.
     0.5 - density * sum
 }
 

@@ -1,20 +1,20 @@
-//! The two directions in which points differ most.
+//! The first two principal components of points.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// The mean of some points, and the first two principal components of how they differ from it.
+/// The mean of points and the first two principal components of their deviations.
 #[derive(Debug, Clone)]
 pub(crate) struct PrincipalComponents {
     mean: DVector<f64>,
     axes: [DVector<f64>; 2],
-    /// Which parts of the variance lie along them.
+    /// Their shares of the variance.
     pub(crate) shares: [f64; 2],
 }
 
 impl PrincipalComponents {
-    /// Those of points of the same number of coordinates; none of points that do not differ, and of values that are not finite.
+    /// Returns the components of points of equal dimension, or `None` for equal points and values that are not finite.
     ///
-    /// Of each component the largest coordinate is positive, so that pictures of the same points are the same.
+    /// The largest coordinate of each component is positive, so that equal points have equal figures.
     pub(crate) fn of<'p>(points: impl Iterator<Item = &'p [f32]> + Clone) -> Option<Self> {
         let size = points.clone().next()?.len();
         let count = points.clone().count() as f64;
@@ -43,7 +43,7 @@ impl PrincipalComponents {
         Some(Self { mean, axes: [first, second], shares: [one, other] })
     }
 
-    /// Where a point lies along the two components.
+    /// Returns the coordinates of a point along the two components.
     pub(crate) fn place(&self, point: &[f32]) -> [f64; 2] {
         self.axes.each_ref().map(|axis| {
             let coordinates = point.iter().zip(self.mean.iter()).zip(axis.iter());

@@ -1,9 +1,9 @@
-//! Shares of successes: their intervals, and whether two of them differ.
+//! Shares of successes with intervals, and Fisher's exact test.
 
 /// The 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// How many of how many.
+/// A number of successes and of trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Proportion {
     pub(crate) successes: usize,
@@ -11,7 +11,7 @@ pub(crate) struct Proportion {
 }
 
 impl Proportion {
-    /// The ends of the 95 % interval of [Wilson1927]; those of all shares for none.
+    /// Returns the 95 % interval of [Wilson1927], or 0 to 1 without trials.
     pub(crate) fn interval(self) -> [f64; 2] {
         if self.of == 0 {
             return [0.0, 1.0];
@@ -21,21 +21,21 @@ impl Proportion {
         let centre = share + Z * Z / (2.0 * n);
         let reach = Z * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
         let scale = 1.0 + Z * Z / n;
-        // Exactly at the ends, where rounding would leave a trace.
+        // Exact ends, without rounding errors.
         let low = if self.successes == 0 { 0.0 } else { (centre - reach) / scale };
         let high = if self.successes == self.of { 1.0 } else { (centre + reach) / scale };
         [low, high]
     }
 }
 
-/// The two-sided p of [Fisher1922]'s exact test: the probability of all tables with the sums at hand that are no more probable.
+/// Returns the two-sided p of [Fisher1922]'s exact test, the probability of all equally or less probable tables of equal sums.
 ///
-/// As in R and `SciPy`, a probability within 1e-7 of the table's own counts as equal.
+/// As in R and `SciPy`, probabilities within 1e-7 count as equal.
 pub(crate) fn fisher(first: Proportion, second: Proportion) -> f64 {
     let successes = first.successes + second.successes;
-    // The number of successes in the first group, which is all that is left free.
+    // The number of successes in the first group, the only free value.
     let (least, most) = (successes.saturating_sub(second.of), successes.min(first.of));
-    // Each table's probability by the one of its neighbour, from the most probable one on, so that nothing overflows.
+    // Each probability results from that of a neighboring table, from the most probable one on, so that nothing overflows.
     let next = |x: usize| {
         let ways = (first.of - x) as f64 * (successes - x) as f64;
         ways / ((x + 1) as f64 * (second.of + x + 1 - successes) as f64)
@@ -86,13 +86,13 @@ mod tests {
         }
     }
 
-    /// Ways to choose k of n, exact up to 2^64.
+    /// Returns the number of choices of k of n, exact up to 2^64.
     fn choose(n: u64, k: u64) -> u64 {
         (0..k).fold(1, |ways, i| ways * (n - i) / (i + 1))
     }
 
     proptest! {
-        /// Fisher's test by whole numbers.
+        /// Fisher's test with integers.
         #[test]
         fn fishers_test_counts_tables(a in 0_usize..12, b in 0_usize..12, c in 0_usize..12, d in 0_usize..12) {
             let [first, second] = [(a, b), (c, d)].map(|(successes, failures)| Proportion { successes, of: successes + failures });
@@ -104,7 +104,7 @@ mod tests {
             let total: u64 = tables().map(ways).sum();
             let p = fisher(first, second);
             prop_assert!((p - rare as f64 / total as f64).abs() < 1e-12, "{}", p);
-            // The groups, and what counts as success, may be exchanged.
+            // Exchanging groups or outcomes does not change p.
             prop_assert!((fisher(second, first) - p).abs() < 1e-12);
             let failed = [first, second].map(|group| Proportion { successes: group.of - group.successes, of: group.of });
             prop_assert!((fisher(failed[0], failed[1]) - p).abs() < 1e-12);

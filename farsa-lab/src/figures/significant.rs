@@ -1,15 +1,16 @@
-//! Numbers for people, with four significant digits.
+//! Numbers with four significant digits.
 
-/// A number with four significant digits; all of those before the point where there are more, and as a power of ten beyond nine
-/// of these or four zeros behind the point. Files have all digits.
+/// Formats a number for people with four significant digits and at least all digits of its integer part.
+///
+/// Very large and very small numbers are in scientific notation. Files have all digits.
 pub(crate) fn significant(x: f64) -> String {
-    // Nothing, whatever it was weighed with, has no sign.
+    // Zero has no sign.
     let x = x + 0.0;
     let scientific = format!("{x:.3e}");
-    // Of the rounded number: 9.9999 is 10.00.
+    // The exponent of the rounded number: 9.9999 is 10.00.
     let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
     match exponent {
-        // What is not finite has none.
+        // Infinities and NaN.
         None => format!("{x}"),
         Some(exponent @ -5..=8) => format!("{x:.*}", usize::try_from(3 - exponent).unwrap_or(0)),
         Some(_) => scientific,
@@ -22,7 +23,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn four_digits_say_how_large_it_is() {
+    fn four_significant_digits_are_shown() {
         for (x, text) in [
             (0.0, "0.000"),
             (-0.0, "0.000"),

@@ -1,14 +1,14 @@
-//! How many runs follow what was held out of their evolution.
+//! The number of runs that generalize to held-out cases.
 
 use crate::figures::proportion::{Proportion, fisher};
 use crate::report::outcome::probability;
 use crate::report::page::{Block, Table};
 use crate::report::run::percent;
 
-/// The share of a held-out case's trials that has to succeed in a run that generalises to it.
+/// The least share of successful trials of a held-out case for a run to generalize to it.
 const GENERALISES: f64 = 0.75;
 
-/// What the runs of a group made of the cases that were held out.
+/// The results of a group's runs in held-out cases.
 pub(crate) struct HeldOut<'r> {
     pub(crate) label: &'r str,
     /// The names of the cases.
@@ -18,20 +18,20 @@ pub(crate) struct HeldOut<'r> {
 }
 
 impl HeldOut<'_> {
-    /// How many runs generalise to so many of the cases at least.
+    /// Counts the runs that generalize to at least the given number of cases.
     fn count(&self, least: usize) -> Proportion {
         let enough = |rates: &&Vec<f64>| rates.iter().filter(|rate| **rate >= GENERALISES).count() >= least;
         Proportion { successes: self.runs.iter().filter(enough).count(), of: self.runs.len() }
     }
 
-    /// How many generalise to a case.
+    /// Counts the runs that generalize to a case.
     fn to(&self, case: usize) -> Proportion {
         let follows = |rates: &&Vec<f64>| rates.get(case).is_some_and(|rate| *rate >= GENERALISES);
         Proportion { successes: self.runs.iter().filter(follows).count(), of: self.runs.len() }
     }
 }
 
-/// How many runs of each group generalise, and whether the groups differ; nothing about a single run.
+/// Returns the number of generalizing runs of each group and comparisons, nothing about a single run.
 pub(crate) fn generalisation(groups: &[HeldOut<'_>]) -> Vec<Block> {
     let Some(first) = groups.first().filter(|_| groups.iter().map(|group| group.runs.len()).sum::<usize>() > 1) else {
         return Vec::new();
@@ -49,7 +49,7 @@ pub(crate) fn generalisation(groups: &[HeldOut<'_>]) -> Vec<Block> {
     let least = percent(GENERALISES);
     let mut blocks = vec![
         Block::Text(format!(
-            "Runs that generalise: {least} or more of the trials of a case that was held out succeed. How many do?"
+            "Runs that generalize: at least {least} of the trials of a held-out case succeed."
         )),
         Block::Table(table),
     ];
@@ -65,7 +65,7 @@ pub(crate) fn generalisation(groups: &[HeldOut<'_>]) -> Vec<Block> {
         }
     }
     if !tests.rows.is_empty() {
-        let how = "Do the groups differ in runs that generalise to at least one? Fisher's exact test, two-sided.";
+        let how = "Do the groups differ in runs that generalize to at least one case? Fisher's exact test, two-sided.";
         blocks.push(Block::Text(how.into()));
         blocks.push(Block::Table(tests));
     }
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(found[0].head, ["condition", "TOUCH green", "MOVE red", "at least one", "all"]);
         assert_eq!(found[0].rows[0], ["one", "1 of 3", "2 of 3", "2 of 3", "1 of 3"]);
         assert_eq!(found[0].rows[1], ["other", "0 of 3", "0 of 3", "0 of 3", "0 of 3"]);
-        // Of the 15 ways to have two of six, three lie with the one and three with the other group.
+        // Two of six can be chosen in 15 ways, three of them within each group.
         assert_eq!(found[1].rows, [["one", "other", "2 of 3", "0 of 3", "0.4000"]]);
     }
 

@@ -1,29 +1,28 @@
-//! A page about one or many runs.
-//!
-//! - `curves`: the curves of a report: one run as it was, many as median and quartiles
-//! - `generalisation`: how many runs follow what was held out of their evolution
-//! - `moment`: when runs are compared: at a generation, or after as many evaluations where their generations differ in size
-//! - `outcome`: what came of groups of runs: medians, how many succeeded, and whether the groups differ
-//! - `page`: a page of headings, texts, tables and pictures, written as HTML or as Markdown
-//! - `protocols`: what test protocols found: a table and a picture of each
-//! - `run`: a run as a report reads it, and runs that differ in their seeds alone
-//! - `section`: what a report says about the runs of one experiment
-//! - `settings`: the configurations of the runs in a report: what differs, everything, and the commands that say it again
-//! - `states`: the internal states of a test protocol on their first two principal components
-//! - `strategies`: what strategies say of their generations beside the fitness, and what they keep
-//! - `tested_protocol`: a test protocol as a run was tested by it
-//! - `write`: `farsa report`: a page about one or many runs
+//! A page about one or several runs.
 
+/// Curves of a single run, or the median and quartiles of several.
 mod curves;
+/// The number of runs that generalize to held-out cases.
 mod generalisation;
+/// The moment at which runs are compared.
 mod moment;
+/// Medians, successes and comparisons of groups of runs.
 pub(crate) mod outcome;
+/// A page of headings, texts, tables and figures, as HTML or Markdown.
 mod page;
+/// The results of test protocols.
 mod protocols;
+/// A run as a report reads it.
 mod run;
+/// The section about one experiment.
 mod section;
+/// Differences, complete tables and commands of configurations.
 mod settings;
+/// Internal states on their first two principal components.
 mod states;
+/// Values that strategies report, and the archives that they keep.
 mod strategies;
+/// A test protocol with its results in a run.
 mod tested_protocol;
+/// `farsa report`.
 pub(crate) mod write;

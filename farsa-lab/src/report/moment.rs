@@ -1,9 +1,9 @@
-//! When runs are compared: at a generation, or after as many evaluations where their generations differ in size.
+//! The moment at which runs are compared: a generation, or a number of evaluations if generations differ in size.
 
 use crate::figures::chart::Across;
 use crate::report::run::{Group, Run};
 
-/// Points of a curve over evaluations.
+/// The number of points of a curve over evaluations.
 const POINTS: u64 = 500;
 
 /// The last moment that some runs have in common.
@@ -14,7 +14,7 @@ pub(crate) enum Moment {
 }
 
 impl Moment {
-    /// The last that all runs of all groups have.
+    /// Returns the last common moment of all runs.
     pub(crate) fn common(groups: &[Group<'_>]) -> Self {
         let generation = groups.iter().map(Group::common).min().unwrap_or(0);
         let mut runs = groups.iter().flat_map(|group| &group.runs);
@@ -31,7 +31,7 @@ impl Moment {
         Self::Evaluations(runs.map(|run| evaluations(run).last().copied().unwrap_or(0)).min().unwrap_or(0))
     }
 
-    /// The generation of a run that was finished last by then; none if there is none.
+    /// Returns the last finished generation of a run at this moment, if any.
     pub(crate) fn generation(self, run: &Run<'_>) -> Option<usize> {
         match self {
             Self::Generation(generation) => Some(generation),
@@ -39,17 +39,17 @@ impl Moment {
         }
     }
 
-    /// In words, for runs of which it is the last.
+    /// Describes the last common moment.
     pub(crate) fn words(self) -> String {
         match self {
-            Self::Generation(generation) => format!("at generation {generation}, the last that all of them have"),
+            Self::Generation(generation) => format!("at generation {generation}, the last common one"),
             Self::Evaluations(most) => {
-                format!("after {most} evaluations, the most that all of them have (their generations differ in size)")
+                format!("after {most} evaluations, the largest common number, because generations differ in size")
             }
         }
     }
 
-    /// What lies along the axis of curves.
+    /// Returns the lower axis of curves.
     pub(crate) fn axis(self, groups: &[Group<'_>]) -> Across {
         match self {
             Self::Generation(_) => Across::Generations,
@@ -62,7 +62,7 @@ impl Moment {
     }
 }
 
-/// The place of a run's last generation along an axis.
+/// Returns the position of a run's last generation on an axis.
 pub(crate) fn length(run: &Run<'_>, across: Across) -> usize {
     match across {
         Across::Generations => run.last(),
@@ -70,7 +70,7 @@ pub(crate) fn length(run: &Run<'_>, across: Across) -> usize {
     }
 }
 
-/// The generation of a run at a place along an axis, if one is finished by then.
+/// Returns the last finished generation of a run at a position on an axis.
 pub(crate) fn generation_at(run: &Run<'_>, across: Across, place: usize) -> Option<usize> {
     match across {
         Across::Generations => Some(place),
@@ -78,7 +78,7 @@ pub(crate) fn generation_at(run: &Run<'_>, across: Across, place: usize) -> Opti
     }
 }
 
-/// How many evaluations each generation had finished.
+/// Returns the number of evaluations up to each generation.
 fn evaluations(run: &Run<'_>) -> Vec<u64> {
     let mut sum = 0_u64;
     let add = |line: &crate::store::log::Line| {

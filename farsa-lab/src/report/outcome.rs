@@ -1,4 +1,4 @@
-//! What came of groups of runs: medians, how many succeeded, and whether the groups differ.
+//! The results of groups of runs: medians, successes and comparisons.
 
 use crate::figures::bootstrap::{RESAMPLES, median_interval};
 use crate::figures::mann_whitney::{Comparison, compare};
@@ -8,19 +8,19 @@ use crate::report::moment::Moment;
 use crate::report::page::{Block, Table};
 use crate::report::run::{Group, Run, percent, short, whose};
 
-/// When a run counts as a success.
+/// The criterion of a successful run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Success {
-    /// At least this share of its champion's test succeeded.
+    /// The least share of successful trials in the champion's test.
     Share(f64),
-    /// A generation's best reached this fitness.
+    /// The fitness to be reached by the best of a generation.
     Fitness(f64),
 }
 
 /// A number of a run, if it has one.
 type Number = Box<dyn Fn(&Run<'_>) -> Option<f64>>;
 
-/// What runs are compared by.
+/// A quantity by which runs are compared.
 struct Measure {
     name: String,
     of: Number,
@@ -28,7 +28,7 @@ struct Measure {
 }
 
 impl Success {
-    /// Whether a run is one; none if that is not known.
+    /// Returns true for a successful run, `None` for an untested one.
     fn of(self, run: &Run<'_>) -> Option<bool> {
         match self {
             Self::Share(least) => run.success().map(|share| share >= least),
@@ -43,22 +43,22 @@ impl Success {
     fn words(self) -> String {
         match self {
             Self::Share(least) => {
-                format!("A run is a success if at least {} of the test's trials of its champion are", percent(least))
+                format!("A run is successful if at least {} of the trials of its champion's test are", percent(least))
             }
             Self::Fitness(least) => {
-                format!("A run is a success if the best of a generation reaches a fitness of {}", short(least))
+                format!("A run is successful if the best of a generation reaches a fitness of {}", short(least))
             }
         }
     }
 }
 
-/// Medians at the last moment that all runs have, successes, and whether the groups differ.
+/// Returns medians at the last common moment, successes and comparisons.
 pub(crate) fn outcome(groups: &[Group<'_>], success: Success) -> Vec<Block> {
     let moment = Moment::common(groups);
     let measures = measures(groups, moment);
     let mut blocks = vec![
         Block::Text(format!(
-            "Median and quartiles over the runs, {}; success as tested below.{}",
+            "Median and quartiles of the runs, {}. Success as tested below.{}",
             moment.words(),
             Group::best_so_far(groups)
         )),
@@ -79,7 +79,7 @@ pub(crate) fn outcome(groups: &[Group<'_>], success: Success) -> Vec<Block> {
     blocks
 }
 
-/// Best and mean of each population at a moment, and the successes of champions.
+/// Returns the measures: best and mean of each population at a moment, and the success of champions.
 fn measures(groups: &[Group<'_>], moment: Moment) -> Vec<Measure> {
     let mut measures: Vec<Measure> = Vec::new();
     for (population, name) in Group::populations(groups) {
@@ -94,7 +94,7 @@ fn measures(groups: &[Group<'_>], moment: Moment) -> Vec<Measure> {
 }
 
 impl Measure {
-    /// Of the runs of a group that have it.
+    /// Returns the values of the runs of a group that have one.
     fn values(&self, group: &Group<'_>) -> Vec<f64> {
         group.runs.iter().filter_map(|run| (self.of)(run)).collect()
     }
@@ -133,7 +133,7 @@ fn intervals(groups: &[Group<'_>], measures: &[Measure]) -> Table {
     table
 }
 
-/// How many runs of each group succeeded, of those of which that is known; none if it is of no run.
+/// Counts the successful runs among the tested runs of each group, `None` without tests.
 fn counts(groups: &[Group<'_>], success: Success) -> Vec<Option<Proportion>> {
     let count = |group: &Group<'_>| {
         let known: Vec<bool> = group.runs.iter().filter_map(|run| success.of(run)).collect();
@@ -160,7 +160,7 @@ fn successes(groups: &[Group<'_>], counts: &[Option<Proportion>]) -> Table {
     table
 }
 
-/// Whether the groups differ, two by two.
+/// Compares the groups in pairs.
 fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion>]) -> Vec<Block> {
     let mut ranks = Table::new(&["first", "second", "of", "U", "P(first larger)", "p"]);
     let mut tables = Table::new(&["first", "second", "successes of the first", "of the second", "p"]);
@@ -169,7 +169,7 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
         for (place, second) in groups.iter().enumerate().skip(index + 1) {
             let pair = [&first.label, &second.label].map(String::clone);
             for measure in measures {
-                // A run that lacks the number would make the comparison one of other runs.
+                // Without the value of every run the comparison would be about other runs.
                 let of = |group: &Group<'_>| group.runs.iter().map(|run| (measure.of)(run)).collect::<Option<Vec<_>>>();
                 let found = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
                 if let Some(Comparison { u, larger, p, exact: counted }) = found {
@@ -189,17 +189,17 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
             }
         }
     }
-    // What few will read where there are many pairs.
+    // Many pairs are folded.
     let shown = |table: Table| match table.rows.len() {
         rows @ 41.. => Block::Fold(format!("All {rows} comparisons"), vec![Block::Table(table)]),
         _ => Block::Table(table),
     };
     let mut blocks = Vec::new();
     if !ranks.rows.is_empty() {
-        let how = if exact { "exact" } else { "exact up to 200 runs and beyond from the normal distribution" };
+        let how = if exact { "exact" } else { "exact up to 200 runs, beyond that by the normal distribution" };
         blocks.push(Block::Text(format!(
-            "Do they differ? Mann-Whitney U test, two-sided, {how}, not corrected for the number of comparisons; \
-             P(first larger) is the probability that a run of the first is above one of the second, equals as half."
+            "Do they differ? Mann-Whitney U test, two-sided, {how}, not corrected for the number of comparisons. \
+             P(first larger) is the probability that a run of the first is above one of the second, with ties as half."
         )));
         blocks.push(shown(ranks));
     }
@@ -213,7 +213,7 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
     blocks
 }
 
-/// A probability for reading; a small one does not become 0.
+/// Formats a probability, with small ones in scientific notation.
 pub(crate) fn probability(p: f64) -> String {
     if p >= 1e-4 { format!("{p:.4}") } else { format!("{p:.1e}") }
 }

@@ -1,4 +1,4 @@
-//! A page of headings, texts, tables and pictures, written as HTML or as Markdown.
+//! A page of headings, texts, tables and figures, as HTML or Markdown.
 
 use std::fmt::Write as _;
 
@@ -13,22 +13,22 @@ pub(crate) struct Page {
     pub(crate) blocks: Vec<Block>,
 }
 
-/// What stands below each other on a page.
+/// A block of a page.
 #[derive(Debug)]
 pub(crate) enum Block {
     Heading(String),
     Subheading(String),
     Text(String),
     Table(Table),
-    /// Pictures beside each other where there is room.
+    /// Figures, in rows where there is room.
     Figures(Vec<Figure>),
-    /// Lines for a shell.
+    /// Commands for a shell.
     Commands(Vec<String>),
-    /// What few will read: closed until it is asked for, where that is possible.
+    /// Details, closed where that is possible.
     Fold(String, Vec<Block>),
 }
 
-/// Cells in rows below a head; all rows are as long as the head.
+/// Cells in rows below a head of the same length.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     pub(crate) head: Vec<String>,
@@ -38,7 +38,7 @@ pub(crate) struct Table {
 /// A picture as HTML: an `svg` element, or an `img` that holds its data.
 #[derive(Debug)]
 pub(crate) struct Figure {
-    /// What it is a picture of, in one word, for the name of its file.
+    /// The kind of the figure, for the name of its file.
     pub(crate) kind: &'static str,
     pub(crate) picture: String,
     pub(crate) caption: String,
@@ -49,9 +49,9 @@ impl Table {
         Self { head: head.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
     }
 
-    /// Whether a column holds numbers, which are read from their right ends.
+    /// Returns true for a column of numbers, which are aligned to the right.
     fn is_numeric(&self, column: usize) -> bool {
-        // Dates and units such as 1/s begin with a digit too.
+        // Dates and units such as 1/s start with a digit, too.
         let number = |cell: &str| {
             let word = cell.split(' ').next().unwrap_or_default().trim_start_matches('-').trim_end_matches(',');
             word.starts_with(|c: char| c.is_ascii_digit()) && !word.contains([':', '/'])
@@ -62,7 +62,7 @@ impl Table {
 }
 
 impl Page {
-    /// The page as one HTML document that needs nothing else.
+    /// Returns the page as one HTML document without external files.
     pub(crate) fn html(&self) -> String {
         let style = include_str!("report.css").replace("PAPER", PAPER).replace("INK", INK).replace("GRID", GRID);
         let page = html! {
@@ -81,9 +81,9 @@ impl Page {
         page.into_string() + "\n"
     }
 
-    /// The page as Markdown, with the pictures for the files beside it.
+    /// Returns the page as Markdown with the SVG figures for separate files.
     ///
-    /// Pictures that are no SVG are left out. `stem` is the page's file name without its end.
+    /// Other pictures are omitted. `stem` is the file name of the page without extension.
     pub(crate) fn markdown(&self, stem: &str) -> (String, Vec<(String, String)>) {
         let mut text = format!("# {}\n", plain(&self.title));
         let mut pictures = Vec::new();
@@ -124,7 +124,7 @@ fn as_html(blocks: &[Block]) -> Markup {
 fn as_markdown(blocks: &[Block], stem: &str, text: &mut String, pictures: &mut Vec<(String, String)>) {
     for block in blocks {
         text.push('\n');
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = match block {
             Block::Heading(title) => writeln!(text, "## {}", plain(title)),
             Block::Subheading(title) => writeln!(text, "### {}", plain(title)),
@@ -159,7 +159,7 @@ fn as_markdown(blocks: &[Block], stem: &str, text: &mut String, pictures: &mut V
     }
 }
 
-/// Words without what Markdown would take for a sign.
+/// Escapes text for Markdown.
 fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for letter in text.chars() {

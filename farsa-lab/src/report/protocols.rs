@@ -1,4 +1,4 @@
-//! What test protocols found: a table and a picture of each.
+//! The results of test protocols, a table and a figure for each.
 
 use crate::error::Error;
 use crate::evaluation::protocols::files::ProtocolRecord;
@@ -16,7 +16,7 @@ use crate::report::settings::shell;
 use crate::report::states::states;
 use crate::report::tested_protocol::TestedProtocol;
 
-/// The command that makes it again.
+/// Returns the command that repeats the test.
 pub(crate) fn command_of(tested: &TestedProtocol, run: &Run<'_>, program: &str) -> Result<String, Error> {
     let mut words = vec![program.into(), "test".into(), run.name(), "--protocol".into(), tested.protocol.name.clone()];
     if let Some(ProtocolRecord { trials, seed, .. }) = &tested.record {
@@ -25,14 +25,14 @@ pub(crate) fn command_of(tested: &TestedProtocol, run: &Run<'_>, program: &str) 
     shell(&words)
 }
 
-/// Runs that were tested by a protocol in the same cases.
+/// Runs with the same tested cases.
 struct Alike<'r> {
     label: &'r str,
     cases: Vec<Case>,
     runs: Vec<(&'r Run<'r>, &'r TestedProtocol)>,
 }
 
-/// What each protocol found, in each group of runs.
+/// Returns the results of each protocol in each group of runs.
 pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
     let mut names: Vec<&str> = Vec::new();
     for tested in groups.iter().flat_map(|group| &group.runs).flat_map(|run| &run.protocols) {
@@ -47,7 +47,7 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
         if let Some((_, tested)) = alike.first().and_then(|alike| alike.runs.first()) {
             let summary = &tested.protocol.summary;
             let held_out = if tested.found.iter().any(|case| case.held_out) {
-                " Held out: of a kind that was not among the trials of the evolution."
+                " Held-out cases are of a kind that was not among the trials of the evolution."
             } else {
                 ""
             };
@@ -67,7 +67,7 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
     blocks
 }
 
-/// The protocols that some runs were not tested by, and the command for the first of these.
+/// Returns the protocols without tests of some runs, with a command for the first of these runs.
 pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let mut others: Vec<(&Protocol, Vec<&Run<'_>>)> = Vec::new();
     for &run in groups.iter().flat_map(|group| &group.runs) {
@@ -79,7 +79,7 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
         }
     }
     let all = groups.iter().map(|group| group.runs.len()).sum::<usize>();
-    let mut table = Table::new(&["protocol", "what it tries", "not run with", "command"]);
+    let mut table = Table::new(&["protocol", "purpose", "not run with", "command"]);
     for (protocol, runs) in others {
         let Some(first) = runs.first() else { continue };
         let missing = if all == 1 { first.name() } else { format!("{} of {all} runs", runs.len()) };
@@ -90,7 +90,7 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
     Ok(if table.rows.is_empty() { Vec::new() } else { vec![heading, Block::Table(table)] })
 }
 
-/// The runs of each group that were tested in the same cases.
+/// Returns the runs of each group with the same tested cases.
 fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
     let mut all: Vec<Alike<'r>> = Vec::new();
     for group in groups {
@@ -108,7 +108,7 @@ fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
 }
 
 impl Alike<'_> {
-    /// Whose results these are.
+    /// Returns the name of the run or group.
     fn whose(&self) -> String {
         match self.runs.as_slice() {
             [(run, _)] => run.name(),
@@ -116,12 +116,12 @@ impl Alike<'_> {
         }
     }
 
-    /// The shares of success of a case in all runs.
+    /// Returns the share of success of a case in each run.
     fn rates(&self, case: usize) -> Vec<f64> {
         self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate)).collect()
     }
 
-    /// What the runs made of the cases that were held out, if any were.
+    /// Returns the results in held-out cases, if any.
     fn held_out(&self) -> Option<HeldOut<'_>> {
         let cases: Vec<usize> = (0..self.cases.len()).filter(|case| self.cases[*case].held_out).collect();
         let names = cases.iter().map(|case| self.cases[*case].name()).collect();
@@ -130,7 +130,7 @@ impl Alike<'_> {
         (!cases.is_empty()).then_some(HeldOut { label: self.label, cases: names, runs })
     }
 
-    /// The mean share of a case, what is said below it, and the ends of its interval or, of several runs, the extremes.
+    /// Returns the mean share of a case, a note, and the ends of its interval or the extremes of several runs.
     fn share(&self, case: usize) -> (f64, String, [f64; 2]) {
         let rates = self.rates(case);
         let mean = rates.iter().sum::<f64>() / rates.len() as f64;
@@ -171,7 +171,7 @@ impl Alike<'_> {
         Some(Figure { kind: "protocol", picture, caption })
     }
 
-    /// The shares over the number that the rows are, a curve for each column; none of other rows, and of a table with holes.
+    /// Returns a curve of shares per column over rows that are numbers, `None` for other rows or missing cells.
     fn rates_by_row(&self) -> Option<(Vec<&str>, Vec<RateCurve<'_>>)> {
         let rows = Protocol::places(&self.cases, |case| &case.row);
         let columns = Protocol::places(&self.cases, |case| &case.column);
@@ -189,7 +189,7 @@ impl Alike<'_> {
         Some((rows, curves?))
     }
 
-    /// The shares over the number that the rows are, where they are one.
+    /// Draws the shares over rows that are numbers.
     fn curves(&self) -> Option<Figure> {
         let (labels, curves) = self.rates_by_row()?;
         let (_, tested) = self.runs.first()?;
@@ -200,7 +200,7 @@ impl Alike<'_> {
         Some(Figure { kind: "rates", picture, caption })
     }
 
-    /// Where along the rows the shares fall to half of the first, if they do.
+    /// Describes the rows at which shares fall to half of their first value.
     fn halves(&self) -> Option<String> {
         let (labels, curves) = self.rates_by_row()?;
         let (values, unit) = rates::values(&labels)?;
@@ -213,7 +213,7 @@ impl Alike<'_> {
         (!halves.is_empty()).then(|| format!("{}: {}.", self.whose(), halves.join("; ")))
     }
 
-    /// The bar of a case, which has its column's name or its row's.
+    /// Returns the bar of a case, named after its column or row.
     fn bar<'c>(&self, number: usize, case: &'c Case, by_column: bool) -> Bar<'c> {
         let (share, _, interval) = self.share(number);
         let label = if by_column { &case.column } else { &case.row };
@@ -231,7 +231,7 @@ impl Alike<'_> {
             let generation = match &tested.record {
                 None => "which was not recorded".into(),
                 Some(record) => {
-                    let other = run.beside_champion(record.generation).map(|other| format!(", {other}"));
+                    let other = run.other_champion(record.generation).map(|other| format!(", {other}"));
                     format!("of generation {}{}", record.generation, other.unwrap_or_default())
                 }
             };

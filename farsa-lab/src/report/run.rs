@@ -1,4 +1,4 @@
-//! A run as a report reads it, and runs that differ in their seeds alone.
+//! A run as a report reads it, and groups of runs that differ only in their seeds.
 
 use std::cmp::Ordering;
 use std::time::Duration;
@@ -19,43 +19,43 @@ use crate::store::log::Line;
 use crate::store::manifest::Manifest;
 use crate::strategy::settings::GENERATIONS;
 
-/// All of a run that a report shows.
+/// The parts of a run that a report shows.
 pub(crate) struct Run<'e> {
     pub(crate) directory: Directory,
     pub(crate) plan: Plan<'e>,
     pub(crate) manifest: Manifest,
-    /// Names of the populations, if there are several.
+    /// The names of the populations, none of a single one.
     pub(crate) populations: Vec<String>,
     /// The finished generations, at least one.
     pub(crate) lines: Vec<Line>,
     /// The generation of the champion.
     champion: u32,
-    /// What the strategy said of each generation, where it says something.
+    /// The values of the strategy in each generation, if it reports any.
     pub(crate) diagnostics: Vec<Vec<f64>>,
-    /// The picture of what the strategy keeps, where it does.
+    /// The figure of the strategy's archive or front, if it has one.
     pub(crate) kept: Option<String>,
-    /// The best fitness up to each generation, where the champion is the best of all; else none.
+    /// The best fitness up to each generation, empty unless the champion is the best of all.
     best: Vec<f64>,
     pub(crate) test: Option<Tested>,
-    /// The test protocols that were run, in the experiment's order.
+    /// The tested protocols, in the experiment's order.
     pub(crate) protocols: Vec<TestedProtocol>,
-    /// The others, in the same order.
+    /// The other protocols, in the same order.
     pub(crate) other_protocols: Vec<Protocol>,
 }
 
 /// The test of a run's champion.
 pub(crate) struct Tested {
     pub(crate) findings: Findings,
-    /// None if it was made before there were records.
+    /// `None` for a test of an early version.
     pub(crate) record: Option<Record>,
 }
 
 impl<'e> Run<'e> {
-    /// Reads a run, also one that is under way: its finished generations up to the last checkpoint.
+    /// Reads a run up to its last checkpoint. It may still be running.
     ///
     /// # Errors
-    /// [`Error::Damaged`] when a file is, or no generation is finished; [`Error::OtherConfiguration`] when the
-    /// configuration was changed by hand; [`Error::Io`].
+    /// [`Error::Damaged`] for a damaged file and without a finished generation, [`Error::OtherConfiguration`] for a changed
+    /// configuration, [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
         let checkpoint = Checkpoint::read(&plan, &directory)?;
@@ -98,13 +98,14 @@ impl<'e> Run<'e> {
         })
     }
 
-    /// The directory as the user named it.
+    /// Returns the directory as the user named it.
     pub(crate) fn name(&self) -> String {
         self.directory.path().display().to_string()
     }
 
-    /// Best (0), mean (1) or worst (2) fitness of a generation, of one of several populations or of all together; where the champion is
-    /// the best of all generations, the best of those up to this one.
+    /// Returns the best (0), mean (1) or worst (2) fitness of a generation, of one population or of all.
+    ///
+    /// The best is the best so far where the champion is the best of all generations.
     pub(crate) fn fitness(&self, population: Option<usize>, generation: usize, which: usize) -> f64 {
         if let (0, Some(best)) = (which, self.best.get(generation)) {
             return *best;
@@ -116,7 +117,7 @@ impl<'e> Run<'e> {
         self.lines.get(generation).and_then(row).map_or(f64::NAN, |row| row[which])
     }
 
-    /// Whose fitness is shown: that of each population, or of the only one, which has no name.
+    /// Returns the populations with their names. A single population has no name.
     pub(crate) fn populations(&self) -> Vec<(Option<usize>, String)> {
         match self.populations.as_slice() {
             [] => vec![(None, String::new())],
@@ -124,14 +125,13 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// The last finished generation.
+    /// Returns the last finished generation.
     pub(crate) fn last(&self) -> usize {
         self.lines.len().saturating_sub(1)
     }
 
-    /// What the best of a generation is beside the champion, where it is another: a run that went on has a new champion, and one of a
-    /// version that named the last generation's best may have an older one.
-    pub(crate) fn beside_champion(&self, generation: u32) -> Option<&'static str> {
+    /// Compares the tested champion with the current one, which differs in a continued run and in runs of early versions.
+    pub(crate) fn other_champion(&self, generation: u32) -> Option<&'static str> {
         match generation.cmp(&self.champion) {
             Ordering::Less => Some("an earlier one"),
             Ordering::Equal => None,
@@ -139,29 +139,29 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// The share of the test's trials that succeeded.
+    /// Returns the share of successful trials of the test.
     pub(crate) fn success(&self) -> Option<f64> {
         self.test.as_ref().map(|Tested { findings, .. }| findings.part(findings.successes))
     }
 
-    /// How long all sessions took.
+    /// Returns the time of all sessions [s].
     pub(crate) fn seconds(&self) -> f64 {
         self.manifest.sessions.iter().map(|session| session.seconds).sum()
     }
 
-    /// A setting's value as the configuration has it; none if this condition has no such setting.
+    /// Returns the value of a setting, `None` if this condition has no such setting.
     pub(crate) fn value(&self, key: &str) -> Option<&Value> {
         self.plan.settings.get(key).ok()
     }
 
-    /// Keys and values of all settings that make a run another one.
+    /// Returns keys and values of all settings that distinguish runs.
     fn settings(&self) -> impl Iterator<Item = (&str, Option<&Value>)> {
         let keys = self.plan.settings.table().iter().map(crate::experiment::settings::Setting::key);
         keys.filter(|&key| key != GENERATIONS).map(|key| (key, self.value(key)))
     }
 }
 
-/// Runs that differ in nothing but their seeds and their lengths.
+/// Runs that differ only in seed and length.
 #[derive(Clone)]
 pub(crate) struct Group<'r> {
     /// The condition, with the settings that distinguish it from other groups of the same condition.
@@ -170,7 +170,7 @@ pub(crate) struct Group<'r> {
 }
 
 impl<'r> Group<'r> {
-    /// Divides the runs of one experiment into groups, in the order of its conditions.
+    /// Groups the runs of one experiment, in the order of its conditions.
     pub(crate) fn all(runs: &[&'r Run<'r>]) -> Vec<Self> {
         let Some(first) = runs.first() else { return Vec::new() };
         let conditions = first.plan.experiment.conditions();
@@ -196,7 +196,7 @@ impl<'r> Group<'r> {
         groups
     }
 
-    /// The condition, with what distinguishes this group from the others of that condition.
+    /// Returns the condition, with the settings that distinguish this group from others of the condition.
     fn name(&self, groups: &[Self]) -> String {
         let Some(run) = self.runs.first() else { return String::new() };
         let plan = &run.plan;
@@ -207,7 +207,7 @@ impl<'r> Group<'r> {
             .filter(|other| other.plan.condition == plan.condition)
             .collect();
         let strategy = |run: &Run<'_>| run.plan.definition().name();
-        // What a strategy is set to distinguishes it from none of another name: both names do.
+        // Settings of a strategy do not distinguish it from another strategy, because the names do.
         let of_strategy = |key: &str| ["strategy.", "evolution."].iter().any(|section| key.starts_with(section));
         let differs = |key: &str, value: Option<&Value>| {
             let comparable = |other: &Run<'_>| strategy(other) == strategy(run) || !of_strategy(key);
@@ -217,13 +217,13 @@ impl<'r> Group<'r> {
         if others.iter().any(|other| strategy(other) != strategy(run)) {
             own.push(strategy(run).to_owned());
         }
-        // The last part of a key says enough in a name; the table of differences has the whole.
+        // The last part of a key is enough for a name. The table of differences has whole keys.
         let settings = run.settings().filter(|(key, value)| differs(key, *value));
         own.extend(settings.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))));
         if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
     }
 
-    /// Where the best is the best so far, in words; nothing where it is nowhere.
+    /// Describes the groups whose best is the best so far, or nothing.
     pub(crate) fn best_so_far(groups: &[Self]) -> String {
         let keeps = |group: &&Self| group.runs.iter().any(|run| !run.best.is_empty());
         let labels: Vec<&str> = groups.iter().filter(keeps).map(|group| group.label.as_str()).collect();
@@ -233,24 +233,24 @@ impl<'r> Group<'r> {
         format!(" The best so far where the champion is the best of all generations: {}.", labels.join("; "))
     }
 
-    /// Whose fitness the runs have: where conditions have different populations, those of the one with the most.
+    /// Returns the populations of the condition with the most of them.
     pub(crate) fn populations(groups: &[Self]) -> Vec<(Option<usize>, String)> {
         let runs = groups.iter().flat_map(|group| &group.runs);
         runs.map(|run| run.populations()).max_by_key(Vec::len).unwrap_or_default()
     }
 
-    /// The last generation that all its runs have.
+    /// Returns the last common generation of the runs.
     pub(crate) fn common(&self) -> usize {
         self.runs.iter().map(|run| run.last()).min().unwrap_or(0)
     }
 }
 
-/// The name of a column about one of several populations.
+/// Returns the name of a column about a population.
 pub(crate) fn whose(what: &str, name: &str) -> String {
     if name.is_empty() { what.into() } else { format!("{what}, {name}") }
 }
 
-/// A number for reading: five digits, or as many as the whole part has.
+/// Formats a number with five digits, or all digits of the integer part.
 pub(crate) fn short(x: f64) -> String {
     if !x.is_finite() {
         return "–".into();
@@ -262,12 +262,12 @@ pub(crate) fn short(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { format!("{x:.decimals$}") }
 }
 
-/// A share for reading.
+/// Formats a share as a percentage.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
 }
 
-/// A time for reading.
+/// Formats a time.
 pub(crate) fn duration(seconds: f64) -> String {
     let whole = seconds.clamp(0.0, 1e12);
     let duration =

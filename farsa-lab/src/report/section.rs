@@ -1,4 +1,4 @@
-//! What a report says about the runs of one experiment.
+//! The section of a report about one experiment.
 
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -15,7 +15,7 @@ use crate::report::settings::{command, complete, differences, shell};
 use crate::report::strategies::strategies;
 use crate::strategy::settings::POPULATION;
 
-/// The section about an experiment's runs, with a heading unless it is alone on its page; `runs` is not empty.
+/// Returns the section about an experiment's runs, with a heading unless it is the only one.
 pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program: &str) -> Result<Vec<Block>, Error> {
     let Some(first) = runs.first() else { return Ok(Vec::new()) };
     let experiment = first.plan.experiment;
@@ -27,9 +27,9 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     }
     blocks.push(Block::Text(sentence(experiment.summary())));
     blocks.extend(twins(&groups));
-    blocks.push(Block::Table(asked(&groups)?));
+    blocks.push(Block::Table(task(&groups)?));
     if let Some(table) = differences(&groups) {
-        blocks.push(Block::Subheading("What differs".into()));
+        blocks.push(Block::Subheading("Differences".into()));
         blocks.push(Block::Table(table));
     }
     blocks.push(Block::Subheading("Fitness".into()));
@@ -46,13 +46,13 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     for (place, run) in runs.iter().enumerate() {
         match champion(run, place) {
             Ok(picture) => pictures.extend(picture),
-            // This program cannot replay that champion; everything else in its run can be reported.
+            // This program cannot replay that champion, but it can report the rest of the run.
             Err(error @ Error::OtherVersion { .. }) => others.push(Block::Text(format!("Not drawn: {error}"))),
             Err(error) => return Err(error),
         }
     }
     if !pictures.is_empty() || !others.is_empty() {
-        blocks.push(Block::Subheading("What the champions do".into()));
+        blocks.push(Block::Subheading("Behavior of the champions".into()));
         blocks.push(Block::Figures(pictures));
         blocks.extend(others);
     }
@@ -69,7 +69,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
         }
         commands.push(shell(&[program.into(), "replay".into(), run.name()])?);
     }
-    blocks.push(Block::Subheading("The same again".into()));
+    blocks.push(Block::Subheading("Commands".into()));
     blocks.push(Block::Commands(commands));
     Ok(blocks)
 }
@@ -81,7 +81,7 @@ fn sentence(text: &str) -> String {
     first.map_or_else(String::new, |first| format!("{first}{}{end}", letters.as_str()))
 }
 
-/// A warning about runs that are the same run.
+/// Warns about identical runs.
 fn twins(groups: &[Group<'_>]) -> Vec<Block> {
     let mut blocks = Vec::new();
     for group in groups {
@@ -96,8 +96,8 @@ fn twins(groups: &[Group<'_>]) -> Vec<Block> {
     blocks
 }
 
-/// What was to be found out, a column for each group.
-fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
+/// Returns the task of the runs, a column per group.
+fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
     let mut table = Table::new(&["condition"]);
     let rows = ["seeds", "generations", "individuals", "trials", "steps of a trial", "network", "genome", "fitness"];
     table.rows = rows.iter().map(|&row| vec![row.to_owned()]).collect();
@@ -137,7 +137,7 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
     Ok(table)
 }
 
-/// What the tests found, or how to make them.
+/// Returns the results of tests, or the commands that run them.
 fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let mut names: Vec<&str> = Vec::new();
     for test in groups.iter().flat_map(|group| &group.runs).filter_map(|run| run.test.as_ref()) {
@@ -161,7 +161,7 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             let champion = match &test.record {
                 None => "not recorded".into(),
                 Some(record) => {
-                    let other = run.beside_champion(record.generation).map(|other| format!(": {other}"));
+                    let other = run.other_champion(record.generation).map(|other| format!(": {other}"));
                     format!("generation {}{}", record.generation, other.unwrap_or_default())
                 }
             };
@@ -173,7 +173,7 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
                 champion,
                 findings.trials.to_string(),
                 percent(findings.part(findings.successes)),
-                // Too many kinds of trials are no longer read one by one.
+                // Many kinds of trials are only counted.
                 if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") },
                 short(findings.fitness),
             ];
@@ -198,20 +198,20 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let mut blocks = Vec::new();
     if !table.rows.is_empty() {
         blocks.push(Block::Text(
-            "Success as the experiment defines it, of all trials and of each of the experiment's own; means over the \
-             trials; the last row of a condition is the median of its runs."
+            "Success as the experiment defines it, of all trials and of each kind of trial, and means over the trials. The \
+             last row of a condition is the median of its runs."
                 .into(),
         ));
         blocks.push(Block::Table(table));
     }
     if !missing.is_empty() {
-        blocks.push(Block::Text("Not tested yet; this does it, and the report can then be made again:".into()));
+        blocks.push(Block::Text("Not tested yet. These commands run the tests:".into()));
         blocks.push(Block::Commands(missing));
     }
     Ok(blocks)
 }
 
-/// The medians of what the tests of a group found.
+/// Returns the medians of a group's tests.
 fn middle(group: &Group<'_>, names: &[&str]) -> Vec<String> {
     let findings: Vec<_> = group.runs.iter().filter_map(|run| Some(&run.test.as_ref()?.findings)).collect();
     let shown = |values: Vec<f64>, show: fn(f64) -> String| median(&values).map(show).unwrap_or_default();
@@ -262,7 +262,7 @@ fn table_of_runs(groups: &[Group<'_>]) -> Table {
     table
 }
 
-/// A line for every process that worked at a run.
+/// Returns a row for every process that worked on a run.
 fn sessions(runs: &[&Run<'_>]) -> Table {
     let mut table = Table::new(&[
         "run",
@@ -298,14 +298,14 @@ fn sessions(runs: &[&Run<'_>]) -> Table {
     table
 }
 
-/// A champion's picture with its caption; `place` distinguishes it from the others on the page.
+/// Returns a champion's picture with its caption. The index `place` makes its names unique on the page.
 fn champion(run: &Run<'_>, place: usize) -> Result<Option<Figure>, Error> {
     let prefix = format!("{}-{place}", run.plan.experiment.name());
     let portrait = draw::champion(&run.plan, &run.directory, &prefix)?;
     Ok(portrait.map(|Portrait { picture, cut }| {
         let moment = match cut {
-            None => "how its champion's best trial ends".into(),
-            Some(time) => format!("its champion's best trial after {time:.2} s; the rest does not fit into memory"),
+            None => "the end of its champion's best trial".into(),
+            Some(time) => format!("its champion's best trial after {time:.2} s, as the rest exceeds memory"),
         };
         Figure { kind: "champion", picture, caption: format!("{}: {moment}.", run.name()) }
     }))

@@ -1,4 +1,4 @@
-//! The configurations of the runs in a report: what differs, everything, and the commands that say it again.
+//! The configurations of the runs in a report: differences, complete tables, and commands.
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
@@ -6,7 +6,7 @@ use crate::report::page::Table;
 use crate::report::run::{Group, Run};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 
-/// The settings in which the groups differ, a column for each group; none if they differ in nothing.
+/// Returns the settings in which groups differ, a column per group, or `None` without differences.
 pub(crate) fn differences(groups: &[Group<'_>]) -> Option<Table> {
     let mut table = Table::new(&["setting"]);
     table.head.extend(groups.iter().map(|group| group.label.clone()));
@@ -23,9 +23,9 @@ pub(crate) fn differences(groups: &[Group<'_>]) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
-/// Every setting with its values and where they come from.
+/// Returns every setting with its values and sources.
 pub(crate) fn complete(groups: &[Group<'_>]) -> Table {
-    let mut table = Table::new(&["setting", "value", "unit", "source", "what it is"]);
+    let mut table = Table::new(&["setting", "value", "unit", "source", "meaning"]);
     for setting in settings(groups) {
         let key = setting.key();
         let mut values: Vec<String> = Vec::new();
@@ -54,7 +54,7 @@ pub(crate) fn complete(groups: &[Group<'_>]) -> Table {
     table
 }
 
-/// The command that makes the run again, in a directory beside it.
+/// Returns the command that repeats the run in another directory.
 pub(crate) fn command(run: &Run<'_>, program: &str) -> Result<String, Error> {
     let plan = &run.plan;
     let mut words: Vec<String> = vec![program.into(), "run".into(), plan.experiment.name().into()];
@@ -62,7 +62,7 @@ pub(crate) fn command(run: &Run<'_>, program: &str) -> Result<String, Error> {
         words.extend(["--condition".into(), plan.condition.clone()]);
     }
     words.extend(["--seed".into(), plan.seed.to_string()]);
-    // The generations that are there, not those that may still come.
+    // Finished generations, not planned ones.
     words.extend(["--generations".into(), run.lines.len().to_string()]);
     for setting in plan.settings.table() {
         let (key, value) = (setting.key(), plan.settings.get(setting.key())?);
@@ -77,12 +77,12 @@ pub(crate) fn command(run: &Run<'_>, program: &str) -> Result<String, Error> {
     shell(&words)
 }
 
-/// Words as a shell takes them.
+/// Quotes words for a shell.
 pub(crate) fn shell(words: &[String]) -> Result<String, Error> {
     shlex::try_join(words.iter().map(String::as_str)).map_err(|error| Error::Other(error.to_string()))
 }
 
-/// The settings of all groups, in the order of the first, each once.
+/// Returns the settings of all groups without duplicates, in the order of the first.
 fn settings<'r>(groups: &[Group<'r>]) -> Vec<&'r Setting> {
     let mut settings: Vec<&Setting> = Vec::new();
     for run in groups.iter().filter_map(|group| group.runs.first().copied()) {

@@ -7,8 +7,7 @@ use crate::report::page::{Block, Figure};
 use crate::report::run::{Run, percent};
 use crate::report::tested_protocol::TestedProtocol;
 
-/// How the states of a run's champion move in the first trials of each case; none where none were recorded, or where they never
-/// differ.
+/// Draws the states of a run's champion in the first trials of each case, if recorded states differ.
 pub(crate) fn states(run: &Run<'_>, tested: &TestedProtocol) -> Option<Block> {
     let states = tested.states.as_ref()?;
     let components = PrincipalComponents::of(states.points())?;
@@ -31,7 +30,7 @@ pub(crate) fn states(run: &Run<'_>, tested: &TestedProtocol) -> Option<Block> {
     let trials = panels.iter().map(|panel| panel.curves.len()).max().unwrap_or(0);
     let of = format!("{} neurons, {} to {}", states.neurons.len(), states.neurons.first()?, states.neurons.last()?);
     let caption = format!(
-        "{}: the states of {of}, in the first {trials} trials of each case, from the circle to the dot; pale, those of all cases.",
+        "{}: the states of {of}, in the first {trials} trials of each case, from the circle to the dot. Pale curves are those of all cases.",
         run.name()
     );
     Some(Block::Figures(vec![Figure { kind: "states", picture, caption }]))

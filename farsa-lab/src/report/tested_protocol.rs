@@ -1,4 +1,4 @@
-//! A test protocol as a run was tested by it.
+//! A test protocol with its results in a run.
 
 use crate::error::Error;
 use crate::evaluation::protocols::files::{self, ProtocolRecord};
@@ -8,18 +8,18 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::store::directory::Directory;
 
-/// A protocol as a run was tested by it.
+/// A test protocol with its results in a run.
 pub(crate) struct TestedProtocol {
     pub(crate) protocol: Protocol,
     pub(crate) found: Vec<FoundCase>,
-    /// None if a process was killed before it wrote one.
+    /// `None` if a process was killed before writing it.
     pub(crate) record: Option<ProtocolRecord>,
-    /// The states that were recorded in the same test, if any were.
+    /// The recorded states of the same test, if any.
     pub(crate) states: Option<States>,
 }
 
 impl TestedProtocol {
-    /// Those of the evaluator's protocols of which a directory holds the results, and those that were not run.
+    /// Returns the protocols with results in a directory, and the others.
     ///
     /// # Errors
     /// [`Error::Damaged`], [`Error::Io`].
@@ -33,7 +33,7 @@ impl TestedProtocol {
                 continue;
             };
             let states = States::read(directory, &protocol.name)?;
-            // Those of an earlier test are of other trials.
+            // States of an earlier test are of other trials.
             let own = |of: &ProtocolRecord| record.as_ref().is_some_and(|record| record.same_test(of));
             let states = states.filter(|(_, of)| of.as_ref().is_some_and(own)).map(|(states, _)| states);
             tested.push(Self { protocol, found: FoundCase::all(&table, &terms), record, states });
@@ -41,7 +41,7 @@ impl TestedProtocol {
         Ok((tested, others))
     }
 
-    /// The cases, in the order of the table.
+    /// Returns the cases in the order of the table.
     pub(crate) fn cases(&self) -> Vec<Case> {
         self.found.iter().map(FoundCase::case).collect()
     }

@@ -1,4 +1,4 @@
-//! `farsa report`: a page about one or many runs.
+//! `farsa report`: a page about one or several runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,14 @@ use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::{create_results, refuse_existing};
 
-/// What a successful run is unless it is said.
+/// The default criterion of a successful run.
 const HALF: Success = Success::Share(0.5);
 
-/// What was written about which runs.
+/// The summary of a written report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     runs: Vec<RunSummary>,
-    /// The files that were written.
+    /// The written files.
     files: Vec<String>,
 }
 
@@ -36,23 +36,22 @@ struct RunSummary {
     generations: usize,
     best: f64,
     mean: f64,
-    /// The share of successful trials; none if there was no test.
+    /// The share of successful trials, `None` without a test.
     success: Option<f64>,
 }
 
 impl Summary {
-    /// The same in a line of words.
+    /// Returns the summary as a line of text.
     pub(crate) fn text(&self) -> String {
         let runs = if self.runs.len() == 1 { "run" } else { "runs" };
         format!("{} {runs}: {}\n", self.runs.len(), OneLine(self.files.join(", ")))
     }
 }
 
-/// Writes a page about some runs as HTML, as Markdown with its pictures, or both.
+/// Writes a page about some runs as HTML, as Markdown with its figures, or both.
 ///
 /// # Errors
-/// [`Error::Usage`] when a file is there already or a run is named twice; those of reading a run. Nothing is then
-/// written.
+/// [`Error::Usage`] for an existing file or a run that is given twice, and those of reading a run. Nothing is written then.
 pub(crate) fn report(
     runs: Vec<(Directory, Plan<'_>)>,
     html: Option<&Path>,
@@ -120,7 +119,7 @@ fn page(
     });
     blocks.push(Block::Heading("This page".into()));
     let version = env!("CARGO_PKG_VERSION");
-    blocks.push(Block::Text(format!("Written by FARSA {version}; the same runs make the same page.")));
+    blocks.push(Block::Text(format!("Written by FARSA {version}. The same runs make the same page.")));
     blocks.push(Block::Commands(vec![shell(&words)?]));
     Ok(Page { title, blocks })
 }
