@@ -58,4 +58,5 @@ pub use strategy::{
     Truncation, strategies,
 };
 
-pub use farsa_view::{Channel, ImageChannel, Links, NodeParameters, Recording, SceneObject, Schema, View};
+pub use farsa_view::shape::SceneObject;
+pub use farsa_view::{Channel, ImageChannel, Links, NodeParameters, Recording, Schema, View};

@@ -1,8 +1,8 @@
-//! Why something cannot be shown.
+//! Errors of pictures and pages.
 
 use std::fmt;
 
-/// What cannot be shown, and why.
+/// An error of a picture or page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
@@ -10,22 +10,22 @@ pub enum Error {
     UnknownCamera {
         /// The name.
         name: String,
-        /// The valid name that looks most like it.
+        /// The most similar valid name.
         nearest: Option<String>,
     },
-    /// A size that no picture has.
+    /// An invalid size of a picture.
     Size {
         /// Width and height [pixels].
         size: [u32; 2],
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
-    /// A text that should be JSON and is not, and why.
+    /// A text that is not valid JSON, with the reason.
     NotJson(String),
 }
 
 impl Error {
-    /// An unknown camera, with the name that takes the fewest changed, added, dropped or swapped letters.
+    /// Creates the error of an unknown camera, with the name of the least edit distance.
     pub(crate) fn unknown_camera(name: &str, valid: [&str; 5]) -> Self {
         let nearest = valid.into_iter().min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate));
         Self::UnknownCamera { name: name.into(), nearest: nearest.map(str::to_owned) }

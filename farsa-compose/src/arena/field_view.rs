@@ -3,7 +3,8 @@
 use farsa_body::ports::BodyId;
 use farsa_body::robots::MobileRobot;
 use farsa_body::{Pose, Recorder};
-use farsa_view::{Channel, Color, Geometry, ImageChannel, OKABE_ITO, Role, SceneObject, Schema};
+use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
+use farsa_view::{Channel, ImageChannel, Schema};
 
 use crate::arena::field::Field;
 

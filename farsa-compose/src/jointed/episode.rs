@@ -7,7 +7,8 @@ use farsa_lab::{Episode, EpisodeId, seconds};
 use farsa_models::MjcfOptions;
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
-use farsa_view::{Channel, Geometry, Role, SceneObject, Schema, screen_color};
+use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
+use farsa_view::{Channel, Schema};
 
 use crate::composed_task::Body;
 use crate::document::{Ending, MotorKind, SensorKind};

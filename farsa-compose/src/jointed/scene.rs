@@ -6,7 +6,7 @@ use farsa_body::robot::{Collider, Robot, Shape, Surface};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
 use farsa_num::Scalar;
-use farsa_view::{Geometry, Role, SceneObject};
+use farsa_view::shape::{Geometry, Role, SceneObject};
 
 use crate::check::source::Source;
 use crate::document::Document;

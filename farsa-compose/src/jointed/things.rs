@@ -5,7 +5,7 @@ use farsa_body::ports::BodyId;
 use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
 use farsa_lab::Error;
 use farsa_num::{Scalar, sin_cos};
-use farsa_view::{Geometry, Role, SceneObject, screen_color};
+use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 
 use crate::check::source::Source;
 use crate::document::{Object, ObjectKind};

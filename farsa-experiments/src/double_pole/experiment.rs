@@ -8,7 +8,8 @@ use farsa_lab::{
     SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
 };
 use farsa_num::sin_cos;
-use farsa_view::{Channel, Color, Geometry, Links, OKABE_ITO, Role, SceneObject, Schema, View};
+use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
+use farsa_view::{Channel, Links, Schema, View};
 
 use crate::double_pole::cart::CartState;
 use crate::double_pole::config::Config;

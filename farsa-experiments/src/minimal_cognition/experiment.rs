@@ -17,7 +17,8 @@ use farsa_lab::{
     SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
 };
 use farsa_num::{Domain, Stream};
-use farsa_view::{Channel, Color, Geometry, Links, NodeParameters, OKABE_ITO, Role, SceneObject, Schema, View};
+use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
+use farsa_view::{Channel, Links, NodeParameters, Schema, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
 ///

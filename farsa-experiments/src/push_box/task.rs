@@ -11,7 +11,8 @@ use farsa_lab::{
     Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
     NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task, TaskInfo, mean_of_trials,
 };
-use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
+use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
+use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 /// The layer of two logistic units that parameters are for.
 pub(crate) type Layer = NormalisedController<Perceptron<Vec<f32>>>;

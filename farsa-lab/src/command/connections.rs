@@ -45,7 +45,7 @@ struct Group {
     /// The first channel and the one after the last.
     channels: [usize; 2],
     names: Vec<String>,
-    /// The unit of each channel, where it is known.
+    /// The unit of each channel, or empty.
     units: Vec<String>,
 }
 
@@ -99,7 +99,7 @@ impl Connections {
     /// Returns the connections of a plan.
     ///
     /// # Errors
-    /// Those of creating the experiment.
+    /// Errors of creating the experiment.
     pub(crate) fn new(plan: &Plan<'_>) -> Result<Self, Error> {
         let task = plan.evaluator()?;
         let (schema, Description { sensors, motors, network, steps, step_seconds, .. }) =

@@ -74,7 +74,7 @@ impl Invocation<'_, '_> {
     /// Ends the other ranks.
     ///
     /// # Errors
-    /// Those of sending messages.
+    /// Errors of sending messages.
     pub(crate) fn dismiss(&self, code: u8) -> Result<(), Error> {
         if self.exchange.is_alone() { Ok(()) } else { self.exchange.command(Some(&WorkerCommand::End(code))).map(drop) }
     }

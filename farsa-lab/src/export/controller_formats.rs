@@ -11,12 +11,12 @@ use crate::error::Error;
 use crate::experiment::controller_export::{ControllerExport, MotorDrive, SensorReading};
 use crate::experiment::network_export::NetworkExport;
 
-/// The bytes that `farsa-nn` reads.
+/// Returns the bytes that `farsa-nn` reads.
 pub(crate) fn bytes(controller: &ControllerExport) -> Result<Vec<u8>, Error> {
     controller.network.bytes(controller.channels()).map_err(other)
 }
 
-/// A source file of constants, for a program without files; `whose` says in words whose it is.
+/// Returns a source file of constants for a program without files. `whose` names the champion.
 pub(crate) fn rust(controller: &ControllerExport, whose: &str) -> Result<String, Error> {
     let mut text = String::new();
     let written = write!(
@@ -56,7 +56,7 @@ pub const PARAMETERS: &[f32; {}] = &[
     Ok(text)
 }
 
-/// Tables of safetensors, with `about`, less its tables, as the text `farsa` beside them.
+/// Returns safetensors, with `about` without its tables as the metadata `farsa`.
 pub(crate) fn safetensors(controller: &ControllerExport, mut about: Value) -> Result<Vec<u8>, Error> {
     let tables = controller.network.tables();
     if let Some(network) = about.get_mut("network").and_then(Value::as_object_mut) {
@@ -68,12 +68,12 @@ pub(crate) fn safetensors(controller: &ControllerExport, mut about: Value) -> Re
         .zip(&data)
         .map(|((name, shape, _), data)| TensorView::new(Dtype::F32, shape, data).map(|view| (name, view)));
     let views: Vec<_> = views.collect::<Result<_, _>>().map_err(other)?;
-    // One text, because several would be written in an order of their own each time.
+    // One text, because several would be written in varying order.
     let metadata = [("farsa".to_owned(), about.to_string())].into_iter().collect();
     safetensors::serialize(views, Some(metadata)).map_err(other)
 }
 
-/// The channels that are quantities, as a table of comments: nothing where there are none.
+/// Channels with quantities, as a table of comments.
 struct Scaling<'a>(&'a ControllerExport);
 
 impl fmt::Display for Scaling<'_> {

@@ -44,7 +44,7 @@ pub(crate) enum ControllerFormat {
 /// With the directory of a run it is the robot of the population's champion where bodies evolve.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment without bodies, and those of [`controller`] for the champion of a run.
+/// [`Error::Usage`] for an experiment without bodies and errors of [`controller`] for the champion of a run.
 pub(crate) fn robot(
     plan: &Plan<'_>,
     run: Option<(&Directory, Option<&str>)>,

@@ -12,7 +12,7 @@ use crate::store::directory::Directory;
 /// Returns the best individual of a generation, by default the run's champion, and its camera.
 ///
 /// # Errors
-/// Those of [`Replayable::find`].
+/// Errors of [`Replayable::find`].
 pub(crate) fn champion(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -26,7 +26,7 @@ pub(crate) fn champion(
 /// Returns the champions of a run, one of each population.
 ///
 /// # Errors
-/// Those of [`Replayable::champions`].
+/// Errors of [`Replayable::champions`].
 pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<PageIndividual>, Error> {
     Ok(Replayable::champions(plan, directory)?.into_iter().map(saved).collect())
 }

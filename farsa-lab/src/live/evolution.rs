@@ -71,7 +71,7 @@ impl Evolution {
     /// Evaluates part number `part` of `parts` equal parts of the current generation.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a part out of range, and those of the evaluation.
+    /// [`Error::Usage`] for a part out of range and errors of the evaluation.
     pub(crate) fn share(&mut self, evaluator: &mut dyn Evaluator, part: usize, parts: usize) -> Result<Bytes, Error> {
         if part >= parts {
             return Err(Error::Usage(format!("part {part} of {parts} (the first is 0)")));

@@ -97,7 +97,7 @@ pub(crate) struct PageText {
 /// Writes an interactive page of the best individual of each generation given, by default of the champion.
 ///
 /// # Errors
-/// Those of [`html`], and [`Error::Io`].
+/// Errors of [`html`], and [`Error::Io`].
 pub(crate) fn page(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),
@@ -115,7 +115,7 @@ pub(crate) fn page(
 /// Returns the interactive page of the best individual of each generation given, by default of the champion.
 ///
 /// # Errors
-/// Those of [`champion`], and [`Error::Usage`] for an experiment that needs files.
+/// Errors of [`champion`], and [`Error::Usage`] for an experiment that needs files.
 pub(crate) fn html(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),

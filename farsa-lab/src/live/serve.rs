@@ -95,7 +95,7 @@ impl Served<'_> {
         };
     }
 
-    /// Returns the current page of the run, or the HTTP status and the reason why there is none.
+    /// Returns the current page of the run, or an HTTP status and the reason.
     fn page(&self) -> Result<String, (u16, String)> {
         if !self.directory.champion().is_file() {
             return Err((503, "No generation is finished yet.".into()));
@@ -194,7 +194,7 @@ fn respond(request: Request, code: u16, kind: &str, text: &str) -> io::Result<()
     request.respond(response)
 }
 
-/// Returns a page with the reason why there is none yet, which reloads itself.
+/// Returns a page with the reason, which reloads itself.
 fn waiting(why: &str) -> String {
     let page = maud::html! {
         (maud::DOCTYPE)

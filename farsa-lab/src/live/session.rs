@@ -75,7 +75,7 @@ impl LiveSession {
     /// Opens the agent of a page. Its experiment is one of the laboratory's or described in its configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for invalid JSON and unsuitable individuals, and those of reading the configuration.
+    /// [`Error::Other`] for invalid JSON and unsuitable individuals and errors of reading the configuration.
     pub fn open(laboratory: &Laboratory<'_>, script: &str) -> Result<Self, Error> {
         let run: PageRun = serde_json::from_str(script).map_err(|error| Error::Other(format!("script: {error}")))?;
         let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", &run.config)?)?;

@@ -76,7 +76,7 @@ impl SeenState {
     /// Returns the champions of the checkpoint, one of each population, if they are new.
     ///
     /// # Errors
-    /// Those of [`champions`].
+    /// Errors of [`champions`].
     pub(crate) fn champions(
         &mut self,
         plan: &Plan<'_>,

@@ -51,7 +51,7 @@ impl Summary {
 /// Writes a page about some runs as HTML, as Markdown with its figures, or both.
 ///
 /// # Errors
-/// [`Error::Usage`] for an existing file or a run that is given twice, and those of reading a run. Nothing is written then.
+/// [`Error::Usage`] for an existing file or a run that is given twice and errors of reading a run. Nothing is written then.
 pub(crate) fn report(
     runs: Vec<(Directory, Plan<'_>)>,
     html: Option<&Path>,

@@ -23,7 +23,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/main.js"),
 ];
 
-/// Additional permissions of a live page: to compile its module in a worker of its own.
+/// Additional permissions of a live page: to compile its module in a worker.
 const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
 /// Additional permissions of a served page: also to connect to its server.
 const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";

@@ -1,18 +1,19 @@
-//! Pictures one after the other as an animated PNG.
+//! Animated PNG.
 
 use crate::error::Error;
 use crate::picture::camera::Camera;
 use crate::picture::moment::Picture;
 use crate::picture::png::pixels;
 
-/// Most pictures of an animation.
+/// The most pictures of an animation.
 const MOST: usize = 1000;
 
-/// Draws pictures of `size` [pixels] that last so many milliseconds each, for ever again from the first, as the bytes of an
-/// animated PNG: all through one window, which has room for all.
+/// Returns an endless animated PNG of pictures of `size` [pixels], each shown for the given time [ms].
+///
+/// All pictures share one view that contains all of them.
 ///
 /// # Errors
-/// [`Error::Size`] for a size that no PNG can have, and for no picture or more than a thousand.
+/// [`Error::Size`] for an invalid size, and for no picture or more than a thousand.
 pub(crate) fn animation(
     pictures: &[Picture],
     camera: Camera,
@@ -65,7 +66,7 @@ mod tests {
             reader.next_frame(&mut data).unwrap();
             let frame = reader.info().frame_control().unwrap();
             assert_eq!((frame.delay_num, frame.delay_den), (40, 1000));
-            // The ball is redder than the background: how many pixels, and where.
+            // The number and the mean place of pixels that are redder than the background.
             let red: Vec<usize> = data
                 .as_chunks::<3>()
                 .0
@@ -78,7 +79,7 @@ mod tests {
             let middle = |of: fn(usize) -> usize| red.iter().map(|i| of(*i) as f64).sum::<f64>() / red.len() as f64;
             balls.push((red.len() as f64, [middle(|i| i % 60), middle(|i| i / 60)]));
         }
-        // As large in each, and moved by as much.
+        // The ball keeps its size and moves in equal steps.
         let way = |a: usize| [0, 1].map(|i| balls[a + 1].1[i] - balls[a].1[i]);
         let length = |[x, y]: [f64; 2]| x.hypot(y);
         assert!(balls.iter().all(|(count, _)| (count / balls[0].0 - 1.0).abs() < 0.2), "{balls:?}");

@@ -1,18 +1,18 @@
-//! From where a picture is taken.
+//! Cameras and the views of pictures.
 
 use crate::error::Error;
 use crate::recording::view::View;
 use crate::shape::vector::{Vector, across, add, along, cross, dot, scale, sub, unit};
 
-/// A named direction to look from; the frame is fitted to what there is to see.
+/// A named direction of view. The frame is fitted to the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     name: &'static str,
-    /// From the scene to the camera, of any length.
+    /// The direction from the scene to the camera, of any length.
     towards: Vector,
-    /// Whether all lines of sight are parallel.
+    /// True for a parallel projection.
     parallel: bool,
-    /// Whether it looks only for things and what handles them.
+    /// True if the frame is fitted only to things and the hands that handle them.
     close: bool,
 }
 
@@ -20,7 +20,7 @@ const fn camera(name: &'static str, towards: Vector) -> Camera {
     Camera { name, towards, parallel: false, close: false }
 }
 
-/// The first is the default. The robot looks along +X.
+/// All cameras, the default first. Robots face along +X.
 const CAMERAS: [Camera; 5] = [
     camera("three-quarter", [0.80, -0.75, 0.62]),
     camera("front", [1.0, 0.0, 0.30]),
@@ -29,29 +29,29 @@ const CAMERAS: [Camera; 5] = [
     Camera { close: true, ..camera("close", [1.0, -0.10, 0.34]) },
 ];
 
-/// Half the shorter edge of the frame at distance 1: 23 deg from edge to edge.
+/// Half the shorter edge of the frame at distance 1, an angle of 23 degrees from edge to edge.
 const TANGENT: f64 = 0.2;
-/// The share of the frame that what is looked for fills at most.
+/// The largest share of the frame that the scene fills.
 const FILLED: f64 = 0.88;
-/// No camera comes nearer to anything it shows [m].
+/// The least distance of a camera to the scene [m].
 const NEAR: f64 = 1e-3;
 
-/// The window through which a picture shows the world.
+/// The projection of the world to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// The eye; with parallel lines of sight, a point before everything looked for [m].
+    /// The eye, or for a parallel projection a point in front of the scene [m].
     pub(crate) eye: Vector,
-    /// The directions of the picture's right and upper edges, and towards the viewer.
+    /// The directions to the right, upward and toward the viewer.
     pub(crate) axes: [Vector; 3],
-    /// Pixels per tangent of the angle of sight, or per metre if lines of sight are parallel.
+    /// Pixels per tangent of the angle of sight, or per meter in a parallel projection.
     pub(crate) focal: f64,
-    /// Whether all lines of sight are parallel.
+    /// True for a parallel projection.
     pub(crate) parallel: bool,
     /// Width and height [pixels].
     pub(crate) size: [u32; 2],
-    /// The middle of what is looked for, in the world [m].
+    /// The center of the scene, in the world [m].
     pub(crate) centre: Vector,
-    /// Radius of the ball about it that holds all of it [m].
+    /// The radius of a ball around the center that contains the scene [m].
     pub(crate) radius: f64,
 }
 
@@ -62,7 +62,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The names of all cameras, the default's first.
+    /// The names of all cameras, the default first.
     pub const NAMES: [&'static str; 5] = {
         let mut names = [""; 5];
         let mut i = 0;
@@ -73,16 +73,16 @@ impl Camera {
         names
     };
 
-    /// The camera with a name.
+    /// Returns the camera of a name.
     ///
     /// # Errors
-    /// [`Error::UnknownCamera`] with the nearest name if there is none.
+    /// [`Error::UnknownCamera`] for an unknown name, with the nearest valid one.
     pub fn named(name: &str) -> Result<Self, Error> {
         let known = CAMERAS.into_iter().find(|camera| camera.name == name);
         known.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
     }
 
-    /// The one that a view begins with.
+    /// Returns the camera that a view starts with.
     pub fn for_view(view: View) -> Self {
         match view {
             View::Free => CAMERAS[0],
@@ -90,17 +90,17 @@ impl Camera {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the camera.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Whether it looks only for things and what handles them.
+    /// True if the frame is fitted only to things and the hands that handle them.
     pub(crate) fn is_close(&self) -> bool {
         self.close
     }
 
-    /// The nearest view in this direction that shows all of these balls in a frame of width and height [pixels].
+    /// Returns the nearest view in this direction that shows all balls in a frame of width and height [pixels].
     pub(crate) fn fit(&self, mut balls: Vec<(Vector, f64)>, size: [u32; 2]) -> Window {
         let size = size.map(|x| x.max(1));
         if balls.is_empty() {
@@ -108,7 +108,7 @@ impl Camera {
         }
         let back = unit(self.towards);
         let right = cross([0.0, 0.0, 1.0], back);
-        // Seen from above, X points to the right and Y up.
+        // From above, X points to the right and Y upward.
         let right = if dot(right, right) > 1e-12 { unit(right) } else { [1.0, 0.0, 0.0] };
         let axes = [right, cross(back, right), back];
 
@@ -127,13 +127,13 @@ impl Camera {
         if self.parallel {
             let half = [0, 1].map(|i| ((ranges[i][1] - ranges[i][0]) / 2.0).max(1e-3));
             let focal = FILLED * (width / 2.0 / half[0]).min(height / 2.0 / half[1]);
-            // High enough for whatever stands around.
+            // Above everything in the scene.
             let eye = along(centre, back, 10.0 * radius + 10.0);
             return Window { eye, axes, focal, parallel: true, size, centre, radius };
         }
         let focal = shorter / TANGENT;
-        // Every ball must lie within the four planes through the eye e and the edges of the (reduced) frame, which are
-        // linear in e: x - e_x <= t (e_z - z) - r sqrt(1 + t^2), and so on; the nearest eye touches two or more.
+        // Every ball must be within the four planes through the eye e and the edges of the (reduced) frame. These conditions
+        // are linear in e, such as x - e_x <= t (e_z - z) - r sqrt(1 + t^2). The nearest eye touches two or more of them.
         let planes = [width, height].map(|extent| FILLED * extent / 2.0 / focal);
         let mut bounds = [[f64::NEG_INFINITY; 2]; 2];
         for (c, r) in &balls {
@@ -153,12 +153,12 @@ impl Camera {
 }
 
 impl Window {
-    /// How far a point is before the eye [m].
+    /// Returns the depth of a point in front of the eye [m].
     pub(crate) fn depth(&self, point: Vector) -> f64 {
         -dot(sub(point, self.eye), self.axes[2])
     }
 
-    /// The place of a point in the picture, from the upper left corner [pixels]; `None` if it is not before the eye.
+    /// Returns the place of a point in the picture from the upper left corner [pixels], `None` behind the eye.
     pub(crate) fn project(&self, point: Vector) -> Option<[f64; 2]> {
         let depth = self.depth(point);
         let from = sub(point, self.eye);
@@ -168,7 +168,7 @@ impl Window {
         (self.parallel || depth >= NEAR).then_some(place)
     }
 
-    /// The line of sight through a place in the picture [pixels]: its beginning [m] and unit direction.
+    /// Returns the start [m] and the unit direction of the ray through a place in the picture [pixels].
     pub(crate) fn ray(&self, place: [f64; 2]) -> (Vector, Vector) {
         let [width, height] = self.size.map(f64::from);
         let (x, y) = ((place[0] - width / 2.0) / self.focal, (height / 2.0 - place[1]) / self.focal);
@@ -177,42 +177,42 @@ impl Window {
         if self.parallel { (add(self.eye, aside), scale(back, -1.0)) } else { (self.eye, unit(sub(aside, back))) }
     }
 
-    /// The unit direction in which a point is seen.
+    /// Returns the unit direction of view to a point.
     pub(crate) fn sight(&self, point: Vector) -> Vector {
         if self.parallel { scale(self.axes[2], -1.0) } else { unit(sub(point, self.eye)) }
     }
 
-    /// What a pixel covers of a surface at a point that faces the eye [m].
+    /// Returns the size of a pixel on a surface at a point that faces the eye [m].
     pub(crate) fn pixel(&self, point: Vector) -> f64 {
         if self.parallel { 1.0 / self.focal } else { self.depth(point).max(NEAR) / self.focal }
     }
 
-    /// The part of a polygon that is before the eye.
+    /// Clips a polygon to the part in front of the eye.
     pub(crate) fn before(&self, corners: &[Vector]) -> Vec<Vector> {
         if self.parallel {
             return corners.to_vec();
         }
-        // A little farther than what can be projected, so that all that is left can.
+        // A little beyond the limit of projection, so that all remaining points can be projected.
         crate::picture::outline::clip(corners, |point| self.depth(*point) - 2.0 * NEAR, crate::shape::vector::mix)
     }
 
-    /// The direction from the scene to the light that suits the view: from the upper left, before the scene.
+    /// Returns the direction from the scene to the light, at the upper left in front of the scene.
     pub(crate) fn key_light(&self) -> Vector {
         let [right, up, back] = self.axes;
         if back[2] > 0.99 {
-            // Long shadows would hide what they belong to.
+            // Long shadows would hide their objects.
             return unit(add([0.0, 0.0, 2.6], add(scale(right, -0.62), scale(up, 0.62))));
         }
         let ahead = unit([back[0], back[1], 0.0]);
         unit(add([0.0, 0.0, 1.55], add(scale(right, -0.62), scale(ahead, 0.48))))
     }
 
-    /// Directions to `count` points spread evenly over the light, which is as wide as a lamp's shade.
+    /// Returns directions to `count` points spread evenly over the light, which is as wide as a lamp shade.
     pub(crate) fn lights(&self, count: usize) -> Vec<Vector> {
         let key = self.key_light();
         let [u, v] = across(key);
         let disc = |i: usize| {
-            // Vogel's spiral: the golden angle from one point to the next.
+            // Vogel's spiral, with the golden angle from one point to the next.
             let (sine, cosine) = farsa_num::sin_cos(i as f64 * 2.399_963_229_728_653);
             let radius = 0.05 * ((i as f64 + 0.5) / count as f64).sqrt();
             unit(add(key, add(scale(u, radius * cosine), scale(v, radius * sine))))

@@ -1,20 +1,19 @@
-//! In which order shapes cover each other: from the back to the front.
+//! The order of shapes from back to front.
 
 use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
 use crate::picture::outline::{Point2, bounds, holds};
 
-/// Places looked at along each side of the area that two outlines share.
+/// The number of samples along each side of the common area of two outlines.
 const SIDE: usize = 6;
 
-/// The solids' indices from the back to the front, for their outlines in the picture; those without outline are left out.
+/// Returns the indices of solids from back to front, without those that have no outline.
 ///
-/// Of two that overlap, the one that most lines of sight through both meet first comes later. Where that leads round in
-/// a circle, the farthest comes first.
+/// The front one of two overlapping solids is the one that most rays through both hit first. In a cycle the farthest is first.
 pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Point2>]) -> Vec<usize> {
     let shown: Vec<usize> = (0..outlines.len()).filter(|i| outlines[*i].len() > 2).collect();
     let boxes: Vec<[Point2; 2]> = outlines.iter().map(|outline| bounds(outline)).collect();
-    // What must be drawn before each.
+    // The solids to draw before each.
     let mut before: Vec<Vec<usize>> = vec![Vec::new(); outlines.len()];
     for (k, a) in shown.iter().enumerate() {
         for b in &shown[k + 1..] {
@@ -27,7 +26,7 @@ pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Poi
                 let share = |i: usize| (i as f64 + 0.5) / SIDE as f64;
                 [low[0] + (high[0] - low[0]) * share(i % SIDE), low[1] + (high[1] - low[1]) * share(i / SIDE)]
             });
-            // Thin overlaps fall between the places of a grid, but hardly between corners.
+            // Thin overlaps are missed by a grid, but rarely by corners.
             let corners = outlines[*a].iter().chain(&outlines[*b]).copied();
             let both = grid.chain(corners).filter(|place| holds(&outlines[*a], *place) && holds(&outlines[*b], *place));
             match both.map(|place| nearer(scene, view, [*a, *b], place)).sum::<i32>() {
@@ -52,7 +51,7 @@ pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Poi
     order
 }
 
-/// 1 if the line of sight through a place meets the first of two solids first, -1 for the second, 0 if not both.
+/// Returns 1 if the ray through a place hits the first of two solids first, -1 for the second, 0 unless it hits both.
 fn nearer(scene: &LitScene, view: &Window, [a, b]: [usize; 2], place: Point2) -> i32 {
     let (origin, direction) = view.ray(place);
     let meets = |i| scene.see(origin, direction, [i]).is_some();
@@ -98,7 +97,7 @@ mod tests {
 
     #[test]
     fn centres_do_not_decide() {
-        // A long table's middle is nearer to the eye than the ball at its far end.
+        // The middle of a long table is nearer to the eye than the ball at its far end.
         let table = (Geometry::Box { half: [1.0, 0.5, 0.05] }, [0.0, 0.0, -0.05]);
         let ball = (Geometry::Sphere { radius: 0.1 }, [-0.8, 0.0, 0.1]);
         assert_eq!(order(&[ball, table], "front"), [1, 0]);

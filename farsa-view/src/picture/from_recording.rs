@@ -1,4 +1,4 @@
-//! A tick of a recording as a picture.
+//! Pictures of a tick of a recording.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -11,20 +11,20 @@ use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::{SceneObject, ShownWhile, screen_color};
 use crate::shape::vector::{Vector, length, sub};
 
-/// How high above the ground trails are drawn [m].
+/// The height of trails above the ground [m].
 const TRAIL: f64 = 1e-3;
-/// Radius of the marks of images on the ground, by the side of a pixel, and how high they lie above areas [m].
+/// The radius of marks of images on the ground, relative to the side of a pixel, and their height above areas [m].
 const MARK: f64 = 0.15;
 const MARK_ABOVE: f64 = 5e-4;
-/// The colours of trails, by number: those that are seen best on the ground come first.
+/// The colors of trails, those of best contrast to the ground first.
 const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
-/// The colour of the ways of points.
+/// The color of the trails of points.
 const PENCIL: Color = [96, 96, 96];
 
 impl Recording {
-    /// What is to be seen at a tick, as `farsa draw` shows it; `None` if there is no such tick, or no bodies.
+    /// Returns the picture of a tick, as of `farsa draw`, or `None` for an unknown tick and without bodies.
     ///
-    /// A view from above also shows the ways that robots, things with a colour and points went up to then.
+    /// A view from above also shows the trails of robots, colored things and points up to the tick.
     pub fn picture(&self, tick: usize) -> Option<Picture> {
         let schema = self.schema();
         if tick >= self.times().len() || (schema.robot.is_none() && schema.objects.is_empty()) {
@@ -41,7 +41,7 @@ impl Recording {
         picture.shapes.extend(lying(self, tick));
         if schema.view == View::Top {
             picture.trails = trails(self, tick);
-            // What stands around belongs into the frame: an arena is seen whole.
+            // The frame contains fixed objects, so that an arena is complete.
             let walls = picture.shapes.iter().filter(|placed| matches!(placed.geometry, Geometry::Box { .. }));
             let corners = |placed: &Instance| {
                 placed.geometry.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
@@ -64,7 +64,7 @@ impl Recording {
     }
 }
 
-/// Says which objects are seen at a tick.
+/// Returns the visible objects of a tick.
 fn conditions(recording: &Recording, tick: usize) -> impl Fn(&SceneObject) -> bool {
     let columns = recording.schema().columns();
     let values: Vec<f64> = recording.row(tick).collect();
@@ -75,7 +75,7 @@ fn conditions(recording: &Recording, tick: usize) -> impl Fn(&SceneObject) -> bo
     }
 }
 
-/// The marks of images on the ground at a tick: a disc for each pixel that is not black.
+/// Returns the marks of images on the ground at a tick, a disc for each pixel that is not black.
 fn lying(recording: &Recording, tick: usize) -> Vec<Instance> {
     let mut marks = Vec::new();
     for (number, image) in recording.schema().images.iter().enumerate() {
@@ -95,8 +95,9 @@ fn lying(recording: &Recording, tick: usize) -> Vec<Instance> {
     marks
 }
 
-/// The ways that robots, things with a colour and points went up to a tick, a little above the ground: those of robots each in the
-/// colour of its hull, those of points in the colour of pencils.
+/// Returns the trails of robots, colored things and points up to a tick, a little above the ground.
+///
+/// The trail of a robot has the color of its hull, that of a point a pencil color.
 fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
     let schema = recording.schema();
     let bodies: Vec<BodyId> =
@@ -241,7 +242,7 @@ mod tests {
         assert_eq!(marks(2), [row(0.05, &[-0.15, -0.05, 0.15]), second].concat());
     }
 
-    /// A round robot that drove a quarter of a circle between walls, and a post.
+    /// A round robot on a quarter of a circle between walls, and a post.
     fn arena() -> Recording {
         let on_ground = |x: f64, y: f64, z: f64| Pose::at([x, y, z]);
         let (robot, post) = (BodyId(0), BodyId(1));
@@ -279,7 +280,7 @@ mod tests {
         let picture = recording.picture(20).unwrap();
         assert_eq!((picture.shapes.len(), picture.trails.len(), picture.rays.len()), (6, 1, 1));
         assert_eq!(picture.trails[0].0.len(), 21);
-        // Twice the eight corners of two walls.
+        // The eight corners of each of two walls.
         assert_eq!(picture.frame.len(), 8 * 2);
         let place = picture.shapes[4].pose.position;
         let (_, cosine) = farsa_num::sin_cos(20.0_f64 * 0.078);

@@ -1,4 +1,4 @@
-//! A picture's shapes under its lamp: what a line of sight meets, and in which colour.
+//! The shapes of a picture under its lamp, for rays and colors.
 
 use farsa_body::Pose;
 use farsa_num::acos;
@@ -9,72 +9,72 @@ use crate::shape::appearance::{Color, Instance, Role};
 use crate::shape::geometry::{Geometry, Meeting};
 use crate::shape::vector::{Vector, add, along, cross, dot, length, mix, scale, sub, unit};
 
-/// How bright light is: screens take about its square root, and so do the sums here, to need nothing but `sqrt`.
+/// The amount of light of a screen color. Screens use about its square root, as here, so that only `sqrt` is needed.
 pub(crate) fn linear(color: Color) -> Vector {
     color.map(|x| (f64::from(x) / 255.0) * (f64::from(x) / 255.0))
 }
 
-/// The colour for screens of an amount of light, the inverse of [`linear`].
+/// Returns the screen color of an amount of light, the inverse of [`linear`].
 pub(crate) fn encoded(light: Vector) -> Color {
     light.map(|x| (255.0 * x.clamp(0.0, 1.0).sqrt() + 0.5) as u8)
 }
 
-/// Behind everything.
+/// The background.
 pub(crate) const BACKGROUND: Color = [255, 255, 255];
-/// The distances of grid lines to choose from [m]; every second line is stronger.
+/// Possible distances of grid lines [m]. Every second line is stronger.
 const STEPS: [f64; 5] = [0.01, 0.05, 0.25, 1.0, 5.0];
-/// Points of the lamp from which light is asked for.
+/// The number of sampled points of the lamp.
 const LIGHTS: usize = 48;
-/// Light from the lamp and from all around.
+/// Light from the lamp and ambient light.
 const KEY: f64 = 0.70;
 const FILL: f64 = 0.52;
 
-/// A shape with what rays need.
+/// A shape prepared for rays.
 #[derive(Clone, Debug)]
 pub(crate) struct Solid {
     /// Its geometry.
     pub(crate) geometry: Geometry,
     /// Its frame in the world.
     pub(crate) pose: Pose<f64>,
-    /// What it is.
+    /// Its role.
     pub(crate) role: Role,
-    /// Whether its upper faces carry the grid.
+    /// True if its upper faces show the grid.
     pub(crate) grid: bool,
     /// The axes of its frame in the world.
     axes: [Vector; 3],
     reach: f64,
     albedo: Vector,
-    /// Outward normals and corners of the faces of the box that stands for it in the sky, in its own frame.
+    /// Outward normals and corners of the faces of its bounding box, in its own frame.
     faces: Vec<(Vector, Vec<Vector>)>,
 }
 
-/// What a line of sight met.
+/// The hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen {
     /// The index of the solid.
     pub(crate) solid: usize,
-    /// Where, in the world [m].
+    /// The place in the world [m].
     pub(crate) point: Vector,
-    /// Unit normal towards the eye's side, in the world's axes.
+    /// The unit normal on the side of the eye, in the world's axes.
     pub(crate) normal: Vector,
-    /// Distance from where the line begins [m].
+    /// The distance from the start of the ray [m].
     pub(crate) distance: f64,
 }
 
 /// All solids with the lamp.
 #[derive(Clone, Debug)]
 pub(crate) struct LitScene {
-    /// The solids; a plane has become a piece of ground.
+    /// The solids. A plane is replaced by a piece of ground.
     pub(crate) solids: Vec<Solid>,
-    /// The indices of those that can hide the sky, and of those that can hide the lamp.
+    /// The indices of solids that can hide the sky, and of those that can hide the lamp.
     hiders: Vec<usize>,
     shaders: Vec<usize>,
-    /// From the scene to the lamp's middle.
+    /// The direction from the scene to the center of the lamp.
     pub(crate) key: Vector,
-    /// Distance of the grid's lines [m].
+    /// The distance of grid lines [m].
     pub(crate) step: f64,
     lights: Vec<Vector>,
-    /// The cosine of the lamp's half width, less a little, and its sine.
+    /// The cosine of the lamp's half width, reduced a little, and its sine.
     cone: [f64; 2],
 }
 
@@ -82,7 +82,7 @@ impl Solid {
     fn new(placed: &Instance, view: &Window, step: f64) -> Self {
         let (mut geometry, mut pose) = (placed.geometry, placed.pose);
         if geometry == Geometry::Plane {
-            // A piece about the middle of the picture, from grid line to grid line.
+            // A piece around the center of the picture, from grid line to grid line.
             let middle = pose.transform_back(view.centre);
             let edge =
                 |x: f64, out: f64| ((x + out * 1.35 * view.radius) / (2.0 * step) + 0.5 * out).round() * 2.0 * step;
@@ -99,7 +99,7 @@ impl Solid {
         };
         let blocks = match geometry {
             Geometry::Box { half } => Some(half),
-            // The largest within it: nothing that asks may stand in it.
+            // The largest inner box, so that no sampled point is inside.
             Geometry::Cylinder { radius, half_length } => Some([0.707 * radius, 0.707 * radius, half_length]),
             _ => None,
         };
@@ -115,12 +115,12 @@ impl Solid {
         }
     }
 
-    /// Where a ray enters it, in the world.
+    /// Returns the hit of a ray, in the world.
     pub(crate) fn meet(&self, origin: Vector, direction: Vector) -> Option<Meeting> {
         let from = sub(origin, self.pose.position);
         let towards = dot(from, direction);
         let aside = dot(from, from) - towards * towards;
-        // Half a millionth more than its ball: squares cancel far away.
+        // Half a millionth more than its ball, because squares cancel far away.
         if aside > self.reach * self.reach * 1.000_001 {
             return None;
         }
@@ -133,7 +133,7 @@ impl Solid {
         add(add(scale(self.axes[0], v[0]), scale(self.axes[1], v[1])), scale(self.axes[2], v[2]))
     }
 
-    /// The share of the sky over a surface that it hides from a point, roughly.
+    /// Estimates the share of the sky over a surface that the solid hides from a point.
     fn hides(&self, point: Vector, normal: Vector) -> f64 {
         let towards = sub(self.pose.position, point);
         let far = 5.0 * self.reach;
@@ -150,7 +150,7 @@ impl Solid {
             Geometry::Capsule { radius, half_length } => {
                 let along_axis = (-dot(towards, self.axes[2])).clamp(-half_length, half_length);
                 let nearest = along(self.pose.position, self.axes[2], along_axis);
-                // A rod hides more than the ball in it.
+                // A rod hides more than its inner ball.
                 (ball(nearest, radius) * (1.0 + 0.4 * (half_length / radius).min(1.0))).min(1.0)
             }
             Geometry::Cylinder { .. } | Geometry::Box { .. } => self.box_hides(point, normal),
@@ -158,7 +158,7 @@ impl Solid {
         }
     }
 
-    /// The form factor of a box: the faces that look at the point, above its horizon, by Lambert's formula for polygons.
+    /// Returns the form factor of a box, of its faces toward the point and above the horizon, by Lambert's formula for polygons.
     fn box_hides(&self, point: Vector, normal: Vector) -> f64 {
         let own = |v: Vector| self.axes.map(|axis| dot(axis, v));
         let (point, normal) = (own(sub(point, self.pose.position)), own(normal));
@@ -188,9 +188,9 @@ impl Solid {
 }
 
 impl LitScene {
-    /// The shapes of a picture, lit for a view.
+    /// Prepares the shapes of a picture for a view.
     pub(crate) fn new(picture: &Picture, view: &Window) -> Self {
-        // As many as can be counted, but not so many that they look like a grey.
+        // Enough lines to count, few enough to remain distinct.
         let step = STEPS.into_iter().find(|step| view.radius < 20.0 * step).unwrap_or(25.0);
         let solids: Vec<Solid> = picture.shapes.iter().map(|placed| Solid::new(placed, view, step)).collect();
         let with = |wanted: fn(&Solid) -> bool| (0..solids.len()).filter(|i| wanted(&solids[*i])).collect();
@@ -205,7 +205,7 @@ impl LitScene {
         Self { solids, hiders, shaders, key, step, lights, cone }
     }
 
-    /// What a ray meets first of the solids with these indices.
+    /// Returns the first hit of a ray among the given solids.
     pub(crate) fn see(
         &self,
         origin: Vector,
@@ -216,7 +216,7 @@ impl LitScene {
         let mut nearest = f64::INFINITY;
         for solid in candidates {
             let Some(Meeting { distance, normal }) = self.solids[solid].meet(origin, direction) else { continue };
-            // A mark lies on the ground, not in it.
+            // A mark is on the ground, not in it.
             let order = if self.solids[solid].role == Role::Area { distance - 1e-4 } else { distance };
             if order < nearest {
                 nearest = order;
@@ -226,7 +226,7 @@ impl LitScene {
         seen
     }
 
-    /// Whether nothing stands between the eye and a point.
+    /// Returns true if nothing is between the eye and a point.
     pub(crate) fn is_visible(&self, view: &Window, point: Vector) -> bool {
         let direction = view.sight(point);
         let origin = if view.parallel { along(point, direction, -view.depth(point)) } else { view.eye };
@@ -235,7 +235,7 @@ impl LitScene {
             .is_none_or(|seen| seen.distance > distance - 2e-3 * view.radius)
     }
 
-    /// The share of the lamp that a point sees.
+    /// Returns the share of the lamp that is visible from a point.
     fn lamp(&self, point: Vector, normal: Vector) -> f64 {
         let origin = along(point, normal, 1e-5);
         let [cosine, sine] = self.cone;
@@ -246,7 +246,7 @@ impl LitScene {
             let from = sub(solid.pose.position, origin);
             let ahead = dot(from, self.key);
             let square = dot(from, from);
-            // The lamp's cone, as wide as the solid's ball makes it.
+            // The cone of the lamp, widened by the solid's ball.
             let aside = (square - ahead * ahead).max(0.0).sqrt();
             let near = ahead > -solid.reach && aside * cosine - ahead.max(0.0) * sine <= solid.reach;
             if near && count < shades.len() {
@@ -260,11 +260,11 @@ impl LitScene {
         let shades = &mut shades[..count];
         let mut free = |light: &&Vector| {
             let hider = shades.iter().position(|i| self.solids[*i].meet(origin, **light).is_some());
-            // What hid one part of the lamp likely hides the next.
+            // The solid that hid one part of the lamp likely hides the next.
             shades.swap(0, hider.unwrap_or(0));
             hider.is_none()
         };
-        // A part of the lamp, all over it, mostly shows that all of it is hidden or none.
+        // A few spread samples usually show that the lamp is completely hidden or visible.
         let part = self.lights.iter().step_by(6);
         let (asked, seen) = (part.len(), part.filter(&mut free).count());
         if seen == 0 || seen == asked {
@@ -273,28 +273,27 @@ impl LitScene {
         self.lights.iter().filter(&mut free).count() as f64 / self.lights.len() as f64
     }
 
-    /// The share of the sky over a point that other solids leave free.
+    /// Returns the share of the sky over a point that other solids do not hide.
     fn sky(&self, own: usize, point: Vector, normal: Vector) -> f64 {
         let others = self.hiders.iter().filter(|i| **i != own);
         others.map(|i| 1.0 - 0.85 * self.solids[*i].hides(point, normal)).product()
     }
 
-    /// How dark the grid makes the ground at a point that is seen in a direction, where a pixel that faces the eye is
-    /// `pixel` wide [m].
+    /// Returns the darkness of the grid at a point of the ground, for a direction of view and a `pixel` of this width [m].
     fn grid(&self, point: Vector, sight: Vector, pixel: f64) -> f64 {
         let level = unit([sight[0], sight[1], 0.0]);
         let slant = (sight[2] * sight[2]).max(1e-4);
         let mut dark: f64 = 0.0;
         for axis in 0..2 {
-            // What the pixel covers is longer along the line of sight than across it.
+            // The area of a pixel is longer along the line of sight than across it.
             let ahead = level[axis] * level[axis];
             let pixel = pixel * (1.0 - ahead + ahead / slant).sqrt();
             for (step, width, depth) in [(self.step, 0.9, 0.16), (2.0 * self.step, 1.3, 0.30)] {
                 let off = (point[axis] - (point[axis] / step).round() * step).abs();
-                // The part of the pixel that the line covers, for lines that are a given number of pixels wide.
+                // The part of the pixel that a line of the given width [pixels] covers.
                 let line = (width * pixel).max(0.006 * self.step) / 2.0;
                 let covered = ((off + pixel / 2.0).min(line) - (off - pixel / 2.0).max(-line)).max(0.0) / pixel;
-                // Where lines come too close they would flicker.
+                // Very dense lines would flicker.
                 let faint = (1.0 - pixel / (0.25 * step)).clamp(0.0, 1.0);
                 dark = dark.max(covered.min(1.0) * depth * faint);
             }
@@ -302,39 +301,39 @@ impl LitScene {
         dark
     }
 
-    /// The colour of a solid's surface where there is neither light nor shadow.
+    /// Returns the color of a solid's surface without light and shadow.
     fn albedo(&self, view: &Window, seen: &Seen) -> Vector {
         let solid = &self.solids[seen.solid];
         if solid.grid && seen.normal[2] > 0.99 {
             return scale(solid.albedo, 1.0 - self.grid(seen.point, view.sight(seen.point), view.pixel(seen.point)));
         }
         if solid.role == Role::Area {
-            // Let the ground shine through.
+            // The ground is visible through it.
             return mix([0.75; 3], solid.albedo, 0.6);
         }
         solid.albedo
     }
 
-    /// The light from a place of the ground that nothing hides, without the grid.
+    /// Returns the light of unobstructed ground without the grid.
     pub(crate) fn plain(&self, seen: &Seen) -> Vector {
         let facing = dot(seen.normal, self.key).max(0.0);
         scale(self.solids[seen.solid].albedo, FILL * (0.78 + 0.22 * seen.normal[2]) + KEY * facing)
     }
 
-    /// The light that comes from a point to the eye; `shadows` of the lamp may be left out.
+    /// Returns the light from a point to the eye, optionally without `shadows` of the lamp.
     pub(crate) fn shade(&self, view: &Window, seen: &Seen, shadows: bool) -> Vector {
         let solid = &self.solids[seen.solid];
         let (normal, sight) = (seen.normal, view.sight(seen.point));
         let facing = dot(normal, self.key).max(0.0);
         let lamp = if facing > 0.0 && shadows { self.lamp(seen.point, normal) } else { 1.0 };
         let sky = self.sky(seen.solid, seen.point, normal);
-        // From above comes more light than back from the ground.
+        // More light comes from above than from the ground.
         let fill = FILL * sky * (0.78 + 0.22 * normal[2]);
         let light = scale(self.albedo(view, seen), fill + KEY * facing * lamp);
         if !matches!(solid.role, Role::Robot | Role::Object) {
             return light;
         }
-        // A soft highlight, and darker rims that part what overlaps.
+        // A soft highlight, and darker rims that separate overlapping shapes.
         let half = dot(normal, unit(sub(self.key, sight))).max(0.0);
         let [h2, rim] = [half * half, 1.0 + dot(normal, sight).min(0.0)];
         let h8 = h2 * h2 * h2 * h2;
@@ -356,7 +355,7 @@ mod tests {
         LitScene::new(&picture, &picture.window(Camera::default(), [100, 100]))
     }
 
-    /// The share of a cosine-weighted hemisphere in which rays meet a solid.
+    /// The share of a cosine-weighted hemisphere whose rays hit a solid.
     fn sampled(solid: &Solid, point: Vector, normal: Vector) -> f64 {
         let mut stream = Stream::new(1, Domain::Start, 0, 0, 0);
         let [u, v] = across(normal);
@@ -378,7 +377,7 @@ mod tests {
             Instance::new(Geometry::Sphere { radius: 0.2 }, turn, Role::Object),
             Instance::new(Geometry::Capsule { radius: 0.1, half_length: 0.3 }, turn, Role::Object),
         ]);
-        // A box exactly, also where it dips below the horizon; a ball wholly above it; a rod roughly.
+        // A box is exact, also partly below the horizon. A ball is exact above the horizon, and a rod approximate.
         for normal in [[0.0, 0.0, 1.0], unit([1.0, 0.3, 0.2]), unit([0.0, -1.0, 0.4])] {
             for point in [[0.0, 0.0, 0.0], [0.3, -0.2, 0.1], [-0.6, 0.2, 0.4]] {
                 let solid = &scene.solids[0];
@@ -402,7 +401,7 @@ mod tests {
         let fallen = along([0.0, 0.0, 0.5], scene.key, -0.5 / scene.key[2]);
         assert_eq!(scene.lamp(fallen, up), 0.0);
         assert_eq!(scene.lamp([1.0, 1.0, 0.0], up), 1.0);
-        // Where a line past the ball's edge to the lamp's middle ends, about half of the lamp is seen.
+        // On the line past the edge of the ball to the center of the lamp, about half of the lamp is visible.
         let [side, _] = across(scene.key);
         let edge = along([0.0, 0.0, 0.5], side, 0.1);
         let edge = along(edge, scene.key, -edge[2] / scene.key[2]);

@@ -1,4 +1,4 @@
-//! What a picture shows besides shapes: forces, rays, points and trails, as flat strokes on top of it.
+//! Forces, rays, points and trails, as flat strokes on top of a picture.
 
 use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
@@ -16,7 +16,7 @@ pub(crate) struct Stroke {
     pub(crate) width: f64,
     /// Its colour.
     pub(crate) color: Color,
-    /// How much it covers what is behind [0..1].
+    /// Its opacity [0..1].
     pub(crate) opacity: f64,
 }
 
@@ -25,19 +25,19 @@ const POINT: Color = OKABE_ITO[2];
 const HIT: Color = OKABE_ITO[6];
 const MISS: Color = [120, 120, 120];
 const WHITE: Color = [255, 255, 255];
-/// What is hidden shows through the shapes before it.
+/// The opacity of hidden marks, which show through shapes.
 const HIDDEN: f64 = 0.30;
 
-/// How long a force of 1 N is drawn [m]; `None` without forces.
+/// Returns the length of a force of 1 N [m], `None` without forces.
 pub(crate) fn metres_per_newton(picture: &Picture, view: &Window) -> Option<f64> {
     let largest = picture.contacts.iter().map(|push| length(push.force)).fold(0.0, f64::max);
-    // The largest is as long as a seventh of the shorter edge.
+    // The largest arrow has a seventh of the shorter edge.
     let [width, height] = view.size.map(f64::from);
     let longest = width.min(height) / 7.0 * view.pixel(view.centre);
     (largest > 0.0 && largest.is_finite()).then(|| longest / largest)
 }
 
-/// All marks of a picture, in the order to draw them, for a scene in a view.
+/// Returns all marks of a picture in drawing order.
 pub(crate) fn strokes(picture: &Picture, scene: &LitScene, view: &Window) -> Vec<Stroke> {
     let [width, height] = view.size.map(f64::from);
     // Widths are for a picture 800 pixels high.
@@ -76,7 +76,7 @@ impl Marks<'_> {
         self.strokes.push(Stroke { places, width: width * self.unit, color, opacity });
     }
 
-    /// A way in pieces of some pixels, faint where it is hidden.
+    /// Draws a trail in pieces of some pixels, faint where it is hidden.
     fn way(&mut self, points: &[Vector], width: f64, color: Color) {
         let mut piece: Vec<Point2> = Vec::new();
         let mut shown = true;
@@ -128,7 +128,7 @@ impl Marks<'_> {
         }
     }
 
-    /// An arrow over everything: what pushes is mostly hidden by what it pushes.
+    /// Draws an arrow on top, because the source of a force is usually hidden by its target.
     fn arrow(&mut self, from: Vector, to: Vector) {
         let (Some(a), Some(b)) = (self.view.project(from), self.view.project(to)) else { return };
         let (x, y) = (b[0] - a[0], b[1] - a[1]);
@@ -140,7 +140,7 @@ impl Marks<'_> {
             let barb = |side: f64| [b[0] - x - side * 0.5 * y, b[1] - y + side * 0.5 * x];
             parts.push(vec![barb(1.0), b, barb(-1.0)]);
         } else {
-            // It points to the viewer, or away.
+            // It points toward the viewer or away.
             parts = vec![vec![a, a]];
         }
         for (width, color, opacity) in [(6.2, WHITE, 0.85), (3.0, FORCE, 1.0)] {
@@ -151,9 +151,9 @@ impl Marks<'_> {
     }
 }
 
-/// The corners without those that are less than `near` pixels off the line between their neighbours.
+/// Removes corners that are less than `near` pixels off the line between their neighbors.
 fn thinned(places: &[Point2], near: f64) -> Vec<Point2> {
-    // Ramer, Douglas and Peucker, with a list of pieces still to look at.
+    // The algorithm of Ramer, Douglas and Peucker, with a list of remaining pieces.
     let mut keep = vec![false; places.len()];
     let last = places.len().saturating_sub(1);
     (keep[0], keep[last]) = (true, true);
@@ -174,7 +174,7 @@ fn thinned(places: &[Point2], near: f64) -> Vec<Point2> {
     places.iter().zip(keep).filter(|(_, keep)| *keep).map(|(place, _)| *place).collect()
 }
 
-/// The distance of a place from the line between two others.
+/// Returns the distance of a place from the line between two others.
 pub(crate) fn distance(place: Point2, a: Point2, b: Point2) -> f64 {
     let ([x, y], [u, v]) = ([place[0] - a[0], place[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
     let square = u * u + v * v;

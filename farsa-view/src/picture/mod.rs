@@ -1,28 +1,28 @@
 //! Pictures of a moment, drawn without a browser.
-//!
-//! - `moment`: what a picture shows
-//! - `from_recording`: a tick of a recording as a picture
-//! - `camera`: from where it is seen
-//! - `lit_scene`: shapes under a lamp: rays, light, shadows
-//! - `marks`: arrows, rays, points and trails as strokes
-//! - `outline`: polygons in the plane of the picture
-//! - `draw_order`: which outline hides which
-//! - `svg`, `svg_data`: the picture as SVG
-//! - `png`: the picture as PNG, traced ray by ray
-//! - `animation`: pictures one after the other as an animated PNG
-//! - `render`: these as methods of a picture
 
+/// Animated PNG.
 mod animation;
+/// Cameras and the views of pictures.
 pub(crate) mod camera;
+/// The order of shapes from back to front.
 mod draw_order;
+/// Pictures of a tick of a recording.
 mod from_recording;
+/// Shapes under a lamp: rays, light and shadows.
 mod lit_scene;
+/// Arrows, rays, points and trails as strokes.
 mod marks;
+/// The content of a picture.
 pub(crate) mod moment;
-mod outline;
+/// Polygons in the plane of the picture.
+pub(crate) mod outline;
+/// Pictures as PNG, traced ray by ray.
 mod png;
+/// Methods that write a picture.
 mod render;
+/// Pictures as SVG.
 mod svg;
+/// Numbers, colors, paths and text of SVG.
 pub(crate) mod svg_data;
 
 pub use camera::Camera;

@@ -1,4 +1,4 @@
-//! What a picture shows of a moment of a simulation.
+//! The content of a picture of a moment.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -11,7 +11,7 @@ use crate::shape::vector::{Vector, length};
 /// A force on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// Where it acts, in the world [m].
+    /// The point of application, in the world [m].
     pub point: Vector,
     /// The force, in the world's axes [N].
     pub force: Vector,
@@ -20,11 +20,11 @@ pub struct Push {
 /// A ray of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
-    /// Where it begins, in the world [m].
+    /// The start, in the world [m].
     pub from: Vector,
-    /// Where it ends, in the world [m].
+    /// The end, in the world [m].
     pub to: Vector,
-    /// Whether it met something there.
+    /// True if the ray hit something at its end.
     pub hit: bool,
 }
 
@@ -54,33 +54,32 @@ pub struct Picture {
     pub contacts: Vec<Push>,
     /// Rays of sensors.
     pub rays: Vec<Beam>,
-    /// Points with their names, which may be empty; SVG shows the names.
+    /// Points with their names, which SVG shows. Names may be empty.
     pub points: Vec<(String, Vector)>,
-    /// Ways through the world [m] with their colours.
+    /// Trails through the world [m] with their colors.
     pub trails: Vec<(Vec<Vector>, Color)>,
-    /// Further points that shall be in the frame, such as the corners of an arena [m]; not for the camera `close`.
+    /// Further points of the frame, such as the corners of an arena [m], except for the camera `close`.
     pub frame: Vec<Vector>,
-    /// What the picture shows, in a line; SVG shows it.
+    /// A caption of one line, which SVG shows.
     pub caption: Option<String>,
 }
 
 const PALM: Color = [122, 143, 166];
-/// Of one branch of a robot after the other: neighbours differ in lightness.
+/// The colors of a robot's branches. Neighbors differ in lightness.
 const BRANCHES: [Color; 5] = [[132, 184, 182], [104, 150, 190], [160, 190, 214], [104, 150, 190], [160, 190, 214]];
 
-/// The body that most others hang on directly, two at least, such as a palm.
+/// Returns the body with the most children, at least two, such as a palm.
 fn junction(robot: &Robot) -> Option<usize> {
     let children = |body: usize| robot.segments.iter().filter(|s| s.parent.is_some_and(|p| p.index() == body)).count();
-    // Of equals the last, which is nearest to the fingers.
+    // Among equals the last one, which is nearest to the fingers.
     (0..robot.segments.len()).max_by_key(|body| children(*body)).filter(|body| children(*body) > 1)
 }
 
 impl Picture {
-    /// Adds a robot or scene, its visuals and the colliders of segments without any, whose bodies are at these places: what stands fast in the world is
-    /// ground, what floats or slides by itself a thing, all else robot.
+    /// Adds the visuals of a robot or scene, or the colliders of segments without visuals, at the given poses.
     ///
-    /// Shapes with a colour keep it. Other things get one colour after the other; where a robot branches, its branches differ
-    /// and are what the camera `close` looks for.
+    /// Fixed bodies become ground, freely moving ones things, and all others robot. Shapes with a color keep it. Other things
+    /// get the next color of a list. The branches of a robot differ in color, and the camera `close` is fitted to them.
     pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
         let junction = junction(robot);
         let branches: Vec<usize> = (0..robot.segments.len())
@@ -104,7 +103,7 @@ impl Picture {
                     things.push(i);
                     things.len() - 1
                 });
-                // Blues are the robot's.
+                // Blue colors belong to the robot.
                 let blue = [0, 2, 6, 3][known % 4];
                 self.shapes.push(own(Instance::new(shape, at, Role::Object).with_color(OKABE_ITO[blue])));
                 continue;
@@ -119,18 +118,18 @@ impl Picture {
         }
     }
 
-    /// The corners of what a camera has to show: as the [`frame`](Self::frame) of other pictures they get room for it too [m].
+    /// Returns the corners of the scene of a camera [m]. As the [`frame`](Self::frame) of other pictures they extend their view.
     pub fn extent(&self) -> Vec<Vector> {
         let corners = |(centre, radius): (Vector, f64)| [-radius, radius].map(|r| centre.map(|x| x + r));
         self.interest(false).into_iter().flat_map(corners).collect()
     }
 
-    /// The window through which a camera shows the picture in a frame of width and height [pixels].
+    /// Returns the view of a camera in a frame of width and height [pixels].
     pub(crate) fn window(&self, camera: Camera, size: [u32; 2]) -> Window {
         camera.fit(self.interest(camera.is_close()), size)
     }
 
-    /// Balls that hold what a camera has to show: everything but the ground, or with `close` what that looks for.
+    /// Returns balls that contain the scene of a camera: everything except the ground, or the things of `close`.
     pub(crate) fn interest(&self, close: bool) -> Vec<(Vector, f64)> {
         let wanted = |placed: &&Instance| if close { placed.focus } else { placed.role != Role::Ground };
         let hull = |placed: &Instance| {
@@ -146,7 +145,7 @@ impl Picture {
         let marks = marks.chain(self.frame.iter().copied()).chain(self.contacts.iter().map(|push| push.point));
         balls.extend(marks.chain(self.rays.iter().flat_map(|ray| [ray.from, ray.to])).map(|point| (point, 0.0)));
         if balls.is_empty() {
-            // Nothing moves: whatever there is.
+            // Without moving shapes, all shapes.
             balls.extend(self.shapes.iter().flat_map(hull));
         }
         balls.retain(|(centre, radius)| (length(*centre) + radius).is_finite());

@@ -1,15 +1,15 @@
-//! Flat outlines: convex hulls, clipping.
+//! Flat outlines: convex hulls and clipping.
 
 /// A point in a picture, from the upper left corner [pixels].
 pub(crate) type Point2 = [f64; 2];
 
-/// The convex hull of places, anticlockwise with y up; fewer than three places if it has no area.
+/// Returns the convex hull of places, counterclockwise with y upward, with fewer than three places if it has no area.
 pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     sorted.dedup();
     let mut chain: Vec<Point2> = Vec::with_capacity(2 * sorted.len());
-    // Andrew's monotone chain: the lower side from left to right, then the upper one back.
+    // Andrew's monotone chain, with the lower side from left to right and the upper one back.
     let mut extend = |floor: usize, place: Point2| {
         while chain.len() > floor + 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], place) <= 0.0 {
             chain.pop();
@@ -28,24 +28,24 @@ pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
     chain
 }
 
-/// Twice the area of the triangle, positive if it runs anticlockwise with y up.
+/// Returns twice the area of a triangle, positive if counterclockwise with y upward.
 fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a place lies in a hull or on its edge.
+/// Returns true for a place in a hull or on its edge.
 pub(crate) fn holds(hull: &[Point2], place: Point2) -> bool {
     hull.len() > 2 && (0..hull.len()).all(|i| turn(hull[i], hull[(i + 1) % hull.len()], place) >= 0.0)
 }
 
-/// Lowest and highest x and y of places, `[low, high]`.
+/// Returns the lowest and highest x and y of places, `[low, high]`.
 pub(crate) fn bounds(places: &[Point2]) -> [Point2; 2] {
     places.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], place| {
         [[low[0].min(place[0]), low[1].min(place[1])], [high[0].max(place[0]), high[1].max(place[1])]]
     })
 }
 
-/// The part of a convex polygon where `room`, which is linear, is not negative; `mix` divides the way between corners.
+/// Clips a convex polygon to the part where the linear function `room` is not negative. `mix` interpolates between corners.
 pub(crate) fn clip<P: Copy>(corners: &[P], room: impl Fn(&P) -> f64, mix: impl Fn(P, P, f64) -> P) -> Vec<P> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (i, corner) in corners.iter().enumerate() {
@@ -61,7 +61,7 @@ pub(crate) fn clip<P: Copy>(corners: &[P], room: impl Fn(&P) -> f64, mix: impl F
     kept
 }
 
-/// The part of a convex polygon within a frame of this size and `margin` around it.
+/// Clips a convex polygon to a frame of this size with a `margin` around it.
 pub(crate) fn framed(corners: &[Point2], size: [u32; 2], margin: f64) -> Vec<Point2> {
     let mix = |a: Point2, b: Point2, s: f64| [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s];
     let mut kept = corners.to_vec();

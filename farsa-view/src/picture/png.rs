@@ -1,4 +1,4 @@
-//! A picture as PNG, ray by ray.
+//! Pictures as PNG, traced ray by ray.
 
 use std::thread;
 
@@ -12,15 +12,15 @@ use crate::shape::appearance::Color;
 use crate::shape::geometry::Sight;
 use crate::shape::vector::{Vector, add, mix, scale};
 
-/// Edges are drawn with this many rays along each side of a pixel.
+/// The number of rays along each side of a pixel at an edge.
 const FINE: usize = 4;
-/// Colours of two corners of a pixel that differ by more have an edge between them.
+/// The difference of colors of two corners above which there is an edge between them.
 const EDGE: u8 = 5;
 
-/// Draws a picture `size` [pixels] wide and high, as the bytes of a PNG file; the same bytes on every machine.
+/// Returns a picture of `size` [pixels] as a PNG file, with equal bytes on every machine.
 ///
 /// # Errors
-/// [`Error::Size`] for a size that no PNG can have.
+/// [`Error::Size`] for an invalid size.
 pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
     let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
     let mut bytes = Vec::new();
@@ -34,13 +34,13 @@ pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<V
     Ok(bytes)
 }
 
-/// All pixels, row by row from the upper left corner.
+/// Returns all pixels, row by row from the upper left corner.
 pub(super) fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Color> {
     let [width, height] = size.map(|x| x as usize);
     let scene = LitScene::new(picture, view);
     let canvas = Canvas { scene: &scene, view, boxes: boxes(&scene, view) };
     let mut pixels = vec![[0; 3]; width * height];
-    // Bands of rows go to any free thread; pixels are independent, so the result is the same.
+    // Bands of rows are drawn by any free thread. Pixels are independent, so the result does not depend on threads.
     let threads = thread::available_parallelism().map_or(1, usize::from).min(8);
     let bands: Vec<_> = pixels.chunks_mut((16 * width).max(1)).enumerate().collect();
     let bands = std::sync::Mutex::new(bands.into_iter());
@@ -63,7 +63,7 @@ pub(super) fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Co
     pixels
 }
 
-/// Where each solid can be in the picture, `[low, high]`.
+/// Returns the bounds of each solid in the picture, `[low, high]`.
 fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
     let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
     let place = |solid: &crate::picture::lit_scene::Solid| {
@@ -75,7 +75,7 @@ fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
         let rim = solid.geometry.rim(sight, 32);
         let places: Option<Vec<_>> = rim.into_iter().map(|p| view.project(solid.pose.transform(p))).collect();
         let [low, high] = bounds(&places.filter(|places| !places.is_empty())?);
-        // The circle bulges between its points by less than 1/200 of its radius.
+        // The circle exceeds its polygon by less than 1/200 of its radius.
         let spare = [0, 1].map(|i| 2.0 + 0.01 * (high[i] - low[i]));
         Some([[low[0] - spare[0], low[1] - spare[1]], [high[0] + spare[0], high[1] + spare[1]]])
     };
@@ -88,7 +88,7 @@ struct Canvas<'a> {
     boxes: Vec<[[f64; 2]; 2]>,
 }
 
-/// The light through one point of the picture and whose it is.
+/// The light through a point of the picture and its solid.
 #[derive(Clone, Copy)]
 struct Sample {
     solid: Option<usize>,
@@ -96,7 +96,7 @@ struct Sample {
 }
 
 impl Canvas<'_> {
-    /// What is seen at a place, among the solids of its band.
+    /// Returns the light of a place, from the solids of its band.
     fn sample(&self, x: f64, y: f64, solids: &[usize]) -> Sample {
         let (origin, direction) = self.view.ray([x, y]);
         let here = |i: &usize| {
@@ -110,7 +110,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// A band of rows from `top` on: a ray through every corner, more where an edge passes between corners.
+    /// Draws a band of rows from `top`, with a ray through every corner and more rays at edges.
     fn draw(&self, band: &mut [Color], top: usize, width: usize) {
         let [first, last] = [top, top + band.len() / width.max(1)].map(|y| y as f64);
         let near = |i: &usize| self.boxes[*i][0][1] <= last && self.boxes[*i][1][1] >= first;
@@ -144,7 +144,7 @@ impl Canvas<'_> {
     }
 }
 
-/// What a screen can show: a bright highlight shall not make its edge jagged.
+/// Limits light to the range of a screen, so that a bright highlight has no jagged edge.
 fn clamped(light: Vector) -> Vector {
     light.map(|x| x.clamp(0.0, 1.0))
 }
@@ -170,7 +170,7 @@ fn paint(pixels: &mut [Color], size: [u32; 2], stroke: &Stroke) {
     if left >= right || top >= bottom {
         return;
     }
-    // The most that any piece covers, so that pieces do not cover each other's ends twice.
+    // The largest coverage of any piece, so that the ends of pieces are not covered twice.
     let mut covered = vec![0.0_f64; (right - left) * (bottom - top)];
     for ends in stroke.places.windows(2) {
         let [low, high] = bounds(ends);
@@ -216,7 +216,7 @@ mod tests {
             let pixels = pixels(&picture, &view, [90, 60]);
             let [x, y] = view.project([0.1, -0.2, 0.03]).unwrap();
             let color = pixels[y as usize * 90 + x as usize].map(f64::from);
-            // Of the same tone: more red than green, more green than blue, as far apart as in its own colour.
+            // Equal hue: red, green and blue differ as in its own color.
             let own = OKABE_ITO[0].map(f64::from);
             let bright = color[0] / own[0];
             assert!((0.6..1.15).contains(&bright), "{name}: {color:?}");

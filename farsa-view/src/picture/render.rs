@@ -1,4 +1,4 @@
-//! A picture as a file.
+//! Methods that write a picture.
 
 use crate::error::Error;
 use crate::picture::animation::animation;
@@ -8,19 +8,18 @@ use crate::picture::png::png;
 use crate::picture::svg::svg;
 
 impl Picture {
-    /// The picture as the bytes of a PNG file of `size` [pixels], traced ray by ray with light and shadow.
+    /// Returns a PNG file of `size` [pixels], traced ray by ray with light and shadow.
     ///
     /// # Errors
-    /// [`Error::Size`] for a size that no PNG has.
+    /// [`Error::Size`] for an invalid size.
     pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
         png(self, camera, size)
     }
 
-    /// Pictures one after the other as the bytes of an animated PNG, each of `size` [pixels] and so many milliseconds long, all
-    /// through one window.
+    /// Returns an animated PNG of pictures of `size` [pixels], each shown for the given time [ms], in one view.
     ///
     /// # Errors
-    /// [`Error::Size`] for a size that no PNG has, and for no picture or more than a thousand.
+    /// [`Error::Size`] for an invalid size, and for no picture or more than a thousand.
     pub fn animated_png(
         pictures: &[Self],
         camera: Camera,
@@ -30,9 +29,9 @@ impl Picture {
         animation(pictures, camera, size, milliseconds)
     }
 
-    /// The picture as an SVG document of `size` [pixels].
+    /// Returns an SVG document of `size` [pixels].
     ///
-    /// Every id in it begins with `prefix`, so that several can stand in one page.
+    /// All ids start with `prefix`, so that one page can contain several pictures.
     pub fn svg(&self, camera: Camera, size: [u32; 2], prefix: &str) -> String {
         svg(self, camera, size, prefix)
     }

@@ -1,4 +1,4 @@
-//! A picture as SVG: flat outlines from the back to the front.
+//! Pictures as SVG, with flat outlines from back to front.
 
 use std::fmt::Write as _;
 
@@ -13,17 +13,17 @@ use crate::shape::appearance::{Color, Role};
 use crate::shape::geometry::{Geometry, Sight};
 use crate::shape::vector::{Vector, add, dot, length, scale, sub};
 
-/// How far shapes may reach out of the frame before they are cut off [pixels].
+/// The margin around the frame at which shapes are clipped [pixels].
 const MARGIN: f64 = 20.0;
-/// The layers of a shadow: one for every part of the lamp, and how dark each is.
+/// The number of layers of a shadow, one for each part of the lamp, and the darkness of each.
 const SHADOWS: usize = 4;
 const SHADOW: f64 = 0.12;
-/// A thin line parts what overlaps in the same colour.
+/// The width of the line that separates shapes of equal color.
 const CONTOUR: &str = "stroke=\"#1b2733\" stroke-opacity=\".4\" stroke-width=\".8\"";
 
-/// Draws a picture in a frame of width and height [pixels] as an SVG element.
+/// Returns a picture in a frame of width and height [pixels] as an SVG element.
 ///
-/// `prefix` begins all its ids, so that several pictures can stand in one document; it takes what an XML name may hold.
+/// All ids start with `prefix`, so that one document can contain several pictures. It must be valid in an XML name.
 pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &str) -> String {
     let view = picture.window(camera, size);
     let scene = LitScene::new(picture, &view);
@@ -48,7 +48,7 @@ pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &st
     )
 }
 
-/// The outline of a solid in the picture, cut off at the frame; empty if it is not to be seen.
+/// Returns the outline of a solid, clipped to the frame, or nothing for an invisible solid.
 pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
     let sight = if view.parallel {
         Sight::Along(solid.pose.rotate_back(view.axes[2]))
@@ -60,26 +60,26 @@ pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
     };
     let flat = matches!(solid.geometry, Geometry::Box { .. } | Geometry::Rectangle { .. } | Geometry::Disc { .. });
     let hull = if flat {
-        // What reaches behind the eye is cut there: the hull of the faces' parts is that of the part.
+        // Faces are clipped in front of the eye. The hull of the clipped faces is that of the clipped solid.
         let faces = solid.geometry.faces(48).into_iter().flat_map(|(_, corners)| {
             let corners: Vec<_> = corners.into_iter().map(|corner| solid.pose.transform(corner)).collect();
             view.before(&corners)
         });
         hull(&faces.filter_map(|point| view.project(point)).collect::<Vec<_>>())
     } else {
-        // Circles get as many corners as they need to look round.
+        // Circles have enough corners to look round.
         hull(&places(solid.geometry.rim(sight, roundness(solid, view, 0.12))))
     };
     framed(&hull, view.size, MARGIN)
 }
 
-/// How many corners keep the circles of a solid within a share of a pixel.
+/// Returns the number of corners that approximates the circles of a solid within a share of a pixel.
 fn roundness(solid: &Solid, view: &Window, off: f64) -> usize {
     let radius = match solid.geometry {
         Geometry::Capsule { radius, .. } | Geometry::Cylinder { radius, .. } => radius,
         geometry => geometry.reach(),
     };
-    // The arc over an edge is r (1 - cos(pi / n)) high, about r pi^2 / 2 n^2.
+    // The height of the arc over an edge is r (1 - cos(pi / n)), about r pi^2 / 2 n^2.
     let count = 2.22 * (radius / view.pixel(solid.pose.position) / off).sqrt();
     (count.clamp(12.0, 120.0) as usize).next_multiple_of(4)
 }
@@ -90,7 +90,7 @@ struct Drawing<'a> {
     prefix: &'a str,
     defs: String,
     body: String,
-    /// Whether any grid line is to be seen.
+    /// Returns true if a grid line is visible.
     gridded: bool,
 }
 
@@ -129,7 +129,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The flat faces that look at the eye, with grid and shadows on the ground.
+    /// Draws the flat faces toward the eye, with grid and shadows on the ground.
     fn faces(&mut self, i: usize) {
         let solid = &self.scene.solids[i];
         let to_world = |(normal, corners): (Vector, Vec<Vector>)| {
@@ -145,11 +145,11 @@ impl Drawing<'_> {
             let places = framed(&places, self.view.size, MARGIN);
             let seen = Seen { solid: i, point: middle, normal, distance: 0.0 };
             let ground = solid.role == Role::Ground;
-            // The ground's light is everywhere that of a free place; shadows come on top of it.
+            // The ground has the light of unobstructed places, and shadows are drawn on top.
             let light = if ground { self.scene.plain(&seen) } else { self.scene.shade(self.view, &seen, false) };
             let color = hex(encoded(light));
             let opacity = if solid.role == Role::Area { " fill-opacity=\".8\"" } else { "" };
-            // A hairline in its own colour closes the seams of the ground.
+            // A hairline of the same color closes the seams of the ground.
             let edge = match solid.role {
                 Role::Robot | Role::Object => CONTOUR.to_owned(),
                 Role::Ground | Role::Area => format!("stroke=\"{color}\" stroke-width=\".5\""),
@@ -168,7 +168,7 @@ impl Drawing<'_> {
         points.iter().filter_map(|point| self.view.project(*point)).collect()
     }
 
-    /// Grid lines on a level face.
+    /// Draws grid lines on a level face.
     fn grid(&mut self, corners: &[Vector]) {
         let step = self.scene.step;
         let height = corners[0][2];
@@ -183,7 +183,7 @@ impl Drawing<'_> {
                 let ends = crossings(corners, axis, at);
                 let [Some(a), Some(b)] = ends else { continue };
                 let ends = self.places(&self.view.before(&[[a[0], a[1], height], [b[0], b[1], height]]));
-                // Clipping treats the line as a polygon that runs there and back.
+                // Clipping treats the line as a polygon of two edges.
                 let ends = framed(&ends, self.view.size, MARGIN);
                 if ends.len() > 1 {
                     data[usize::from(line % 2 == 0)].push_str(&path(&ends[..2], false));
@@ -198,7 +198,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The shadows of everything above a level face.
+    /// Draws the shadows of everything above a level face.
     fn shadows(&mut self, ground: usize, corners: &[Vector]) {
         let height = corners[0][2];
         let face = framed(&self.places(&self.view.before(corners)), self.view.size, MARGIN);
@@ -222,7 +222,7 @@ impl Drawing<'_> {
                 data.push_str(&path(&framed(&outline, self.view.size, MARGIN), true));
             }
             if !data.is_empty() {
-                // All outlines run the same way round, so that where they overlap it is no darker.
+                // All outlines have the same orientation, so that overlaps are not darker.
                 let _ = writeln!(layers, "<path d=\"{data}\" fill-opacity=\"{SHADOW}\"/>");
             }
         }
@@ -232,7 +232,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The colour of a solid at a place of the picture, or at the nearest one towards `inside` where it is.
+    /// Returns the color of a solid at a place of the picture, or at the nearest place toward `inside`.
     fn color(&self, i: usize, place: Point2, inside: Point2) -> Color {
         let tries = [0.0, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
         let seen = tries.into_iter().find_map(|share| {
@@ -253,7 +253,7 @@ impl Drawing<'_> {
         format!("url(#{id})")
     }
 
-    /// The fill of a ball: rings about where it faces the lamp.
+    /// Returns the fill of a ball, with rings around its brightest point.
     fn radial(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
         let centre = solid.pose.position;
@@ -275,7 +275,7 @@ impl Drawing<'_> {
         self.gradient(i, "radialGradient", &format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\""), &stops)
     }
 
-    /// The fill of a rod: bands along its axis.
+    /// Returns the fill of a rod, with bands along its axis.
     fn rod(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
         let (half, radius) = match solid.geometry {
@@ -321,7 +321,7 @@ impl Drawing<'_> {
         self.line("</g>");
     }
 
-    /// Names of points, the caption and the scales.
+    /// Draws names of points, the caption and the scales.
     fn words(&mut self, picture: &Picture) {
         let [width, height] = self.view.size.map(f64::from);
         let unit = width.min(height) / 800.0;
@@ -361,7 +361,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Where the line on which a coordinate is `at` enters and leaves a convex polygon.
+/// Returns the points at which the line of a coordinate `at` enters and leaves a convex polygon.
 fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Point2>; 2] {
     let mut found = [None; 2];
     let mut count = 0;
@@ -385,7 +385,7 @@ mod tests {
     use farsa_body::kinematics::KinematicTree;
     use farsa_body::robots::{ArmAndHand, Tabletop};
 
-    /// The elements of a document by name with their attributes; panics if it is not well-formed.
+    /// Returns the elements of a document by name with their attributes, and panics if it is not well-formed.
     fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
         let (mut open, mut found) = (Vec::new(), Vec::new());
         let mut rest = text;
@@ -457,7 +457,7 @@ mod tests {
                     }
                 }
             }
-            // Every reference has its target, defined before its use.
+            // Every reference has a target that is defined before it.
             for (_, attributes) in &elements {
                 for id in attributes.iter().filter_map(|(_, value)| value.strip_prefix("url(#")) {
                     assert!(ids.contains(&&id.trim_end_matches(')').to_owned()), "{id}");

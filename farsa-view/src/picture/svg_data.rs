@@ -1,11 +1,11 @@
-//! Numbers, colours, paths and text as SVG writes them.
+//! Numbers, colors, paths and text of SVG.
 
 use std::fmt::Write as _;
 
 use crate::picture::outline::Point2;
 use crate::shape::appearance::Color;
 
-/// The data of a path through these places, in steps of a tenth of a pixel.
+/// Returns the data of a path through places, in steps of a tenth of a pixel.
 pub(crate) fn path(places: &[Point2], closed: bool) -> String {
     let mut data = String::new();
     if places.len() < 2 || (closed && places.len() < 3) {
@@ -19,7 +19,7 @@ pub(crate) fn path(places: &[Point2], closed: bool) -> String {
         if i == 0 {
             let _ = write!(data, "M{},{}l", number(x), number(y));
         } else {
-            // Differences of what is written, not of what is meant: errors do not add up.
+            // Differences of rounded places, so that errors do not add up.
             let [dx, dy] = [number(x - last[0]), number(y - last[1])];
             let gap = if i == 1 || dx.starts_with('-') { "" } else { " " };
             let comma = if dy.starts_with('-') { "" } else { "," };
@@ -33,10 +33,10 @@ pub(crate) fn path(places: &[Point2], closed: bool) -> String {
     data
 }
 
-/// A number in the fewest digits, rounded to a part of `parts`.
+/// Formats a number, rounded to a multiple of 1 / `parts`, with the fewest digits.
 pub(crate) fn digits(x: f64, parts: f64) -> String {
     let rounded = (x * parts).round() / parts;
-    // No minus before zero.
+    // Zero has no sign.
     let text = format!("{}", rounded + 0.0);
     match text.strip_prefix("0.") {
         Some(rest) => format!(".{rest}"),
@@ -44,12 +44,12 @@ pub(crate) fn digits(x: f64, parts: f64) -> String {
     }
 }
 
-/// A colour as SVG writes it.
+/// Formats a color.
 pub(crate) fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Text that XML takes: its own signs are named, what it may not hold is left out.
+/// Escapes text for XML, without invalid characters.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -82,7 +82,7 @@ mod tests {
     fn paths_end_where_they_should() {
         assert_eq!(path(&[[1.0, 2.0], [3.04, 1.0], [3.06, 5.0]], true), "M1,2l2-1 .1,4z");
         assert_eq!(path(&[[1.0, 2.0]], false), "");
-        // A thousand steps of a third of a tenth are a hundred thirds, whatever each was rounded to.
+        // A thousand steps of a third of a tenth are a hundred thirds, in spite of rounding.
         let steps: Vec<Point2> = (0..=1000).map(|i| [f64::from(i) / 30.0, 0.0]).collect();
         let written = path(&steps, false);
         let steps = written.trim_start_matches("M0,0l").split(' ').map(|step| step.trim_end_matches(",0"));

@@ -1,4 +1,4 @@
-//! A planar world as something to be seen.
+//! The schema of a planar arena.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -12,24 +12,24 @@ use crate::shape::appearance::{Color, OKABE_ITO, Role};
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::{SceneObject, screen_color};
 
-/// Walls that are given no colour: dark, so that ways along them are seen.
+/// The color of walls without one, dark so that trails along them are visible.
 const WALL: Color = [84, 90, 99];
 /// The ground around a lamp.
 const GLOW: Color = [255, 238, 170];
-/// Thickness of the sides that a convex obstacle is drawn by [m].
+/// The thickness of the drawn sides of a convex obstacle [m].
 const SIDE: f64 = 2e-3;
-/// How high an area lies above the one under it [m].
+/// The height of an area above the one below [m].
 const LAYER: f64 = 1e-4;
-/// Of more robots than this only the hulls are shown.
+/// The number of robots above which only hulls are shown.
 const MOST_WITH_PARTS: usize = 50;
 
-/// A frame on the ground, turned about the vertical.
+/// Returns a frame on the ground, turned around the vertical.
 fn standing([x, y]: [f64; 2], z: f64, heading: f64) -> Pose<f64> {
     let (sine, cosine) = sin_cos(0.5 * heading);
     Pose { position: [x, y, z], rotation: [0.0, 0.0, sine, cosine] }
 }
 
-/// `name` where there is one of it, else `name 1`, `name 2` ...
+/// Returns `name` for a single item, otherwise `name 1`, `name 2` and so on.
 fn numbered(names: &[&str]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     names
@@ -49,7 +49,7 @@ fn numbered(names: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The ground of an arena that has a size, else an endless one.
+/// Returns the ground of an arena, endless without a size.
 fn ground(arena: &Arena) -> SceneObject {
     let (geometry, middle) = match arena.size {
         Some(size) => (Geometry::Rectangle { half: size.map(|x| 0.5 * x) }, size.map(|x| 0.5 * x)),
@@ -68,7 +68,7 @@ fn wall(number: usize, wall: &Wall) -> SceneObject {
     SceneObject::new(&name, geometry, standing(wall.centre, up, wall.heading), Role::Ground).with_color(color)
 }
 
-/// A convex obstacle, as its upright sides over its outline: thin walls within it.
+/// Returns a convex obstacle as thin walls along its outline, on the inside.
 fn convex(number: usize, convex: &Convex) -> Vec<SceneObject> {
     let corners = convex.outline();
     let color = if convex.color == Wall::COLOR { WALL } else { screen_color(convex.color) };
@@ -77,7 +77,7 @@ fn convex(number: usize, convex: &Convex) -> Vec<SceneObject> {
         let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = Scalar::sqrt(x * x + y * y);
-        // The outline runs counter-clockwise: inwards is to the left.
+        // The outline is counterclockwise, so the inside is on the left.
         let inwards = 0.5 * SIDE / length;
         let middle = [0.5 * (a[0] + b[0]) - inwards * y, 0.5 * (a[1] + b[1]) + inwards * x];
         let geometry = Geometry::Box { half: [0.5 * length, 0.5 * SIDE, up] };
@@ -92,12 +92,12 @@ fn area(number: usize, area: &Area) -> SceneObject {
         AreaShape::Circle { radius } => Geometry::Disc { radius },
         AreaShape::Rectangle { size } => Geometry::Rectangle { half: size.map(|x| 0.5 * x) },
     };
-    // Where several lie over each other, the last one is seen.
+    // Where areas overlap, the last one is visible.
     let place = standing([0.0; 2], LAYER * (number + 1) as f64, 0.0);
     SceneObject::new("area", geometry, place, Role::Area).with_color(screen_color(area.color))
 }
 
-/// A cylinder in its colour; of those without one, lamps are yellow and the others as things are.
+/// Returns a cylinder in its color, by default yellow for lamps and that of things for others.
 fn cylinder(cylinder: &Cylinder) -> SceneObject {
     let up = 0.5 * cylinder.height;
     let geometry = Geometry::Cylinder { radius: cylinder.radius, half_length: up };
@@ -110,11 +110,11 @@ fn cylinder(cylinder: &Cylinder) -> SceneObject {
 }
 
 impl Schema {
-    /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
+    /// Creates the schema of a planar world from above, with its robots, cylinders and areas in their order.
     ///
-    /// A convex obstacle is shown by thin walls along its outline. A lamp stands on a light disc. A robot is drawn in its own colour,
-    /// whatever its LEDs show, on its wheels and within its hull, with a light stripe that points ahead: a Khepera, an e-puck and a
-    /// `MarXbot` as they look, others as discs. Of more than 50 robots the hulls are drawn alone.
+    /// A convex obstacle is shown by thin walls along its outline, a lamp on a bright disc. A robot has its own color and a
+    /// bright stripe that points ahead. Khepera, e-puck and `MarXbot` have their appearance, other robots are discs on wheels.
+    /// More than 50 robots are shown as hulls only.
     ///
     /// ```
     /// use farsa_body::robots::MobileRobot;
@@ -184,7 +184,7 @@ mod tests {
         arena.add_area(Area::rectangle([0.1, 0.4], [0.1, 0.05], 0.3, [0.0, 0.0, 1.0]));
         let schema = Schema::from_arena(&arena);
         assert_eq!(schema.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
-        // The ground, four walls, two areas, two cylinders, a light; two Kheperas and an e-puck with their parts.
+        // The ground, four walls, two areas, two cylinders, a light, two Kheperas and an e-puck with their parts.
         let parts = |robot: &MobileRobot| wheeled_look::parts(robot).len();
         let robots = 2 * parts(&MobileRobot::khepera()) + parts(&MobileRobot::e_puck());
         assert_eq!(schema.objects.len(), 1 + 4 + 2 + 3 + robots);
@@ -265,7 +265,7 @@ mod tests {
             schema.objects.iter().filter(|object| object.name.starts_with("obstacle")).collect();
         assert_eq!((sides.len(), sides[8].color), (9, Some([204, 51, 26])));
         assert_eq!(schema.bodies, ["Khepera"]);
-        // Outer edges are the sides: both ends of each are corners.
+        // Outer edges are the sides, and both ends of each are corners.
         let corners: Vec<[f64; 2]> = arena.convexes.iter().flat_map(Convex::outline).collect();
         for object in &sides {
             let Geometry::Box { half } = object.geometry else { panic!("{object:?}") };

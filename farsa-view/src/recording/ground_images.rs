@@ -1,40 +1,40 @@
-//! What lies on the ground: images of which what changes is kept.
+//! Images on the ground, stored as changes.
 
 use std::ops::Range;
 
 use crate::recording::images::{packed, unpacked};
 use crate::recording::schema::ImageChannel;
 
-/// The most pixels of such an image: pages number them and count changes in 16 bits.
+/// The most pixels of an image, because pages number them in 16 bits.
 const MOST_PIXELS: usize = u16::MAX as usize;
-/// The most changes that a recording keeps: 8 MB.
+/// The most changes of a recording, 8 MB.
 const MOST_CHANGES: usize = 1 << 21;
 
-/// A pixel that has another colour than at the tick before.
+/// A pixel with another color than at the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Change {
-    /// Which pixel, row by row.
+    /// The index of the pixel, row by row.
     pub(crate) pixel: u16,
-    /// Its colour: 5 bits red, 6 green, 5 blue from the highest down.
+    /// The color, with 5 bits red, 6 green and 5 blue from the highest bit.
     pub(crate) shade: u16,
 }
 
 /// An image on the ground.
 #[derive(Clone, Debug, Default)]
 struct GroundImage {
-    /// The tick under way, and whether it has a pixel.
+    /// The image of the current tick, and true if it has a pixel.
     now: Vec<u16>,
     told: bool,
-    /// What was kept last.
+    /// The last stored image.
     last: Vec<u16>,
     changes: Vec<Change>,
-    /// Where the changes of each tick end, and from which tick on the image is there.
+    /// The end of the changes of each tick, and the first tick of the image.
     ends: Vec<usize>,
     first: Option<usize>,
 }
 
 impl GroundImage {
-    /// Ends the tick, with room for so many more changes; how many there were.
+    /// Ends the tick with at most the given number of changes, and returns their number.
     fn tick(&mut self, room: usize) -> usize {
         let Self { now, told, last, changes, ends, first } = self;
         let before = changes.len();
@@ -58,7 +58,7 @@ impl GroundImage {
     }
 }
 
-/// All images on the ground, by the numbers of the schema.
+/// All images on the ground, by their index in the schema.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GroundImages {
     images: Vec<Option<GroundImage>>,
@@ -66,7 +66,7 @@ pub(crate) struct GroundImages {
 }
 
 impl GroundImages {
-    /// Black ones, of those of these images that lie on the ground.
+    /// Creates black images for those of the schema that are on the ground.
     pub(crate) fn new(channels: &[ImageChannel]) -> Self {
         let image = |channel: &ImageChannel| {
             let black = vec![0; Some(channel.pixels()).filter(|pixels| *pixels <= MOST_PIXELS)?];
@@ -79,7 +79,7 @@ impl GroundImages {
         self.images.get(image)?.as_ref()
     }
 
-    /// Takes down a pixel of the tick under way.
+    /// Records a pixel of the current tick.
     pub(crate) fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
         let Some(Some(image)) = self.images.get_mut(image) else { return };
         if let Some(to) = image.now.get_mut(pixel) {
@@ -95,13 +95,13 @@ impl GroundImages {
         }
     }
 
-    /// What changes in an image at a tick; of the first, what is not black.
+    /// Returns the changes of an image at a tick, or the pixels that are not black at the first.
     pub(crate) fn changes(&self, tick: usize, image: usize) -> &[Change] {
         let Some(image) = self.image(image) else { return &[] };
         image.changes.get(image.of_tick(tick)).unwrap_or(&[])
     }
 
-    /// An image as it was recorded last up to a tick.
+    /// Returns an image as last recorded up to a tick.
     pub(crate) fn at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + use<>> {
         let image = self.image(image)?;
         let there = tick < image.ends.len() && tick >= image.first?;
@@ -131,7 +131,7 @@ mod tests {
         grounds.tick();
         grounds.pixel(1, 0, GREEN);
         grounds.pixel(1, 3, GREEN);
-        // None of these is a pixel of an image on the ground.
+        // These pixels do not belong to an image on the ground.
         for (image, pixel) in [(0, 0), (1, 4), (2, 0), (3, 0)] {
             grounds.pixel(image, pixel, GREEN);
         }
@@ -163,7 +163,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against all images, kept whole.
+        /// Compares with complete images.
         #[test]
         fn every_image_comes_back(
             frames in prop::collection::vec(prop::option::of(prop::collection::vec(0_u8..3, 6)), 1..20),

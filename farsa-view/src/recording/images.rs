@@ -1,43 +1,43 @@
-//! What cameras saw, in few bytes: two a pixel, and none for an image like the one before.
+//! Camera images, with two bytes per pixel and none for a repeated image.
 
 use std::iter;
 use std::ops::Range;
 
 use crate::recording::schema::ImageChannel;
 
-/// The most pixels that a recording keeps [pixels]: 8 MB, for 32 x 24 pixels 5461 images that differ.
+/// The most pixels of a recording, 8 MB or 5461 different images of 32 x 24 pixels.
 const MOST_PIXELS: usize = 1 << 22;
-/// Largest counts of red, green and blue.
+/// The largest counts of red, green and blue.
 const LARGEST: [f32; 3] = [31.0, 63.0, 31.0];
-/// Where counts of red, green and blue begin in a pixel.
+/// The first bit of red, green and blue in a pixel.
 const SHIFT: [u32; 3] = [11, 5, 0];
 
-/// The images of a recording, and those of the tick under way.
+/// The images of a recording, including those of the current tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Images {
-    /// Number of images.
+    /// The number of images.
     count: usize,
-    /// Where each one lies among the pixels of a tick.
+    /// The range of each image among the pixels of a tick.
     ranges: Vec<Range<usize>>,
-    /// All images of the tick under way, and which of them have a pixel.
+    /// All images of the current tick, and true for those with a pixel.
     now: Vec<u16>,
     told: Vec<bool>,
-    /// What was kept.
+    /// The stored pixels.
     pixels: Vec<u16>,
-    /// Where each image begins there, ticks x images.
+    /// The first stored pixel of each image, ticks x images.
     starts: Vec<Option<u32>>,
-    /// The same of the last one that was kept of each.
+    /// The first pixel of the last stored image of each.
     last: Vec<Option<u32>>,
 }
 
 impl Images {
-    /// Nothing yet of these images.
+    /// Creates an empty recording of images.
     pub(crate) fn new(channels: &[ImageChannel]) -> Self {
         let mut end = 0_usize;
         let ranges: Vec<Range<usize>> = channels
             .iter()
             .map(|channel| {
-                // An image that is larger than all that is kept is never kept; those on the ground are kept elsewhere.
+                // An image above the limit is never stored, and images on the ground are stored as changes.
                 let begin = end;
                 let kept = |pixels: &usize| channel.ground.is_none() && *pixels <= MOST_PIXELS;
                 end += Some(channel.pixels()).filter(kept).unwrap_or(0);
@@ -49,7 +49,7 @@ impl Images {
         Self { count, ranges, now: vec![0; end], told, last, ..Self::default() }
     }
 
-    /// Takes down a pixel of the tick under way.
+    /// Records a pixel of the current tick.
     pub(crate) fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
         let Some(range) = self.ranges.get(image) else { return };
         if let Some(to) = self.now[range.clone()].get_mut(pixel) {
@@ -83,7 +83,7 @@ impl Images {
         self.told.fill(false);
     }
 
-    /// An image at a tick.
+    /// Returns an image at a tick.
     pub(crate) fn at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
         let range = self.ranges.get(image)?;
         let start = (*self.starts.get(tick * self.count + image)?)? as usize;
@@ -91,19 +91,19 @@ impl Images {
         Some(pixels.iter().map(|pixel| unpacked(*pixel)))
     }
 
-    /// Where an image begins among the pixels at each tick; `u32::MAX` if it is not there.
+    /// Returns the first pixel of an image at each tick, `u32::MAX` without an image.
     pub(crate) fn starts(&self, image: usize) -> impl Iterator<Item = u32> + '_ {
         let of_image = self.starts.iter().skip(image).step_by(self.count.max(1));
         of_image.map(|start| start.unwrap_or(u32::MAX))
     }
 
-    /// All pixels that were kept.
+    /// Returns all stored pixels.
     pub(crate) fn pixels(&self) -> &[u16] {
         &self.pixels
     }
 }
 
-/// A colour as counts in 5, 6 and 5 bits; NaN is 0.
+/// Converts a color to counts of 5, 6 and 5 bits. NaN becomes 0.
 pub(super) fn packed(color: [f32; 3]) -> u16 {
     let counts = iter::zip(color, LARGEST).map(|(shade, largest)| (shade * largest).round().clamp(0.0, largest) as u16);
     iter::zip(counts, SHIFT).fold(0, |pixel, (count, shift)| pixel | count << shift)
@@ -129,7 +129,7 @@ mod tests {
         let (red, blue, black) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]);
         images.pixel(0, 1, red);
         images.pixel(1, 0, blue);
-        // Neither is a pixel of an image.
+        // These pixels do not belong to an image.
         images.pixel(0, 2, red);
         images.pixel(2, 0, red);
         images.tick();

@@ -1,4 +1,4 @@
-//! A recorded episode, kept in memory.
+//! A recorded episode in memory.
 
 use std::ops::Range;
 
@@ -9,36 +9,36 @@ use crate::recording::ground_images::GroundImages;
 use crate::recording::images::Images;
 use crate::recording::schema::Schema;
 
-/// Numbers of a pose: position and rotation.
+/// The length of a pose: position and rotation.
 const POSE: usize = 7;
-/// Ticks that there is room for from the beginning.
+/// The initial capacity [ticks].
 const TICKS: usize = 1024;
 
-/// A pair that touched.
+/// A contact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touching {
-    /// Which pair.
+    /// The pair.
     pub pair: PairId,
-    /// Where, in the world \[m\].
+    /// The point in the world \[m\].
     pub point: [f32; 3],
-    /// Force on the pair's first body \[N\].
+    /// The force on the pair's first body \[N\].
     pub force: [f32; 3],
 }
 
-/// A ray that was cast.
+/// A ray of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastRay {
-    /// Where it began \[m\].
+    /// The start \[m\].
     pub from: [f32; 3],
-    /// Where it ended \[m\].
+    /// The end \[m\].
     pub to: [f32; 3],
-    /// Whether it met something there.
+    /// True if the ray hit something at its end.
     pub met: bool,
 }
 
-/// A recorded episode, tick by tick: for a [`Page`](crate::Page), or to look things up.
+/// A recorded episode, tick by tick, for a [`Page`](crate::Page) or for analysis.
 ///
-/// What belongs to no name of the schema is not kept, what was not recorded is NaN.
+/// Values without a name in the schema are not stored. Values that were not recorded are NaN.
 ///
 /// ```
 /// use farsa_body::Recorder;
@@ -71,34 +71,34 @@ pub struct Recording {
     schema: Schema,
     parameters: Vec<f32>,
     times: Vec<f64>,
-    /// Ticks x bodies x 7, the tick under way included; so with the next three.
+    /// Ticks x bodies x 7, including the current tick, as in the next three fields.
     poses: Vec<f32>,
     points: Vec<f32>,
     /// Sensors, neurons, outputs.
     values: Vec<f32>,
     scalars: Vec<f64>,
-    /// Unknown numbers, as many as the widest of these has in a tick.
+    /// NaN, as many as the widest field has per tick.
     blank: Vec<f32>,
     contacts: Vec<Touching>,
-    /// Number of contacts up to the end of each tick.
+    /// The number of contacts up to the end of each tick.
     contact_ends: Vec<usize>,
     rays: Vec<CastRay>,
     ray_ends: Vec<usize>,
     images: Images,
     grounds: GroundImages,
-    /// The bytes from which on no tick is kept, if there are such.
+    /// The most bytes of ticks, if limited.
     room: Option<usize>,
     cut: bool,
 }
 
 impl Recording {
-    /// A recording of nothing yet.
+    /// Creates an empty recording.
     pub fn new(schema: Schema) -> Self {
         let (images, grounds) = (Images::new(&schema.images), GroundImages::new(&schema.images));
         let mut recording = Self { schema, images, grounds, ..Self::default() };
         let widest = [POSE * recording.bodies(), 3 * recording.schema.points.len(), recording.width()];
         recording.blank = vec![f32::NAN; widest.into_iter().max().unwrap_or(0)];
-        // Most episodes are shorter; a longer one makes room by itself.
+        // Most episodes are shorter, and longer ones grow.
         recording.poses.reserve(TICKS * POSE * recording.bodies());
         recording.points.reserve(TICKS * 3 * recording.schema.points.len());
         recording.values.reserve(TICKS * recording.width());
@@ -107,7 +107,7 @@ impl Recording {
         recording
     }
 
-    /// Keeps no further tick once those before it take so many bytes.
+    /// Limits the memory of ticks [bytes]. Later ticks are not stored.
     ///
     /// ```
     /// use farsa_body::Recorder;
@@ -122,12 +122,12 @@ impl Recording {
         Self { room: Some(bytes), ..self }
     }
 
-    /// Whether there was no room for ticks that came ([`with_room`](Self::with_room)).
+    /// Returns true if ticks exceeded the memory limit of [`with_room`](Self::with_room).
     pub fn is_cut(&self) -> bool {
         self.cut
     }
 
-    /// The bytes that all ticks take, but for images.
+    /// Returns the bytes of all ticks without images.
     pub fn bytes(&self) -> usize {
         let singles = self.poses.len() + self.points.len() + self.values.len();
         let doubles = self.scalars.len() + self.times.len();
@@ -136,9 +136,9 @@ impl Recording {
         4 * singles + 8 * doubles + ends + seen
     }
 
-    /// Room for the tick to come, all of it unknown.
+    /// Appends a tick of NaN.
     fn open(&mut self) {
-        // One copy of a line of unknowns is cheaper than filling each.
+        // Copying a row of NaN is faster than filling each.
         let Self { blank, poses, points, values, scalars, schema, .. } = self;
         let count = |per_tick: usize| blank.get(..per_tick).unwrap_or(&[]);
         poses.extend_from_slice(count(POSE * schema.body_count()));
@@ -155,7 +155,7 @@ impl Recording {
         self.schema.sensors.len() + self.schema.neurons.len() + self.schema.outputs.len()
     }
 
-    /// Takes down where all bodies with a shape are and what touches.
+    /// Records the poses of all bodies with a shape, and all contacts.
     pub fn world<W>(&mut self, world: &W) -> &mut Self
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
@@ -165,22 +165,22 @@ impl Recording {
         self
     }
 
-    /// What it is a recording of.
+    /// Returns the schema.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// The parameters of the controller; empty if none were recorded.
+    /// Returns the parameters of the controller, empty if not recorded.
     pub fn controller_parameters(&self) -> &[f32] {
         &self.parameters
     }
 
-    /// The time of every tick \[s\].
+    /// Returns the time of every tick \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Where a body was at a tick; NaN if it was not recorded, `None` if there is no such body or tick.
+    /// Returns the pose of a body at a tick, NaN if not recorded, `None` for an unknown body or tick.
     pub fn pose_at(&self, tick: usize, body: BodyId) -> Option<Pose> {
         let at = POSE * (tick * self.bodies() + body.index());
         if tick >= self.times.len() || body.index() >= self.bodies() {
@@ -190,7 +190,7 @@ impl Recording {
         Some(Pose { position: [words[0], words[1], words[2]], rotation: [words[3], words[4], words[5], words[6]] })
     }
 
-    /// Where a point was at a tick.
+    /// Returns the position of a point at a tick.
     pub fn point_at(&self, tick: usize, point: usize) -> Option<[f32; 3]> {
         let at = 3 * (tick * self.schema.points.len() + point);
         if tick >= self.times.len() || point >= self.schema.points.len() {
@@ -199,19 +199,20 @@ impl Recording {
         self.points.get(at..at + 3).map(|words| [words[0], words[1], words[2]])
     }
 
-    /// What touched at a tick.
+    /// Returns the contacts of a tick.
     pub fn contacts_at(&self, tick: usize) -> &[Touching] {
         self.contacts.get(ended(&self.contact_ends, tick)).unwrap_or(&[])
     }
 
-    /// The rays of a tick.
+    /// Returns the rays of a tick.
     pub fn rays_at(&self, tick: usize) -> &[CastRay] {
         self.rays.get(ended(&self.ray_ends, tick)).unwrap_or(&[])
     }
 
-    /// What an image showed at a tick, red, green and blue of the upper left pixel first, within 1/62; `None` if it was not recorded,
-    /// and for ticks after 2^22 pixels were kept. An image like the one before takes no room. One on the ground is as it was recorded
-    /// last.
+    /// Returns an image at a tick as red, green and blue from the upper left pixel on, within 1/62.
+    ///
+    /// Returns `None` if it was not recorded and after 2^22 stored pixels. A repeated image takes no memory. An image on the
+    /// ground is the last recorded one.
     pub fn image_at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
         let of_camera = self.images.at(tick, image);
         let of_ground = self.grounds.at(tick, image);
@@ -219,17 +220,17 @@ impl Recording {
         seen.then(|| of_camera.into_iter().flatten().chain(of_ground.into_iter().flatten()))
     }
 
-    /// What was kept of all images on the ground.
+    /// Returns the stored images on the ground.
     pub(crate) fn grounds(&self) -> &GroundImages {
         &self.grounds
     }
 
-    /// What was kept of all images of cameras.
+    /// Returns the stored images of cameras.
     pub(crate) fn images(&self) -> &Images {
         &self.images
     }
 
-    /// All values of a tick in the order of [`Schema::columns`].
+    /// Returns all values of a tick in the order of [`Schema::columns`].
     pub fn row(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
         fn of_tick<T>(values: &[T], tick: usize, width: usize) -> &[T] {
             values.get(tick * width..(tick + 1) * width).unwrap_or(&[])
@@ -247,7 +248,7 @@ impl Recording {
     }
 }
 
-/// What lies between the ends of the tick before and of this one.
+/// Returns the items between the ends of the previous and of this tick.
 fn ended(ends: &[usize], tick: usize) -> Range<usize> {
     let begin = tick.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
     begin..ends.get(tick).copied().unwrap_or(begin)
@@ -348,7 +349,7 @@ mod tests {
         let of_contacts = |ticks: usize| size_of::<Touching>() * ticks * (ticks + 1) / 2;
         let open = 4 * (POSE * schema().body_count() + 1);
         assert_eq!((whole.bytes(), whole.is_cut()), (9 * each + open + of_contacts(9), false));
-        // The tick that is under way counts, with its contacts.
+        // The current tick counts, with its contacts.
         let mut cut = Recording::new(schema()).with_room(5 * each + open + of_contacts(6));
         fill(&mut cut, 9);
         assert!(cut.is_cut());
@@ -393,7 +394,7 @@ mod tests {
         assert_eq!(recording.point_at(0, 2), None);
         assert_eq!((recording.contacts_at(0).len(), recording.contacts_at(1).len()), (0, 2));
         assert_eq!(recording.contacts_at(1)[1].pair, PairId(8));
-        // Of a tick that has not ended.
+        // The current tick has not ended.
         assert!(recording.rays_at(1).is_empty() && recording.rays_at(2).is_empty());
     }
 }

@@ -1,21 +1,20 @@
-//! What happened, tick by tick, as a [`Recorder`](farsa_body::Recorder) gets it.
-//!
-//! - `schema`: what there is to record: bodies, channels, a network
-//! - `arena_schema`: the schema of a planar arena
-//! - `wheeled_look`: what wheeled robots look like
-//! - `view`: from where a page first looks
-//! - `images`: what cameras saw, in few bytes
-//! - `ground_images`: what lay on the ground, in fewer
-//! - `memory`: a recording in memory
-//! - `table`: a recording as comma-separated values
+//! Recorded episodes, as a [`Recorder`](farsa_body::Recorder) receives them.
 
+/// The schema of a planar arena.
 mod arena_schema;
+/// Images on the ground, stored as changes.
 pub(crate) mod ground_images;
+/// Camera images.
 mod images;
+/// A recording in memory.
 pub(crate) mod memory;
+/// The schema of a recording: bodies, channels and a network.
 pub(crate) mod schema;
+/// Recordings as comma-separated values.
 mod table;
+/// The initial camera of a page.
 pub(crate) mod view;
+/// The appearance of wheeled robots.
 mod wheeled_look;
 
 pub use memory::{CastRay, Recording, Touching};

@@ -1,4 +1,4 @@
-//! What a recording shows: the bodies, and the names of everything that has a value.
+//! The schema of a recording: bodies, channels and a network.
 
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{JointKind, Robot};
@@ -7,26 +7,25 @@ use farsa_nn::{LeakyLayout, LeakyParameter};
 use crate::recording::view::View;
 use crate::shape::scene_object::SceneObject;
 
-/// Something that has one value per tick, as tables and pages name it.
+/// A quantity with one value per tick, as in tables and pages.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Channel {
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// What pages show in place of the name; empty for the name itself.
+    /// The label of pages, empty for the name.
     pub label: String,
-    /// Its unit; empty if it has none.
+    /// The unit, empty for none.
     pub unit: String,
-    /// What stands together: `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator`, `force` or a word of
-    /// one's own.
+    /// The group: `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator`, `force` or a custom word.
     pub group: String,
-    /// Where its values lie by definition, if that is known.
+    /// The range of values by definition, or `None`.
     pub range: Option<[f64; 2]>,
-    /// What the values 0, 1, 2 ... mean, if they are words.
+    /// Words for the values 0, 1, 2 and so on, or nothing.
     pub words: Vec<String>,
 }
 
 impl Channel {
-    /// A channel by its name, the unit in brackets behind: `"x [m]"`.
+    /// Creates a channel from its name with the unit in brackets: `"x [m]"`.
     pub fn new(name: &str) -> Self {
         let (name, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
             Some((name, unit)) => (name, unit),
@@ -35,58 +34,58 @@ impl Channel {
         Self { name: name.into(), unit: unit.into(), ..Self::default() }
     }
 
-    /// The same channel with a label, which pages show in place of its name.
+    /// Returns the channel with a label, which pages show instead of its name.
     pub fn labelled(self, label: &str) -> Self {
         Self { label: label.into(), ..self }
     }
 
-    /// The same channel in a group.
+    /// Returns the channel in a group.
     pub fn group(self, group: &str) -> Self {
         Self { group: group.into(), ..self }
     }
 
-    /// The same channel with the range of its values.
+    /// Returns the channel with the range of its values.
     pub fn range(self, low: f64, high: f64) -> Self {
         Self { range: Some([low, high]), ..self }
     }
 
-    /// The same channel with words for the values 0, 1, 2 ...
+    /// Returns the channel with words for the values 0, 1, 2 and so on.
     pub fn words(self, words: &[&str]) -> Self {
         Self { words: words.iter().map(|&word| word.into()).collect(), ..self }
     }
 
-    /// Name and unit as they were given to [`Channel::new`].
+    /// Returns name and unit as in [`Channel::new`].
     pub fn title(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
     }
 }
 
-/// An image, as pages name it: what a camera sees, or what lies on the ground.
+/// An image of a camera or on the ground, as in pages.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ImageChannel {
-    /// What it is called.
+    /// The name.
     pub name: String,
     /// Columns and rows.
     pub size: [usize; 2],
-    /// Where it lies on the ground, if it does: the corner of its first pixel and that of its last one [m].
+    /// The outer corners of the first and the last pixel on the ground [m], if it is an image there.
     pub ground: Option<[[f64; 2]; 2]>,
 }
 
 impl ImageChannel {
-    /// An image of so many columns and rows.
+    /// Creates an image with the given columns and rows.
     pub fn new(name: &str, size: [usize; 2]) -> Self {
         Self { name: name.into(), size, ground: None }
     }
 
-    /// The same image on the ground, from the corner of its first pixel to that of its last one [m]: columns run along x.
+    /// Places the image on the ground, from the corner of its first pixel to that of its last one [m], with columns along x.
     ///
-    /// Each pixel that is not black is a mark on the ground in its colour. What changes is kept, so that an image which
-    /// changes little takes little room; a tick without pixels leaves it as it was. Images of more than 65535 pixels are not kept.
+    /// Each pixel that is not black is a mark on the ground in its color. Only changes are stored. A tick without pixels leaves
+    /// the image unchanged. Images of more than 65535 pixels are not stored.
     pub fn on_ground(self, from: [f64; 2], to: [f64; 2]) -> Self {
         Self { ground: Some([from, to]), ..self }
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0].saturating_mul(self.size[1])
     }
@@ -94,29 +93,29 @@ impl ImageChannel {
 
 /// Weights from every node of one range to every node of another, source-major.
 ///
-/// Nodes are numbered through: sensors, then neurons, then outputs.
+/// Nodes are numbered in the order sensors, neurons, outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Links {
-    /// First source and the one after the last.
+    /// The first source and the one after the last.
     pub from: [usize; 2],
-    /// First target and the one after the last.
+    /// The first target and the one after the last.
     pub to: [usize; 2],
-    /// Index of the first weight in the parameters.
+    /// The index of the first weight in the parameters.
     pub first: usize,
 }
 
-/// One parameter for each node of a range, such as the biases.
+/// One parameter for each node of a range, such as a bias.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeParameters {
-    /// What they are called.
+    /// The name of the parameter.
     pub name: String,
-    /// First node and the one after the last.
+    /// The first node and the one after the last.
     pub nodes: [usize; 2],
-    /// Index of the first in the parameters.
+    /// The index of the first value in the parameters.
     pub first: usize,
 }
 
-/// What a recording holds: everything that a recorder is given in an episode, by name and in order.
+/// The names and order of everything that a recorder receives in an episode.
 ///
 /// ```
 /// use farsa_body::robots::ArmAndHand;
@@ -129,29 +128,29 @@ pub struct NodeParameters {
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Schema {
-    /// The bodies with their shapes; `None` if there is nothing to see.
+    /// The bodies with their shapes, `None` without any.
     pub robot: Option<Robot>,
-    /// The names of the bodies where no robot names them, by number.
+    /// The names of bodies without a robot, by index.
     pub bodies: Vec<String>,
-    /// What is to be seen beside the robot's shapes.
+    /// Further visible objects.
     pub objects: Vec<SceneObject>,
-    /// What is sensed.
+    /// The sensors.
     pub sensors: Vec<Channel>,
     /// The neurons between sensors and motors.
     pub neurons: Vec<Channel>,
-    /// What the controller answers.
+    /// The outputs of the controller.
     pub outputs: Vec<Channel>,
-    /// Whatever else has a name.
+    /// Further named values.
     pub scalars: Vec<Channel>,
-    /// The points worth seeing, by number.
+    /// Further points, by index.
     pub points: Vec<String>,
-    /// The images that cameras see, and those on the ground, by number.
+    /// The images of cameras and those on the ground, by index.
     pub images: Vec<ImageChannel>,
-    /// How the nodes are linked, for a picture of the network.
+    /// The links between nodes, for a picture of the network.
     pub links: Vec<Links>,
-    /// What other parameters nodes have.
+    /// Further parameters of nodes.
     pub node_parameters: Vec<NodeParameters>,
-    /// How a page looks at it.
+    /// The initial camera of a page.
     pub view: View,
 }
 
@@ -160,35 +159,35 @@ fn channels<N: AsRef<str>>(names: impl IntoIterator<Item = N>, group: &str) -> V
 }
 
 impl Schema {
-    /// Only the bodies of a robot or scene.
+    /// Creates a schema of the bodies of a robot or scene.
     pub fn from_robot(robot: &Robot) -> Self {
         Self { robot: Some(robot.clone()), ..Self::default() }
     }
 
-    /// Only named values, units in brackets: `["x [m]"]`.
+    /// Creates a schema of named values with units in brackets: `["x [m]"]`.
     pub fn from_scalars<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> Self {
         Self::default().with_scalars(names)
     }
 
-    /// With these sensors.
+    /// Returns the schema with these sensors.
     pub fn with_sensors<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { sensors: channels(names, "sensor"), ..self }
     }
 
-    /// With these outputs.
+    /// Returns the schema with these outputs.
     pub fn with_outputs<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { outputs: channels(names, "output"), ..self }
     }
 
-    /// With these values of one's own.
+    /// Returns the schema with further named values.
     pub fn with_scalars<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { scalars: channels(names, "value"), ..self }
     }
 
-    /// With labels for the channels that are there by now, as pairs of a name and a label.
+    /// Returns the schema with labels for its present channels, as pairs of a name and a label.
     ///
-    /// A pair fits a channel that has the name, and one whose name begins with it and a space: `("J4", "elbow")` makes
-    /// `J4 torque` an `elbow torque`. Of several pairs that fit, the first counts.
+    /// A pair matches a channel of that name, and one whose name starts with it and a space: `("J4", "elbow")` labels
+    /// `J4 torque` as `elbow torque`. The first matching pair is used.
     ///
     /// ```
     /// use farsa_view::Schema;
@@ -214,15 +213,15 @@ impl Schema {
         self
     }
 
-    /// With another image.
+    /// Returns the schema with another image.
     pub fn with_image(mut self, name: &str, size: [usize; 2]) -> Self {
         self.images.push(ImageChannel::new(name, size));
         self
     }
 
-    /// With the neurons and links of a network whose sensors and outputs those of the schema are.
+    /// Returns the schema with the neurons and links of a network with the sensors and outputs of the schema.
     ///
-    /// The recorder must be given the network's parameters, [`Recorder::parameters`](farsa_body::Recorder::parameters).
+    /// The recorder must also receive the parameters, by [`Recorder::parameters`](farsa_body::Recorder::parameters).
     pub fn with_network(self, layout: &LeakyLayout) -> Self {
         let (n, h) = (layout.sensors(), layout.hidden());
         let (neurons, outputs) = ([n, n + h], [n + h, n + h + layout.outputs()]);
@@ -239,7 +238,7 @@ impl Schema {
         Self { neurons, links, node_parameters, ..self }
     }
 
-    /// The bodies that can be seen.
+    /// Returns the visible bodies.
     pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
         let of_robot = self.robot.iter().flat_map(Robot::shaped_bodies);
         let mut of_objects: Vec<BodyId> = self.objects.iter().filter_map(|object| object.body).collect();
@@ -250,12 +249,12 @@ impl Schema {
         of_robot.chain(of_objects)
     }
 
-    /// Number of bodies, seen or not.
+    /// Returns the number of bodies, visible or not.
     pub(crate) fn body_count(&self) -> usize {
         self.robot.as_ref().map_or(self.bodies.len(), |robot| robot.segments.len())
     }
 
-    /// What a body is called; empty if there is none.
+    /// Returns the name of a body, empty for an unknown one.
     pub(crate) fn body_name(&self, body: BodyId) -> &str {
         match &self.robot {
             Some(robot) => robot.segments.get(body.index()).map_or("", |segment| segment.name.as_str()),
@@ -263,7 +262,7 @@ impl Schema {
         }
     }
 
-    /// All channels with the prefix that tells sensors, neurons and outputs from other values, in the order of tables.
+    /// Returns all channels in the order of tables, with the prefix of sensors, neurons and outputs.
     pub(crate) fn channels(&self) -> impl Iterator<Item = (&'static str, &Channel)> {
         let scalars = self.scalars.iter().map(|channel| ("", channel));
         let sensors = self.sensors.iter().map(|channel| ("sensor.", channel));
@@ -272,12 +271,12 @@ impl Schema {
         scalars.chain(sensors).chain(neurons).chain(outputs)
     }
 
-    /// The columns of a table of everything but bodies, contacts, rays, points and images.
+    /// Returns the columns of a table of everything except bodies, contacts, rays, points and images.
     pub fn columns(&self) -> Vec<String> {
         self.channels().map(|(prefix, channel)| format!("{prefix}{}", channel.title())).collect()
     }
 
-    /// Whether a body moves by itself: it floats, or slides in a plane, and nothing with a joint hangs on it.
+    /// Returns true for a body that moves freely: it floats or slides in a plane, and no joint is attached.
     pub(crate) fn is_thing(&self, body: BodyId) -> bool {
         let Some(robot) = &self.robot else { return false };
         let floats = |segment: &farsa_body::robot::Segment| segment.joint.kind == JointKind::Floating;
@@ -311,7 +310,7 @@ mod tests {
         let labels: Vec<&str> = schema.channels().map(|(_, channel)| channel.label.as_str()).collect();
         assert_eq!(labels, ["elbow", "", "elbow torque", "", "elbow", "", "first", "both", "both J3", ""]);
         assert_eq!(schema.columns(), plain.columns());
-        // Others stay as they are.
+        // Other channels are unchanged.
         let labelled = Channel::new("x [m]").labelled("place");
         let schema = Schema { scalars: vec![labelled], ..Schema::default() }.with_labels(&[("y", "height")]);
         assert_eq!((schema.scalars[0].label.as_str(), schema.columns()), ("place", vec![String::from("x [m]")]));

@@ -1,4 +1,4 @@
-//! Episodes as a table of comma-separated values.
+//! Episodes as comma-separated values.
 
 use std::io::{self, Write};
 
@@ -8,24 +8,24 @@ use crate::recording::schema::Schema;
 
 /// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the schema.
 ///
-/// A value that single precision can hold is written with the digits that single precision needs. Bodies, contacts,
-/// points and images are not written; to have numbers of them, record them as scalars.
+/// A value of single precision is written with the digits of single precision. Bodies, contacts, points and images are not
+/// written. Record their numbers as scalars.
 pub struct Table<W: Write> {
     out: csv::Writer<W>,
     trial: u32,
     step: u32,
     scalars: Vec<f64>,
     values: Vec<f32>,
-    /// Where neurons and outputs begin among the values.
+    /// The first index of neurons and of outputs among the values.
     starts: [usize; 2],
     written: csv::Result<()>,
 }
 
 impl<W: Write> Table<W> {
-    /// A table with its head.
+    /// Creates a table and writes its head.
     ///
     /// # Errors
-    /// What the writer says.
+    /// Errors of the writer.
     pub fn new(out: W, schema: &Schema) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
         let head = ["trial", "step", "time [s]"].map(String::from).into_iter().chain(schema.columns());
@@ -42,7 +42,7 @@ impl<W: Write> Table<W> {
         })
     }
 
-    /// Begins a trial.
+    /// Starts a trial.
     pub fn begin(&mut self, trial: u32) {
         (self.trial, self.step) = (trial, 0);
     }
@@ -50,7 +50,7 @@ impl<W: Write> Table<W> {
     /// Ends the table.
     ///
     /// # Errors
-    /// The first that the writer said.
+    /// The first error of the writer.
     pub fn finish(mut self) -> io::Result<()> {
         self.written.map_err(as_io)?;
         self.out.flush()
@@ -100,7 +100,7 @@ impl<W: Write> Recorder for Table<W> {
     }
 }
 
-/// The shortest digits that read back as the same number in the precision that holds it.
+/// Formats a number with the shortest digits that are read back exactly in its precision.
 fn digits(x: f64) -> String {
     let single = x as f32;
     if f64::from(single) == x { format!("{single:?}") } else { format!("{x:?}") }

@@ -1,11 +1,11 @@
-//! From where a page first looks.
+//! The initial camera of a page.
 
-/// How a page looks at the bodies at first.
+/// The initial camera of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum View {
-    /// From a side, to be turned.
+    /// From a side, rotatable.
     #[default]
     Free,
-    /// From above: planar arenas.
+    /// From above, for planar arenas.
     Top,
 }

@@ -1,4 +1,4 @@
-//! What wheeled robots look like: parts that are drawn, within the hull that touches.
+//! The appearance of wheeled robots: drawn parts within their hull.
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
@@ -10,33 +10,32 @@ use crate::shape::appearance::Color;
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::screen_color;
 
-/// Wheels, tracks, and what is dark between them.
+/// The color of wheels, tracks and the dark parts between them.
 const DARK: Color = [40, 43, 48];
-/// The stripe that shows where a robot looks to, and what is of light plastic.
+/// The color of the stripe that points ahead, and of bright plastic.
 const LIGHT: Color = [250, 250, 245];
-/// LEDs, whatever they show.
+/// The color of LEDs in any state.
 const LED: Color = [255, 236, 190];
-/// The width of wheels, by the hull's radius.
+/// The width of wheels, relative to the radius of the hull.
 const WIDTH: f64 = 0.22;
-/// An e-puck's wheels are narrower.
+/// The width of the narrower wheels of an e-puck.
 const NARROW: f64 = 0.1;
-/// Turns z, about which cylinders are round, to y.
+/// The rotation of z, the axis of cylinders, to y.
 const ON_AXLE: [f64; 4] = [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
 
 /// A part in the robot's frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// What it is called; empty for the body.
+    /// The name, empty for the body.
     pub(crate) name: &'static str,
     pub(crate) geometry: Geometry,
     pub(crate) place: Pose<f64>,
     pub(crate) color: Color,
 }
 
-/// The parts of a robot, its body first: of one that drives on a Khepera's, an e-puck's or a `MarXbot`'s wheels those of that robot,
-/// of another one a disc on wheels.
+/// Returns the parts of a robot, its body first, by the wheels of a Khepera, an e-puck or a `MarXbot`, otherwise a disc.
 ///
-/// All lie within the hull. Wheels are as large and as far apart as the robot's, as far as that leaves room for them there.
+/// All parts are within the hull. Wheels have the size and distance of the robot's as far as the hull permits.
 pub(crate) fn parts(robot: &MobileRobot) -> Vec<Part> {
     let drives_as = |known: MobileRobot| [known.wheel_radius, known.track] == [robot.wheel_radius, robot.track];
     let look = Look::new(robot);
@@ -51,19 +50,19 @@ pub(crate) fn parts(robot: &MobileRobot) -> Vec<Part> {
     }
 }
 
-/// The hull alone, for robots of which there are many.
+/// Returns the hull only, for large numbers of robots.
 pub(crate) fn hull(robot: &MobileRobot) -> Vec<Part> {
     let look = Look::new(robot);
     vec![look.disc("", 1.0, [0.0, 0.98], look.color), look.stripe([0.15, 0.95], 0.98)]
 }
 
-/// A colour as a lighter one, or with a negative share as a darker one.
+/// Returns a lighter color, or a darker one for a negative share.
 fn shaded(color: Color, share: f64) -> Color {
     let to = if share < 0.0 { 0.0 } else { 255.0 };
     color.map(|x| (f64::from(x) + (to - f64::from(x)) * share.abs()).round() as u8)
 }
 
-/// The lengths that parts are made of [m].
+/// The lengths of parts [m].
 struct Look {
     radius: f64,
     height: f64,
@@ -78,14 +77,14 @@ impl Look {
         Self { radius, height, wheel: wheel_radius.min(0.5 * height), track, color: screen_color(color) }
     }
 
-    /// An upright disc about the middle, from one height to another, by the hull's radius and height.
+    /// Returns a vertical disc around the center between two heights, relative to the radius and height of the hull.
     fn disc(&self, name: &'static str, radius: f64, [low, high]: [f64; 2], color: Color) -> Part {
         let [low, high] = [low, high].map(|part| part * self.height);
         let geometry = Geometry::Cylinder { radius: radius * self.radius, half_length: 0.5 * (high - low) };
         Part { name, geometry, place: Pose::at([0.0, 0.0, 0.5 * (low + high)]), color }
     }
 
-    /// The mark of ahead, from one distance of the middle to another, on what ends at a height, by the hull's radius and height.
+    /// Returns the mark of the front between two distances from the center at a height, relative to the hull.
     fn stripe(&self, [from, to]: [f64; 2], height: f64) -> Part {
         let [half, at] = [0.5 * (to - from), 0.5 * (from + to)].map(|part| part * self.radius);
         let thick = 0.005 * self.height;
@@ -94,13 +93,13 @@ impl Look {
         Part { name: "ahead", geometry, place, color: LIGHT }
     }
 
-    /// How far the outer ends of the wheels are from the middle, where these are so wide, both by the hull's radius.
+    /// Returns the distance of the outer ends of wheels of a width from the center, relative to the radius of the hull.
     fn outside(&self, width: f64) -> f64 {
         let wheel = (self.wheel / self.radius).min(1.0);
         (0.5 * (self.track / self.radius + width)).min(0.999 * Scalar::sqrt(1.0 - wheel * wheel))
     }
 
-    /// Two wheels so wide by the hull's radius, so far ahead [m].
+    /// Returns two wheels of a width relative to the radius of the hull, at a distance ahead [m].
     fn wheels(&self, name: &'static str, width: f64, ahead: f64) -> impl Iterator<Item = Part> {
         let (half, middle) = (0.5 * width * self.radius, (self.outside(width) - 0.5 * width) * self.radius);
         let geometry = Geometry::Cylinder { radius: self.wheel, half_length: half };
@@ -110,14 +109,14 @@ impl Look {
         sides.map(move |y| Part { name, geometry, place: at(y), color: DARK })
     }
 
-    /// A disc on wheels.
+    /// Returns a disc on wheels.
     fn generic(&self) -> Vec<Part> {
         let low = (0.6 * self.wheel / self.height).min(0.3);
         let body = [self.disc("", 1.0, [low, 0.98], self.color), self.stripe([0.15, 0.95], 0.98)];
         body.into_iter().chain(self.wheels("wheel", WIDTH, 0.0)).collect()
     }
 
-    /// A round board over a low body, with the wheels through it.
+    /// Returns a round board over a low body, with the wheels through it.
     fn khepera(&self) -> Vec<Part> {
         let chassis = self.outside(WIDTH) - WIDTH;
         let body = [
@@ -129,7 +128,7 @@ impl Look {
         body.into_iter().chain(self.wheels("wheel", WIDTH, 0.0)).collect()
     }
 
-    /// A translucent body under a ring of LEDs, with a camera ahead.
+    /// Returns a translucent body under a ring of LEDs, with a camera in front.
     fn e_puck(&self) -> Vec<Part> {
         let shell = self.outside(NARROW) - NARROW;
         let (board, top) = (0.66, 0.94);
@@ -142,7 +141,7 @@ impl Look {
             self.stripe([0.05, 0.68], top),
             Part { name: "camera", geometry: camera, place: camera_at, color: DARK },
         ];
-        // Of a bar through the ring both ends are to be seen, which makes two of eight.
+        // Both ends of a bar through the ring are visible, two of eight LEDs.
         let leds = |number: u8| {
             let (sine, cosine) = sin_cos((f64::from(number) + 0.5) / 16.0 * TAU);
             let half = [0.985 * self.radius, 0.06 * self.radius, 0.024 * self.height];
@@ -152,7 +151,7 @@ impl Look {
         body.into_iter().chain((0..4).map(leds)).chain(self.wheels("wheel", NARROW, 0.0)).collect()
     }
 
-    /// A body on tracks, each about two wheels, with a ring around it and a camera on its turret.
+    /// Returns a body on tracks, each around two wheels, with a ring around it and a camera on its turret.
     fn marxbot(&self) -> Vec<Part> {
         let outside = self.outside(WIDTH);
         let apart = (Scalar::sqrt((1.0 - outside * outside).max(0.0)) * 0.999 * self.radius - self.wheel).max(0.0);
@@ -176,7 +175,7 @@ mod tests {
         let known = [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()];
         let cart = MobileRobot { wheel_radius: 0.03, track: 0.1, radius: 0.1, ..MobileRobot::khepera() };
         let others = [
-            // Of `discrimination`, whose axle is longer than its hull has room for.
+            // The robot of `discrimination`, whose axle is longer than its hull permits.
             MobileRobot { radius: 0.0275, ..MobileRobot::e_puck() },
             MobileRobot { radius: 0.01, ..MobileRobot::e_puck() },
             MobileRobot { radius: 0.03, height: 0.02, ..MobileRobot::marxbot() },
@@ -188,7 +187,7 @@ mod tests {
         known.into_iter().chain(others).collect()
     }
 
-    /// Points between which a part lies.
+    /// Returns points that bound a part.
     fn corners(part: &Part) -> Vec<[f64; 3]> {
         let local: Vec<[f64; 3]> = match part.geometry {
             Geometry::Cylinder { radius, half_length } => (0..720)
@@ -243,7 +242,7 @@ mod tests {
             assert_eq!(names(&painted), names(&robot));
             let seen = parts(&painted);
             assert_eq!((seen[0].name, seen[0].color), ("", [26, 64, 217]));
-            // Ahead is a mark before the middle, alone of its name.
+            // The front is a unique mark in front of the center.
             let ahead: Vec<&Part> = seen.iter().filter(|part| part.name == "ahead").collect();
             assert!(ahead.len() == 1 && ahead[0].place.position[0] > 0.3 * robot.radius);
         }

@@ -1,4 +1,4 @@
-//! The geometries a picture is made of: where rays meet them, and what outlines them.
+//! The geometries of pictures, with their rays and outlines.
 
 use farsa_body::robot::Shape;
 use farsa_num::sin_cos;
@@ -8,59 +8,59 @@ use crate::shape::vector::{Vector, across, add, along, dot, length, scale, sub, 
 /// A geometry in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Geometry {
-    /// A ball about the origin.
+    /// A ball around the origin.
     Sphere {
         /// Radius [m].
         radius: f64,
     },
-    /// All points within `radius` of the piece of the z axis from `-half_length` to `half_length`.
+    /// All points within `radius` of the z axis from `-half_length` to `half_length`.
     Capsule {
         /// Radius [m].
         radius: f64,
         /// Half the length of the axis [m].
         half_length: f64,
     },
-    /// A solid cylinder about the piece of the z axis from `-half_length` to `half_length`.
+    /// A solid cylinder around the z axis from `-half_length` to `half_length`.
     Cylinder {
         /// Radius [m].
         radius: f64,
         /// Half the height [m].
         half_length: f64,
     },
-    /// A box about the origin.
+    /// A box around the origin.
     Box {
         /// Half the edge lengths along x, y, z [m].
         half: Vector,
     },
-    /// The half space z <= 0; pictures show a piece of its surface.
+    /// The half space z <= 0, of which pictures show a piece of the surface.
     Plane,
-    /// A flat disc about the origin, in the plane z = 0.
+    /// A flat disc around the origin in the plane z = 0.
     Disc {
         /// Radius [m].
         radius: f64,
     },
-    /// A flat rectangle about the origin, in the plane z = 0.
+    /// A flat rectangle around the origin in the plane z = 0.
     Rectangle {
         /// Half the edge lengths along x and y [m].
         half: [f64; 2],
     },
 }
 
-/// Where a ray enters a geometry.
+/// The hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
-    /// Distance along the ray [m].
+    /// The distance along the ray [m].
     pub(crate) distance: f64,
-    /// Unit normal of the surface, out of the geometry.
+    /// The outward unit normal of the surface.
     pub(crate) normal: Vector,
 }
 
-/// From where an outline is seen.
+/// The viewpoint of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sight {
-    /// From a point [m].
+    /// A point [m].
     Eye(Vector),
-    /// From far away, along a unit vector.
+    /// The unit direction of a parallel projection.
     Along(Vector),
 }
 
@@ -78,7 +78,7 @@ impl From<Shape> for Geometry {
 fn ball(origin: Vector, direction: Vector, centre: Vector, radius: f64) -> Option<Meeting> {
     let from = sub(origin, centre);
     let towards = dot(from, direction);
-    // The nearest point of the ray to the centre: its square is exact where the textbook's discriminant cancels.
+    // The nearest point of the ray to the center, whose square is exact where the usual discriminant cancels.
     let nearest = along(from, direction, -towards);
     let left = radius * radius - dot(nearest, nearest);
     let distance = -towards - left.max(0.0).sqrt();
@@ -86,7 +86,7 @@ fn ball(origin: Vector, direction: Vector, centre: Vector, radius: f64) -> Optio
         .then(|| Meeting { distance, normal: scale(along(from, direction, distance), 1.0 / radius) })
 }
 
-/// The distances between which a ray is within `half` of 0 on one axis; empty if first > last.
+/// Returns the distances between which a ray is within `half` of 0 on one axis, empty if first > last.
 fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     if direction == 0.0 {
         let inside = origin.abs() <= half;
@@ -96,7 +96,7 @@ fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The distances between which a ray is within the endless cylinder about z; empty if first > last.
+/// Returns the distances between which a ray is within the endless cylinder around z, empty if first > last.
 fn tube(origin: Vector, direction: Vector, radius: f64) -> [f64; 2] {
     let ([x, y, _], [u, v, _]) = (origin, direction);
     let square = u * u + v * v;
@@ -114,7 +114,7 @@ fn tube(origin: Vector, direction: Vector, radius: f64) -> [f64; 2] {
     [middle - half, middle + half]
 }
 
-/// `count` points of the circle about `centre` at right angles to the unit vector `normal`.
+/// Returns `count` points of the circle around `centre` perpendicular to the unit vector `normal`.
 fn circle(centre: Vector, normal: Vector, radius: f64, count: usize) -> impl Iterator<Item = Vector> {
     let [u, v] = across(normal);
     (0..count).map(move |i| {
@@ -124,7 +124,7 @@ fn circle(centre: Vector, normal: Vector, radius: f64, count: usize) -> impl Ite
 }
 
 impl Geometry {
-    /// Where a ray from `origin` along the unit vector `direction` first enters the geometry, if it starts outside.
+    /// Returns the first hit of a ray from `origin` along the unit vector `direction`, if it starts outside.
     pub(crate) fn meet(&self, origin: Vector, direction: Vector) -> Option<Meeting> {
         match *self {
             Self::Sphere { radius } => ball(origin, direction, [0.0; 3], radius),
@@ -138,7 +138,7 @@ impl Geometry {
                     let [x, y, _] = along(origin, direction, first);
                     return (first >= 0.0).then(|| Meeting { distance: first, normal: [x / radius, y / radius, 0.0] });
                 }
-                // A ray in the endless cylinder beyond an end passes through the ball at that end.
+                // A ray within the endless cylinder beyond an end passes the ball of that end.
                 ball(origin, direction, [0.0, 0.0, half_length.copysign(height)], radius)
             }
             Self::Cylinder { radius, half_length } => {
@@ -185,7 +185,7 @@ impl Geometry {
         }
     }
 
-    /// Radius of the ball about the origin that holds the geometry [m]; infinite for a plane.
+    /// Returns the radius of the ball around the origin that contains the geometry [m], infinite for a plane.
     pub(crate) fn reach(&self) -> f64 {
         match *self {
             Self::Sphere { radius } | Self::Disc { radius } => radius,
@@ -197,12 +197,12 @@ impl Geometry {
         }
     }
 
-    /// Balls whose convex hull holds the geometry and little more: centres and radii [m]; none for a plane.
+    /// Returns balls whose convex hull tightly contains the geometry, as centers and radii [m], none for a plane.
     pub(crate) fn hull(&self) -> Vec<(Vector, f64)> {
         match *self {
             Self::Sphere { radius } => vec![([0.0; 3], radius)],
             Self::Capsule { radius, half_length: z } => vec![([0.0, 0.0, -z], radius), ([0.0, 0.0, z], radius)],
-            // The corners of octagons around the circles: 1 / cos(22.5 deg) of the radius away.
+            // The corners of octagons around the circles, at 1 / cos(22.5 deg) of the radius.
             Self::Cylinder { radius, half_length } => [-half_length, half_length]
                 .into_iter()
                 .flat_map(|z| circle([0.0, 0.0, z], [0.0, 0.0, 1.0], 1.0824 * radius, 8))
@@ -217,10 +217,11 @@ impl Geometry {
         }
     }
 
-    /// Points of the surface whose convex hull in the picture outlines the geometry, `count` on every circle; none for
-    /// a plane, nor for a ball with the eye in it.
+    /// Returns points of the surface whose convex hull in the picture is the outline, `count` per circle.
+    ///
+    /// Returns none for a plane and for a ball with the eye inside.
     pub(crate) fn rim(&self, sight: Sight, count: usize) -> Vec<Vector> {
-        // A ball's outline from a point is a circle nearer to the eye than the centre, and smaller than the ball.
+        // The outline of a ball from a point is a circle nearer to the eye than the center and smaller than the ball.
         let contour = |centre: Vector, radius: f64| {
             let (centre, normal, radius) = match sight {
                 Sight::Along(direction) => (centre, direction, radius),
@@ -252,7 +253,7 @@ impl Geometry {
         }
     }
 
-    /// The flat faces, each with its outward normal and corners in turn, `count` on a circle.
+    /// Returns the flat faces with their outward normals and corners in order, `count` per circle.
     pub(crate) fn faces(&self, count: usize) -> Vec<(Vector, Vec<Vector>)> {
         let z = [0.0, 0.0, 1.0];
         match *self {
@@ -274,7 +275,7 @@ impl Geometry {
             Self::Cylinder { radius, half_length } => [-1.0, 1.0]
                 .map(|sign| (scale(z, sign), circle([0.0, 0.0, sign * half_length], z, radius, count).collect()))
                 .into(),
-            // Flat things have one face on either side.
+            // Flat shapes have a face on each side.
             Self::Disc { .. } | Self::Rectangle { .. } => {
                 let corners = self.rim(Sight::Along(z), count);
                 vec![(z, corners.clone()), (scale(z, -1.0), corners)]
@@ -289,7 +290,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Distance to the surface, negative inside.
+    /// Returns the distance to the surface, negative inside.
     fn signed_distance(geometry: &Geometry, p: Vector) -> f64 {
         let outside = |d: [f64; 3]| length(d.map(|x| x.max(0.0))) + d[0].max(d[1]).max(d[2]).min(0.0);
         match *geometry {
@@ -313,7 +314,7 @@ mod tests {
         }
     }
 
-    /// The distance at which small steps of the signed distance come to the surface.
+    /// Returns the distance at which small steps of the signed distance reach the surface.
     fn marched(geometry: &Geometry, origin: Vector, direction: Vector) -> Option<f64> {
         let mut distance = 0.0;
         for _ in 0..20_000 {
@@ -366,11 +367,11 @@ mod tests {
                 }
                 (None, None) => {}
                 (None, Some(distance)) => {
-                    // A ray that only just touches.
+                    // A tangent ray.
                     let inner = along(origin, direction, distance + 1e-4);
                     prop_assert!(signed_distance(&geometry, inner) > -1e-4, "missed at {distance}");
                 }
-                // No march goes as far as a plane may be.
+                // Marching does not reach distant planes.
                 (Some(meeting), None) => prop_assert!(meeting.distance > 19.0, "met {meeting:?}, where nothing is"),
             }
         }

@@ -1,13 +1,12 @@
-//! Shapes in space.
-//!
-//! - `vector`: three numbers, and what is computed with them
-//! - `geometry`: spheres, capsules, boxes and others, how rays meet them and what outlines them
-//! - `appearance`: a geometry in its place, with role and colour
-//! - `scene_object`: a shape that no robot's description holds
+//! Shapes of pictures and pages: geometry, role and color.
 
+/// The role, color and place of shapes.
 pub(crate) mod appearance;
+/// Spheres, capsules, boxes and others, with their rays and outlines.
 pub(crate) mod geometry;
+/// Shapes that no robot contains.
 pub(crate) mod scene_object;
+/// Vectors of three numbers.
 pub(crate) mod vector;
 
 pub use appearance::{Color, Instance, OKABE_ITO, Role};

@@ -1,4 +1,4 @@
-//! What there is to see beside a robot's description.
+//! Shapes that no robot contains.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -6,68 +6,68 @@ use farsa_body::ports::BodyId;
 use crate::shape::appearance::{Color, Instance, Role};
 use crate::shape::geometry::Geometry;
 
-/// A shape to be seen that no [`Robot`](farsa_body::robot::Robot) holds: a wheeled robot's hull, a wall, an area on the ground.
+/// A visible shape that no [`Robot`](farsa_body::robot::Robot) contains, such as a hull, a wall or an area on the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObject {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// The body it moves with; `None` for what stands.
+    /// The body it moves with, `None` for a fixed shape.
     pub body: Option<BodyId>,
     /// Its geometry.
     pub geometry: Geometry,
     /// Its frame in the body's frame, or in the world.
     pub placement: Pose<f64>,
-    /// What it is to the viewer.
+    /// Its role.
     pub role: Role,
-    /// Its colour; `None` for that of its role.
+    /// Its color, `None` for that of its role.
     pub color: Option<Color>,
-    /// When it is seen; `None` for always.
+    /// The condition of its visibility, `None` for always.
     pub shown: Option<ShownWhile>,
 }
 
-/// The condition on which a shape is seen: while a channel has a value from `low` to `high`.
+/// A condition of visibility: a channel has a value from `low` to `high`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownWhile {
-    /// The channel as [`Schema::columns`](crate::Schema::columns) names it; with another name the shape is never seen.
+    /// The channel, by its name in [`Schema::columns`](crate::Schema::columns). With an unknown name the shape is never visible.
     pub channel: String,
     /// The least value.
     pub low: f64,
-    /// The greatest value.
+    /// The largest value.
     pub high: f64,
 }
 
 impl SceneObject {
-    /// A standing shape in its role's colour.
+    /// Creates a fixed shape in the color of its role.
     pub fn new(name: &str, geometry: Geometry, placement: Pose<f64>, role: Role) -> Self {
         Self { name: name.into(), body: None, geometry, placement, role, color: None, shown: None }
     }
 
-    /// The same shape, moving with a body.
+    /// Returns the shape moving with a body.
     pub fn on_body(self, body: BodyId) -> Self {
         Self { body: Some(body), ..self }
     }
 
-    /// The same shape in this colour.
+    /// Returns the shape in this color.
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// The same shape, seen while a channel, as [`Schema::columns`](crate::Schema::columns) names it, has a value from `low` to
-    /// `high`.
+    /// Returns the shape with a condition of visibility: a channel of [`Schema::columns`](crate::Schema::columns) has a value from
+    /// `low` to `high`.
     ///
-    /// Pages keep 65535 values of a channel between its least and its greatest: bounds are best between values that it has.
+    /// Pages round a channel to 65535 values, so choose bounds between values that occur.
     pub fn shown_while(self, channel: &str, low: f64, high: f64) -> Self {
         Self { shown: Some(ShownWhile { channel: channel.into(), low, high }), ..self }
     }
 
-    /// The shape in its place, when its body is at `pose`.
+    /// Returns the shape placed by the `pose` of its body.
     pub(crate) fn placed(&self, pose: &Pose<f64>) -> Instance {
         let placed = Instance::new(self.geometry, pose.compose(&self.placement), self.role);
         Instance { color: self.color, ..placed }
     }
 }
 
-/// A colour of light, red, green and blue [0..1], as screens take it.
+/// Converts a color of light, red, green and blue [0..1], to a screen color.
 pub fn screen_color(light: [f64; 3]) -> Color {
     light.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

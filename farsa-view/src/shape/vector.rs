@@ -1,57 +1,57 @@
-//! Vectors of three numbers, for pictures.
+//! Vectors of three numbers.
 
 /// A point or a direction in space.
 pub(crate) type Vector = [f64; 3];
 
-/// a + b.
+/// Returns a + b.
 pub(crate) fn add(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// a - b.
+/// Returns a - b.
 pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// a times s.
+/// Returns a times s.
 pub(crate) fn scale(a: Vector, s: f64) -> Vector {
     [a[0] * s, a[1] * s, a[2] * s]
 }
 
-/// The point at `distance` on the ray from `origin` along `direction`.
+/// Returns the point at `distance` on the ray from `origin` along `direction`.
 pub(crate) fn along(origin: Vector, direction: Vector, distance: f64) -> Vector {
     add(origin, scale(direction, distance))
 }
 
-/// The point that divides the way from a to b at `share`.
+/// Interpolates from a to b at `share`.
 pub(crate) fn mix(a: Vector, b: Vector, share: f64) -> Vector {
     along(a, sub(b, a), share)
 }
 
-/// The scalar product.
+/// Returns the scalar product.
 pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product.
+/// Returns the vector product.
 pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The Euclidean length.
+/// Returns the Euclidean length.
 pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The vector of length 1 in the direction of a; 0 for 0.
+/// Returns the unit vector in the direction of a, or 0 for 0.
 pub(crate) fn unit(a: Vector) -> Vector {
     let length = length(a);
     if length > 0.0 { scale(a, 1.0 / length) } else { a }
 }
 
-/// Two unit vectors at right angles to the unit vector a and to each other.
+/// Returns two unit vectors perpendicular to the unit vector a and to each other.
 pub(crate) fn across(a: Vector) -> [Vector; 2] {
-    // The coordinate axis that is farthest from a keeps the product long.
+    // The coordinate axis farthest from a gives the longest product.
     let helper = if a[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let u = unit(cross(helper, a));
     [u, cross(a, u)]

@@ -11,7 +11,7 @@ use crate::command::arguments::shared::VariantArgs;
 pub(crate) struct NewArgs {
     /// The name of the experiment, written to NAME.toml
     pub(crate) name: String,
-    /// The template; an unknown name lists all [default: the first]
+    /// The template (an unknown name lists all) [default: the first]
     #[arg(long, value_name = "TEMPLATE")]
     pub(crate) from: Option<String>,
 }

@@ -28,7 +28,7 @@ impl GenotypeVariant {
     /// Returns the plan of an experiment under this condition with these settings and tables.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables without a setting of the experiment.
+    /// [`Error::Unknown`] and [`Error::Setting`], and [`Error::Usage`] for tables without a setting of the experiment.
     pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
         let mut plan = self.variant.plan(experiment)?;
         if let Some(directory) = &self.ir_tables {
@@ -80,7 +80,7 @@ pub(crate) struct EvaluateArgs {
     /// Random trials
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
     pub(crate) trials: u32,
-    /// The seed, as in a test; with --stdin as in a run
+    /// The seed, as in a test (with --stdin as in a run)
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]

@@ -57,7 +57,7 @@ impl WorkerArgs {
     /// Creates a pool of threads.
     ///
     /// # Errors
-    /// Those of [`Pool::new`].
+    /// Errors of [`Pool::new`].
     pub(crate) fn pool<'e>(&self, plan: &Plan<'e>) -> Result<Pool<'e>, Error> {
         Pool::new(plan, self.threads(), self.lanes())
     }
@@ -65,7 +65,7 @@ impl WorkerArgs {
     /// Checks that a plan can be evaluated, with one thread to save time.
     ///
     /// # Errors
-    /// Those of [`Pool::new`].
+    /// Errors of [`Pool::new`].
     pub(crate) fn check(&self, plan: &Plan<'_>) -> Result<(), Error> {
         Pool::new(plan, 1, self.lanes()).map(drop)
     }
@@ -73,7 +73,7 @@ impl WorkerArgs {
     /// Creates a pool for one of several processes, by default with its part of the processors.
     ///
     /// # Errors
-    /// Those of [`Pool::new`].
+    /// Errors of [`Pool::new`].
     pub(crate) fn pool_shared<'e>(&self, plan: &Plan<'e>, sharing: usize) -> Result<Pool<'e>, Error> {
         let threads = self.threads.threads.map_or_else(|| self.threads() / sharing.max(1), usize::from);
         Pool::new(plan, threads, self.lanes())
@@ -90,7 +90,7 @@ impl WorkerArgs {
 
 #[derive(Args)]
 struct Threads {
-    /// Threads; results do not depend on their number [default: all processors]
+    /// Threads (results do not depend on their number) [default: all processors]
     #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=4096))]
     threads: Option<u16>,
 }
@@ -112,10 +112,10 @@ pub(crate) struct WorldArgs {
 /// Parallel trials.
 #[derive(Args)]
 struct LanesArgs {
-    /// Parallel trials per thread; results do not depend on them
+    /// Parallel trials per thread (results do not depend on them)
     #[arg(long, value_name = "L", default_value = "auto", value_parser = PossibleValuesParser::new(["1", "8", "16", "auto"]))]
     lanes: String,
-    /// Instructions of parallel trials; results do not depend on them
+    /// Instructions of parallel trials (results do not depend on them)
     #[arg(long, value_name = "SET", default_value = "auto", value_parser = simd())]
     simd: Simd,
 }

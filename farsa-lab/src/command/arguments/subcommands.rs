@@ -143,7 +143,7 @@ pub(crate) struct RunArgs {
     /// Rename an existing run to DIR.old-1, or the next free number
     #[arg(long, conflicts_with_all = ["resume", "replications"])]
     pub(crate) force: bool,
-    /// Make N runs with consecutive seeds; repeated or parallel commands continue with unfinished runs
+    /// Make N runs with consecutive seeds (repeated or parallel commands continue with unfinished runs)
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replications: Option<u32>,
     /// Make only the K-th run, from 1, for a task of a scheduler's array
@@ -152,10 +152,10 @@ pub(crate) struct RunArgs {
     /// Make G runs in parallel, each on a part of the ranks
     #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = value_parser!(u32).range(1..))]
     pub(crate) groups: Option<u32>,
-    /// Read settings from a TOML file; --set takes precedence
+    /// Read settings from a TOML file (--set takes precedence)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
-    /// Continue the run in a directory; generations may be added
+    /// Continue the run in a directory (generations may be added)
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) resume: Option<PathBuf>,
     /// Write the summary as JSON
@@ -175,7 +175,7 @@ pub(crate) struct BenchArgs {
     pub(crate) run: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
-    /// Duration in seconds; only the first generation is interrupted
+    /// Duration in seconds (only the first generation is interrupted)
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     pub(crate) seconds: f64,
     /// Write JSON instead of the table
@@ -272,13 +272,13 @@ pub(crate) struct ReplayArgs {
     cases: CaseArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
-    /// Change parts of the controller, such as neuron:3,link:2-5,sensor:touch; a page shows both trials
+    /// Change parts of the controller, such as neuron:3,link:2-5,sensor:touch (a page shows both trials)
     #[arg(long, value_name = "LIST", conflicts_with_all = ["compare", "protocol"])]
     pub(crate) lesion: Option<String>,
     /// A new file for the steps as CSV [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
-    /// A page for a browser; an existing page is replaced
+    /// A page for a browser (an existing page is replaced)
     #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
     /// Another run, whose trial the page shows for comparison
@@ -328,7 +328,7 @@ pub(crate) struct LiveArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// The file of the page; an existing page is replaced
+    /// The file of the page (an existing page is replaced)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) html: PathBuf,
     /// Generations whose best individuals are included, such as 0,10,100 [default: the last]
