@@ -766,9 +766,9 @@ async function damaged(browser, html, name) {
     return withData(html, data);
   };
   const cases = [
-    ["cut in the style", html.slice(0, html.indexOf("<style>") + 900), /did not load whole/],
-    ["cut in the body", html.slice(0, script - 400), /did not load whole/],
-    ["cut in the script", html.slice(0, Math.round((script + start) / 2)), /did not load whole/],
+    ["cut in the style", html.slice(0, html.indexOf("<style>") + 900), /did not load completely/],
+    ["cut in the body", html.slice(0, script - 400), /did not load completely/],
+    ["cut in the script", html.slice(0, Math.round((script + start) / 2)), /did not load completely/],
     ["cut before the data", html.slice(0, start - mark.length), /data is missing/],
     ["cut where the data begins", html.slice(0, start), /data is missing/],
     ["cut early in the data", inside(0.05), /not valid JSON/],
@@ -964,7 +964,7 @@ async function evolves(browser) {
   check("evolution in the page is that of `farsa run --resume`", known > 0 && log.length - known === 3 && bred === JSON.stringify(log.slice(known)), `${bred} ${JSON.stringify(log.slice(known))}`);
   const [said, points] = await browser.run(() => [document.querySelector("#evolution p").textContent, [...document.querySelectorAll("#evolution polyline")].map((line) => line.getAttribute("points").split(" ").length)]);
   check("its fitness is told and drawn", said.startsWith(`Generation ${log.length - 1}: best `) && points.join() === `${log.length},${log.length}`, `${said} ${points}`);
-  await press("Show its champion");
+  await press("Show champion");
   await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.startsWith("generation ${log.length - 1}, evolved here") && document.querySelector("#live p.soft").textContent === ""`));
   const champion = await browser.run(() => [farsa.trials.length, document.querySelectorAll("#live select")[0].options.length]);
   check("its champions are there to be looked at", champion[0] === 1 && champion[1] > 1, champion.join());
@@ -978,10 +978,10 @@ async function evolves(browser) {
   await browser.until(() => farsa.trials[0].name.endsWith("is recorded"));
   const name = await browser.run(() => farsa.trials[0].name);
   check("any robot can be recorded", robots.length === 3 && name.endsWith(`; ${robots[2]} is recorded`), `${name} ${robots}`);
-  await press("Evolve on");
+  await press("Continue evolution");
   await browser.until(new Function(`return farsa.live.rows.length > ${log.length}`));
   await press("Stop");
-  await browser.until(new Function(`return [...document.querySelectorAll("#evolution button")].some((one) => one.textContent === "Evolve on" && !one.disabled)`));
+  await browser.until(new Function(`return [...document.querySelectorAll("#evolution button")].some((one) => one.textContent === "Continue evolution" && !one.disabled)`));
   const stopped = await browser.run(() => farsa.live.rows.length);
   await new Promise((done) => setTimeout(done, 300));
   check("it stops", (await browser.run(() => farsa.live.rows.length)) === stopped);
@@ -1002,9 +1002,9 @@ async function serves(browser) {
   check("a served page sees its run go on, generation after generation", added.length > 2 && added.every((number, i) => number === first + i), added.join());
   check("it does not go on by itself", await browser.run(() => document.querySelector("#evolution button").hidden));
   await browser.run(() => document.querySelectorAll("#evolution button")[1].click());
-  await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.includes("found since") && document.querySelector("#live p.soft").textContent === ""`));
+  await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.includes(", new") && document.querySelector("#live p.soft").textContent === ""`));
   check("it shows the champion that the run has come to", await browser.run(() => farsa.error === null && farsa.ticks > 1));
-  const found = await browser.run(() => [...document.querySelectorAll("#live select")[0].options].map((one) => one.textContent).filter((text) => text.includes("found since")));
+  const found = await browser.run(() => [...document.querySelectorAll("#live select")[0].options].map((one) => one.textContent).filter((text) => text.includes(", new")));
   check("of each population", found.length === 2 && ["predator", "prey"].every((name, i) => found[i].endsWith(name)), found.join());
   if (shots) writeFileSync(join(shots, "served.png"), await browser.screenshot());
   told("SIGSTOP");
@@ -1058,7 +1058,7 @@ async function keyed(browser, { press }) {
   await browser.keys("]");
   check("keys: ] chooses another body and says so", (await choice()) === `true,${await said()}` && (await said()) !== "sphere", await choice());
   await browser.keys("[" + KEY.right.repeat(3));
-  check("keys: arrows move it, and the page says how far", /^sphere, [\d.]+ (mm|cm): Enter does it/.test(await said()), await said());
+  check("keys: arrows move it, and the page says how far", /^sphere, [\d.]+ (mm|cm): Enter applies it/.test(await said()), await said());
   await browser.keys(KEY.escape);
   await settled(browser);
   check("keys: escape leaves it", (await browser.run(() => farsa.trials.length === 1 && !farsa.trials[0].held)) && (await chips()) === "");
@@ -1083,7 +1083,7 @@ async function keyed(browser, { press }) {
   await press("Push bodies");
   await browser.keys(KEY.left.repeat(5));
   const pull = await browser.run(() => farsa.trials[0].contacts(farsa.tick).filter(({ pair }) => pair.join() === "sphere,outside").length);
-  check("keys: what pulls is shown as a force", pull === 1 && /^sphere, [\d.]+ N: Enter does it/.test(await said()), `${pull} ${await said()}`);
+  check("keys: what pulls is shown as a force", pull === 1 && /^sphere, [\d.]+ N: Enter applies it/.test(await said()), `${pull} ${await said()}`);
   await browser.keys(KEY.enter);
   await changed();
   const found = await browser.run(() => {
@@ -1156,7 +1156,7 @@ async function moves(browser) {
   // The hand hangs on the arm.
   await browser.run(() => farsa.live.put({ step: 10, body: farsa.trials[0].bodies.indexOf("palm"), position: [0, 0, 1], rotation: [0, 0, 0, 1] }));
   const said = await browser.run(() => document.querySelector("#live p.soft").textContent);
-  check("a body that hangs on others says so", /palm hangs on something/.test(said), said);
+  check("a body that hangs on others says so", /palm is attached/.test(said), said);
   const [called, changed] = await browser.run(() => {
     const list = document.querySelector("#node");
     list.value = farsa.trials[0].network.nodes.findIndex((node) => node.name === "J4 agonist");

@@ -107,7 +107,7 @@ mod tests {
         let one = LogCurves::from_lines(&lines, 1).draw("run", &names[..1]);
         let height =
             |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
-        assert_eq!(height(&both), 2 * height(&one));
+        assert_eq!(height(&both), 2.0 * height(&one));
         assert!(one.contains(">run<") && both.matches("generation").count() == 2, "{one}");
     }
 }

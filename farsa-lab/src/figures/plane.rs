@@ -51,7 +51,10 @@ impl Limits {
     /// Returns about `count` multiples of 1, 2 or 5 times a power of ten.
     pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
         let least = (self.high - self.low) / count as f64 / self.part;
-        let power = 10.0_f64.powi(least.log10().floor() as i32);
+        // The exponent is read from text, because logarithms differ between platforms.
+        let scientific = format!("{least:e}");
+        let exponent = scientific.split_once('e').map_or("0", |(_, exponent)| exponent);
+        let power: f64 = format!("1e{exponent}").parse().unwrap_or(1.0);
         let step = [1.0, 2.0, 5.0].map(|m| m * power).into_iter().find(|step| *step >= 0.999 * least);
         let step = step.unwrap_or(10.0 * power);
         let [first, last] = [(self.low / self.part / step).ceil(), (self.high / self.part / step).floor()];

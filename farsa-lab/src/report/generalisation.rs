@@ -48,9 +48,7 @@ pub(crate) fn generalisation(groups: &[HeldOut<'_>]) -> Vec<Block> {
     }
     let least = percent(GENERALISES);
     let mut blocks = vec![
-        Block::Text(format!(
-            "Runs that generalize: at least {least} of the trials of a held-out case succeed."
-        )),
+        Block::Text(format!("Runs that generalize: at least {least} of the trials of a held-out case succeed.")),
         Block::Table(table),
     ];
     let mut tests = Table::new(&["first", "second", "of the first", "of the second", "p"]);

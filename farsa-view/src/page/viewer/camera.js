@@ -1,9 +1,9 @@
-// Where a trial is seen from: matrices, bounds of all that is shown, and the camera.
+// The camera: matrices, bounds of visible shapes, and views.
 
 const TAN = 0.3;
-// From the scene to the camera, by the names of `farsa draw`; a trial's own view is found by what moves.
+// Directions from the scene to the camera, by the names of `farsa draw`. `overview` depends on the moving bodies.
 const VIEWS = {"overview": null, "three-quarter": [0.8, -0.75, 0.62], front: [1, 0, 0.3], side: [0, -1, 0.2], top: null, close: [1, -0.1, 0.34]};
-// How far around a thing `close` looks, in its radii.
+// The width of the view `close` in radii of the thing.
 const AROUND = 4.5;
 
 // 1, 2 or 5 times a power of ten, not below x.
@@ -22,9 +22,9 @@ const axesOf = (back) => {
 	return [right, cross(back, right), back];
 };
 
-// Where a camera's matrix puts a place: right, up, depth, and by what they are to be divided.
+// Transforms a place by a camera's matrix: right, up, depth, and the divisor.
 const through = (matrix, p) => list(4, (r) => dot([matrix[r], matrix[r + 4], matrix[r + 8]], p) + matrix[r + 12]);
-// In the picture, from its upper left corner in its widths and heights; null behind the eye.
+// The place in the picture from its upper left corner, in widths and heights, null behind the eye.
 const shownAt = (matrix, p) => {
 	const [x, y, , w] = through(matrix, p);
 	return w > 0 ? [0.5 + x/w/2, 0.5 - y/w/2] : null;
@@ -33,7 +33,7 @@ const shownAt = (matrix, p) => {
 const boundsOf = (balls) => [[min, -1], [max, 1]].map(([most, sign]) => [0, 1, 2].map((i) => most(...balls.map((b) => b.at[i] + sign*b.radius))));
 const middleOf = ([low, high]) => mul(add(low, high), 0.5);
 
-// Once for each trial; where it is seen from above, every body of a robot is a robot.
+// Prepares a trial. From above, every body of a robot counts as a robot.
 function survey(trial, fromAbove) {
 	const {ticks, bodies, shapes} = trial;
 	const step = max(1, floor(ticks/60));
@@ -44,7 +44,7 @@ function survey(trial, fromAbove) {
 			if (kind !== "plane") for (const s of [-1, 1]) floors.push({at: add(position, [s*x, s*y, 0]), radius: 0});
 			continue;
 		}
-		// A long shape by its two ends, so that the picture is no wider than it is.
+		// A long shape counts by its two ends, so that the view is no wider than needed.
 		for (let t = 0; t < (body < 0 ? 1 : ticks); t += step) {
 			const pose = body < 0 ? HOME : trial.pose(t, body);
 			for (const z of new Set([-long, long])) {
@@ -54,7 +54,7 @@ function survey(trial, fromAbove) {
 		}
 	}
 	if (!balls.length) balls.push({at: [0, 0, 0], radius: 1});
-	// Of a robot of many bodies only the one that goes farthest leaves a trail.
+	// Only the farthest moving body of a robot of many bodies has a trail.
 	const tints = Object.values(WORDS);
 	const moving = bodies.flatMap((name, body) => {
 		const role = shapes.find((s) => s.body === body)?.role;
@@ -70,7 +70,7 @@ function survey(trial, fromAbove) {
 	Object.assign(trial, {balls, floors, moving, trails, has, force: forces[floor(forces.length*0.95)] || 1});
 }
 
-// One camera for both views: trials are compared from the same place.
+// One camera for both views, so that trials are compared from the same viewpoint.
 class Camera {
 	constructor(top) {
 		Object.assign(this, {name: top ? "top" : "overview", top, followed: null, carried: null});
@@ -81,7 +81,7 @@ class Camera {
 		return top ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : axesOf([cos(yaw)*level, sin(yaw)*level, sin(pitch)]);
 	}
 
-	// Frames what moves, with the things in front, or from where the view's name says; `near` is where a thing is at present.
+	// Fits the view to what moves, with things in front or from a named direction. `near` is the present place of a thing.
 	frame(trials, aspect, near) {
 		this.top = this.name === "top";
 		const all = trials.flatMap((trial) => trial.balls);
@@ -108,7 +108,7 @@ class Camera {
 			this.target = near;
 			this.distance = AROUND*things[0].radius/(TAN*min(1, aspect));
 		}
-		// Walls and areas are seen from above, unless they are far larger than what moves.
+		// The view from above includes walls and areas, unless they are much larger than the moving bodies.
 		const span = ([low, high]) => max(high[0] - low[0], high[1] - low[1]);
 		const wide = boundsOf([...all, ...trials.flatMap((trial) => trial.floors)]);
 		const flat = span(wide) < 4*span(bounds) ? wide : bounds;
@@ -117,7 +117,7 @@ class Camera {
 		this.carried = null;
 	}
 
-	// Moves along with what is followed, which is at this place; begins by bringing it into the middle, but in a view from above.
+	// Moves with the followed body at this place. Centers it first, except from above.
 	carry(place) {
 		const way = place && (this.carried ? sub(place, this.carried) : this.top ? [0, 0, 0] : sub(place, this.target));
 		if (way) {
@@ -127,12 +127,12 @@ class Camera {
 		this.carried = place;
 	}
 
-	// Brings a place into the middle.
+	// Centers a place.
 	centre(place) {
 		this[this.top ? "middle" : "target"] = place;
 	}
 
-	// Where a ray begins and its direction, through a place of the picture in half heights from its middle.
+	// The start and direction of a ray through a place of the picture, in half heights from its middle.
 	ray(x, y) {
 		const [right, up, back] = this.axes();
 		const aside = add(mul(right, x), mul(up, y));
@@ -159,7 +159,7 @@ class Camera {
 		this[what] = add(this[what], mul(sub(mul(up, dy), mul(right, dx)), 2*(this.top ? this.half : TAN*this.distance)));
 	}
 
-	// What is seen at a place stays there; x and y are in half heights of the picture from its middle.
+	// Zooms around a place, with x and y in half heights of the picture from its middle.
 	zoom(factor, x, y) {
 		const [right, up] = this.axes();
 		const [what, size, tan] = this.top ? ["middle", "half", 1] : ["target", "distance", TAN];
@@ -167,7 +167,7 @@ class Camera {
 		this[size] *= factor;
 	}
 
-	// Round numbers, for the legend.
+	// Round numbers for the legend.
 	arrow() {
 		return {long: rounded(this.radius*0.12), newtons: rounded(this.force*0.4)};
 	}

@@ -1,6 +1,6 @@
 "use strict";
-// The data of the page, docs/replay-format.md. All is checked before anything is drawn: a page that was cut or changed
-// says so and shows no number that was not recorded.
+// The data of the page, docs/replay-format.md. Everything is checked first, so that a cut or changed page shows an error and no
+// wrong number.
 
 const {abs, ceil, cos, floor, hypot, max, min, round, sin} = Math;
 
@@ -53,7 +53,7 @@ class Trial {
 		const {ticks, bodies, points, blocks} = json;
 		const of = `of trial ${index}`;
 		need(whole(ticks) && ticks, `there are no ticks ${of}`);
-		need([bodies, points, json.pairs, json.position_origin].every(Array.isArray), `a list ${of} is none`);
+		need([bodies, points, json.pairs, json.position_origin].every(Array.isArray), `a list ${of} is missing`);
 		let bytes;
 		try {
 			bytes = bytesOf(json.data);
@@ -63,7 +63,7 @@ class Trial {
 		need(bytes.length === json.bytes, `the data ${of} has ${bytes.length} bytes where ${json.bytes} were written`);
 		const crc = crc32(bytes);
 		need(crc === json.crc32, `the data ${of} was changed: its crc32 is ${crc}, ${json.crc32} was written`);
-		// Every machine with a browser is little-endian, so blocks are read where they lie.
+		// Every machine with a browser is little-endian, so blocks are read in place.
 		const block = (name, size, each) => {
 			const from = blocks[name];
 			need(whole(from) && from%4 === 0 && from + size*each <= bytes.length, `block ${name} ${of} is out of range`);
@@ -76,7 +76,7 @@ class Trial {
 		this.pushes = [];
 		this.poses = block("poses", 7*ticks*bodies.length, 2);
 		this.marks = block("points", 3*ticks*points.length, 2);
-		// Where each tick begins: they differ in length.
+		// The first word of each tick. Ticks differ in length.
 		[this.contactStarts, this.rayStarts] = ["contacts", "rays"].map((name) => {
 			let word = block(name, 0, 2);
 			return list(ticks, () => {
@@ -106,7 +106,7 @@ class Trial {
 		if (json.network) this.network = this.readNetwork(json.network, block, of);
 	}
 
-	// Where an image's pixels begin at each tick, in words; NaN if there are none.
+	// The first word of an image's pixels at each tick, NaN without an image.
 	readImage({name, size: [columns, rows]}, i, count, block, of) {
 		const {ticks, words} = this;
 		const [from, first] = [block("image_starts", 2*ticks*count, 2) + 2*i*ticks, block("pixels", 0, 2)];
@@ -118,7 +118,7 @@ class Trial {
 		return {name, columns, rows, starts};
 	}
 
-	// The pixels of images on the ground, each with the ticks at which it changes and to what.
+	// The pixels of images on the ground with their changes.
 	readGround(images, block, of) {
 		const {ticks, words} = this;
 		let word = images[0] && block("ground_pixels", 0, 2);
@@ -144,7 +144,7 @@ class Trial {
 			end = max(end, first + count);
 			sum += whole(first) ? count : NaN;
 		}
-		// Nothing is read more often than it could have been written.
+		// A forged network must not read more than was written.
 		need(sum <= this.words.length, `the network ${of} is out of range`);
 		const weights = block("weights", end, 4);
 		const made = [];
@@ -172,7 +172,7 @@ class Trial {
 		return {position: this.place(word), rotation: unit([...this.signed.subarray(word + 3, word + 7)])};
 	}
 
-	// Between two ticks: bodies move there, values do not.
+	// The pose between two ticks. Values are not interpolated.
 	between(tick, body) {
 		const f = tick%1;
 		const a = this.pose(floor(tick), body);
@@ -193,7 +193,7 @@ class Trial {
 		return list(this.words[start], (i) => read(start + 1 + 7*i));
 	}
 
-	// Where pairs touch, and what pushes from outside.
+	// Contacts of pairs, and external pushes.
 	contacts(tick) {
 		const touching = this.each(this.contactStarts[floor(tick)], (word) =>
 			({pair: this.pairs[this.words[word]], point: this.place(word + 1), force: mul(this.signed.subarray(word + 4), this.force_unit)}));
@@ -208,7 +208,7 @@ class Trial {
 		return this.each(this.rayStarts[floor(tick)], (word) => ({from: this.place(word), to: this.place(word + 3), met: this.words[word + 6]}));
 	}
 
-	// What a camera saw at a tick, red, green, blue and opacity of each pixel, or null.
+	// The image of a camera at a tick as red, green, blue and opacity of each pixel, or null.
 	image(tick, i) {
 		const {columns, rows, starts} = this.images[i];
 		const start = starts[floor(tick)];

@@ -1,4 +1,4 @@
-// Evolution that goes on in the page: workers share each generation, and all tell the strategy the same.
+// Evolution in the page. Workers share each generation, and all report the same outcomes to their strategies.
 
 const CURVES = [["best", 1], ["mean", 2]];
 
@@ -20,7 +20,7 @@ function paintFitness(svg, rows) {
 
 const shortest = (x) => (x === null ? "failed" : `${+x.toPrecision(4)}`);
 
-// The panel, and how evolution goes on; `open` makes one more agent that stands where it is told, `show` shows individuals under names.
+// The panel of evolution. `open` creates an agent with a state, `show` shows named individuals.
 function evolutionOf({live: {about, standing, served}}, open, show) {
 	const rows = [...about.history];
 	const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
@@ -29,7 +29,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	svg.setAttribute("role", "img");
 	const [said, status] = [make("p"), make("p", "soft")];
 	let [workers, going, latest] = [null, null, null];
-	const own = {go: button("Evolve on", () => toggle()), champion: button("Show its champion", champion)};
+	const own = {go: button("Continue evolution", () => toggle()), champion: button("Show champion", champion)};
 	own.champion.disabled = true;
 	const panel = make("section", "", make("h2", "", "Evolution"), svg, said, make("div", "bar", own.go, own.champion), status);
 	panel.id = "evolution";
@@ -38,12 +38,12 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	own.go.disabled = !standing;
 	own.go.hidden = served;
 	if (served) hear();
-	else if (about.standstill) status.textContent = `It cannot go on here: ${about.standstill}.`;
+	else if (about.standstill) status.textContent = `Evolution cannot continue here: ${about.standstill}.`;
 
 	// The best of each population.
 	function champion() {
 		const names = about.populations.map((name) => `: ${name}`);
-		return show(latest, latest.map((_, i) => `${served ? ", found since" : ", evolved here"}${names[i] ?? ""}`));
+		return show(latest, latest.map((_, i) => `${served ? ", new" : ", evolved here"}${names[i] ?? ""}`));
 	}
 
 	function tell() {
@@ -53,7 +53,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 		said.replaceChildren(`Generation ${number}: `, make("b", "best", `best ${shortest(best)}`), ", ", make("b", "mean", `mean ${shortest(mean)}`));
 	}
 
-	// One generation: each worker evaluates its part, then all are told all.
+	// Runs a generation: each worker evaluates a part, and all receive all outcomes.
 	async function generation() {
 		if (!workers) {
 			const from = await new Response(unpacked(standing)).json();
@@ -68,11 +68,11 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 		latest = bred.champions;
 		own.champion.disabled = false;
 		tell();
-		status.textContent = `${((performance.now() - before)/1000).toFixed(2)} s a generation on ${workers.length} workers`;
+		status.textContent = `${((performance.now() - before)/1000).toFixed(2)} s per generation with ${workers.length} workers`;
 		return bred;
 	}
 
-	// Goes on for so many generations, or until it is told to stop.
+	// Continues for a number of generations, or until it is stopped.
 	async function run(count = Infinity) {
 		const mine = going = {};
 		own.go.textContent = "Stop";
@@ -80,23 +80,23 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 		try {
 			while (going === mine && all.length < count) {
 				all.push(await generation());
-				// What a page shows is bounded.
+				// An endless evolution does not collect results.
 				if (count === Infinity) all.length = 0;
 			}
 		} catch (error) {
 			status.textContent = error.message;
 		}
 		if (going === mine) going = null;
-		own.go.textContent = "Evolve on";
+		own.go.textContent = "Continue evolution";
 		own.go.disabled = false;
 		return all;
 	}
 
-	// Hears what the run comes to from who serves the page.
+	// Receives new generations from the server.
 	function hear() {
 		const events = new EventSource(`events?from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
-		events.onopen = () => (status.textContent = "As the run goes on.");
-		events.onerror = () => (status.textContent = "Nobody serves this page now; it asks again.");
+		events.onopen = () => (status.textContent = "Connected to the run.");
+		events.onerror = () => (status.textContent = "The server does not answer. The page tries again.");
 		events.addEventListener("fitness", ({data}) => {
 			rows.push(...JSON.parse(data).filter(([number]) => number > (rows.at(-1)?.[0] ?? -1)));
 			tell();

@@ -1,4 +1,4 @@
-// What the views show, recorded as a film in a file of the reader's.
+// Records the views as a video file.
 
 function filmOf(views, done) {
 	const canvas = make("canvas");
@@ -6,11 +6,11 @@ function filmOf(views, done) {
 	const parts = [];
 	let recorder;
 
-	// The views side by side, as they have just been drawn.
+	// Copies the drawn views side by side.
 	function take() {
 		const shown = views().map((view) => view.canvas);
 		const [width, height] = [shown.reduce((sum, one) => sum + one.width, 0), max(...shown.map((one) => one.height))];
-		// Codecs want even sides; a film keeps those that it began with.
+		// Codecs require even sides, which stay constant.
 		if (!recorder) Object.assign(canvas, {width: width & ~1, height: height & ~1});
 		let left = 0;
 		for (const one of shown) {
@@ -30,7 +30,7 @@ function filmOf(views, done) {
 	return {start, take, stop: () => recorder.stop()};
 }
 
-// Gives the reader a file.
+// Saves a file.
 function save(name, blob) {
 	const link = Object.assign(make("a"), {href: URL.createObjectURL(blob), download: name});
 	link.click();

@@ -1,4 +1,4 @@
-// What cameras saw, beside the strips: every pixel is a square.
+// Camera images next to the strips, with square pixels.
 
 function imagesOf() {
 	let shown = [];

@@ -1,9 +1,9 @@
-// An agent that lives in the page: its trials are run by a module of WebAssembly in a worker, whole and with changes.
+// An agent whose trials are run in the page, by a WebAssembly module in a worker, intact and with changes.
 
-// What the worker does, request after request. It is handed over as text and knows of this file no more than how to unpack.
+// The worker, which answers requests in order. It is passed as text, together with the functions for unpacking only.
 function inWorker() {
 	let [module, last] = [null, Promise.resolve()];
-	// A session of a script, as what it answers to requests.
+	// Opens a session as a function that answers requests.
 	const opened = (script) => {
 		const own = new WebAssembly.Instance(module, {}).exports;
 		const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
@@ -27,7 +27,7 @@ function inWorker() {
 		},
 		take: (rest) => void ({module} = rest),
 		open: ({script}) => void (acts.session = opened(script)),
-		// Of a session that is not kept.
+		// Opens a temporary session.
 		once: ({script, request}) => opened(script)(request),
 		ask: ({request}) => acts.session(request),
 		// Without the recording.
@@ -44,7 +44,7 @@ function inWorker() {
 // Decompresses base64 of gzip, as a stream.
 const unpacked = (text) => new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
 
-// A worker; `send` gives what it answers, in the order of sending.
+// Creates a worker. `send` returns its answers in order.
 function worker() {
 	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";${bytesOf}const unpacked=${unpacked};(${inWorker})()`], {type: "text/javascript"})));
 	const waiting = new Map();
@@ -62,11 +62,11 @@ function worker() {
 	});
 }
 
-// The first worker begins while the page's data are still being read.
+// The first worker starts while the page's data are still being read.
 const capable = window.WebAssembly && window.Worker && window.DecompressionStream;
 const firstWorker = capable && worker();
 
-// An agent in a worker of its own.
+// An agent in another worker.
 async function agentOf(module, script) {
 	const send = worker();
 	send("take", {module});
@@ -74,28 +74,28 @@ async function agentOf(module, script) {
 	return {ask: (request) => send("ask", {request})};
 }
 
-// What the first worker answers; `act` is "earned" where no recording is wanted.
+// The answer of the first worker, with `act` "earned" without a recording.
 const answerOf = (request, act = "ask") => firstWorker(act, {request});
 
-// The trial of an answer, ready for the player.
+// The trial of an answer for the player.
 function trialOf(page, {film}, index, pushes = []) {
 	const trial = Object.assign(new Trial(film, index), {pushes, changed: index > 0});
 	survey(trial, page.view === "top");
 	return trial;
 }
 
-// The same script for a trial of one step, or null where it is not said how many a trial has.
+// The script with trials of one step, or null if it does not set their number.
 function shortened(script) {
 	const config = script.config.replace(/(\n\[trial\]\n(?:[^[].*\n)*?steps = )\d+/, (_, before) => `${before}1`);
 	return config === script.config ? null : {...script, config};
 }
 
-// Fills a live page with the first trial that it runs: with its first step before it has run, where that can be had. What it gives
-// is attached to the player, and then shows all of it.
+// Runs the first trial of a live page, and first only its first step if possible. Returns a function that attaches the panel to
+// the player, which then shows the whole trial.
 async function liveOf(page) {
 	if (!capable) throw new Unsupported("it needs a browser with WebAssembly");
 	const {live: {module: packed, script, about: {individuals}}} = page;
-	// The trial of the run that earned most comes first.
+	// The best trial of the run is shown first.
 	const told = individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
 	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
@@ -121,18 +121,18 @@ const listOf = ({changes}) => [...changes].map(([part, value]) => (value === "" 
 const bare = (title) => title.replace(/ \[[^\]]*\]$/, "");
 const KINDS = ["sensor", "neuron", "output"];
 
-// What a node or link of the drawing is called in a list of changes.
+// The name of a node or link in a list of changes.
 function partOf(chosen) {
 	const name = ({layer, name}) => `${KINDS[layer]} ${bare(name)}`;
 	return chosen.links ? `${KINDS[chosen.layer]}:${bare(chosen.name)}` : `link:${name(chosen.from)}-${name(chosen.to)}`;
 }
 
-// What the page compares its own trial with: where it first differs from the run's, in words.
+// Describes the first difference between the page's trial and the run's.
 function compared({digests}, {stride, digests: run}) {
 	const own = digests.filter((_, t) => (t + 1)%stride === 0 || t === digests.length - 1);
 	const at = run.findIndex((digest, i) => digest !== own[i]);
 	if (at < 0 && own.length === run.length) return `Equal to the run, bit by bit: ${digests.length} ticks, digest ${digests.at(-1).toString(16).padStart(8, "0")}`;
-	return `Differs from the run at tick ${max(0, (at < 0 ? run.length : at)*stride)} or within ${stride} after it`;
+	return `Differs from the run within ${stride} ticks from tick ${max(0, (at < 0 ? run.length : at)*stride)}`;
 }
 
 const NONE = "a node or link of the network";
@@ -147,7 +147,7 @@ function pick(label, some, act) {
 	return list;
 }
 
-// The panel with its controls; `acts` are what they do.
+// Creates the panel with its controls.
 function controlsOf({live: {script}}, acts) {
 	const value = Object.assign(make("input"), {type: "number", step: "any", placeholder: "value"});
 	value.setAttribute("aria-label", "Value");
@@ -172,14 +172,14 @@ function controlsOf({live: {script}}, acts) {
 	return own;
 }
 
-// How many of a hundred fresh trials succeed whole, and as `changed` says; `counted` keeps what is known. Ten are run at a time, side by
-// side, but with hands on bodies each alone.
+// Counts successes in a hundred fresh trials, intact and with changes, and caches them in `counted`. Ten are run in parallel, but
+// with moved or pushed bodies each is run alone.
 async function hundred(individual, changed, counted, say) {
 	const found = [];
 	const text = [];
 	for (const change of changed ? [{lesion: ""}, changed] : [{lesion: ""}]) {
 		const {lesion, moves, pushes} = change;
-		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "whole"];
+		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "intact"];
 		const by = moves?.[0] || pushes?.[0] ? 1 : 10;
 		for (let [first, successes] = [0, 0]; !counted.has(key); first += by) {
 			successes += by > 1 ? (await answerOf({do: "fresh", individual, lesion, seed: 1, first, count: by})).successes
@@ -194,14 +194,14 @@ async function hundred(individual, changed, counted, say) {
 	return found;
 }
 
-// The parts of a controller; of what has none nothing can be changed.
+// Offers the parts of a controller, if it has any.
 function offerParts(own, kinds) {
 	const some = kinds.filter(({kind}) => kind !== "link").flatMap(({kind, names}) => names.map((name) => [`${kind}:${name}`, `${kind} ${name}`]));
 	own.parts.replaceChildren(...options([["", "part ..."], ...some]));
 	for (const one of [own.parts, own.apply, own.cut, own.noise, own.value, own.part.parentNode]) one.hidden = !kinds.length;
 }
 
-// What is changed, each to be taken back.
+// The buttons that undo a change.
 function chipsOf(state, show) {
 	const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
 	const hands = ["moves", "pushes"].flatMap((kind) => state[kind].map((one) => button(`${one.what} at ${one.time.toFixed(2)} s ×`, () => (state[kind] = state[kind].filter((other) => other !== one), show()))));
@@ -216,7 +216,7 @@ function changesOf(state) {
 	return lesion || moves[0] || pushes[0] ? {lesion, moves, pushes} : null;
 }
 
-// The controls say what is chosen.
+// Updates the controls.
 function tellControls(own, state, about) {
 	const known = about.individuals[state.individual].trials;
 	const told = list(about.trials, (i) => [i, known[i] ? `trial ${i}: ${earnedBy(known[i])}` : `trial ${i}`]);
@@ -230,7 +230,7 @@ function tellControls(own, state, about) {
 	own.undo.disabled = !changesOf(state);
 }
 
-// Gives a live page its panel; what it gives shows the whole trial.
+// Attaches the panel. Returns a function that shows the whole trial.
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
@@ -257,7 +257,7 @@ function attach(page, state, whole, player, open) {
 		own.chips.replaceChildren(...chipsOf(state, show));
 	}
 
-	// Runs the trial as it is, and with the changes beside it on one clock.
+	// Runs the trial intact and with changes, on one clock.
 	async function show(before = {...state}) {
 		const [mine, changes, {pushes}] = [++turn, changesOf(state), state];
 		marks();
@@ -272,14 +272,14 @@ function attach(page, state, whole, player, open) {
 			player.ask();
 			say(changed ? `With the change: ${earnedBy(changed)}.` : "");
 		} catch (error) {
-			// A change that is none is taken back.
+			// An invalid change is undone.
 			Object.assign(state, before);
 			marks();
 			say(error.message);
 		}
 	}
 
-	// All of the first trial, unless another one has been asked for since.
+	// Shows the whole first trial, unless another one was chosen.
 	async function begin() {
 		say("runs ...");
 		const found = answer = await whole();
@@ -290,7 +290,7 @@ function attach(page, state, whole, player, open) {
 		say("");
 	}
 
-	// Fresh trials with the changes and without.
+	// Runs fresh trials with the changes and without.
 	async function test() {
 		const tell = (text) => (own.earned.textContent = text);
 		own.hundred.disabled = true;
@@ -299,17 +299,17 @@ function attach(page, state, whole, player, open) {
 		return found;
 	}
 
-	// Whether the trial is that of the run.
+	// Compares the trial with that of the run.
 	async function verify() {
 		const {fresh, number} = state.trial;
 		await whole();
 		const told = about.individuals[state.individual].trials[number];
-		const found = fresh ? "A fresh start is no trial of the run" : told ? compared(answer, told) : "The run has no trial of whom this page has evolved";
+		const found = fresh ? "A fresh start is no trial of the run" : told ? compared(answer, told) : "The run has no trial of an individual of this page";
 		say(found);
 		return found;
 	}
 
-	// Shows the first of individuals that are not of the page, with a name for each.
+	// Shows the first of further individuals, with a name for each.
 	async function showMore(more, names) {
 		const place = about.individuals.length;
 		for (const [i, individual] of more.entries()) {

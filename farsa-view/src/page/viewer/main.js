@@ -1,12 +1,12 @@
-// The page: what the console can ask, what is chosen, keys.
+// The page: its console, its choices and its keys.
 //
-// For the console and for tests there is `farsa`; a trial is given as itself, its index or its name:
-//   ready, error              whether all is up; what is wrong, or null
-//   first                     when its first picture was seen, after it was opened [ms]
-//   trials, tick, ticks, time  the trials; the clock's present tick, how many it has, its time [s]
+// The console and tests use `farsa`. A trial is given as an object, its index or its name:
+//   ready, error              true when the page is complete, and the error or null
+//   first                     the time of the first picture [ms]
+//   trials, tick, ticks, time  the trials, and tick, number of ticks and time [s] of the clock
 //   seek(tick), play(), pause(), playing, speed (may be set), show(trial, beside?), follow(body or ""), view: "top" or "free",
 //   setView("top" | "free" | "front" ...)
-// and, as recorded at the present tick:
+// and recorded values of the present tick:
 //   pose(trial, body): {position [m], rotation [x, y, z, w]}, value(trial, channel, group?),
 //   image(trial, name): {columns, rows, colors: red, green, blue, opacity of each pixel, or null},
 //   contacts(trial): [{pair, point [m], force on the pair's first [N]}], project(position) [CSS pixels of the first view]
@@ -30,7 +30,7 @@ function fail(text, remedy = " Make it again with farsa replay --html.") {
 	$("message").textContent = `This page cannot be shown: ${text}.${remedy}`;
 }
 
-// What the console and tests can ask for.
+// The functions for the console and tests.
 function openConsole(player, trials) {
 	const find = (list, what, test) => {
 		const i = list.findIndex(test);
@@ -74,7 +74,7 @@ function offer(player, trials) {
 	$("slider").oninput = () => player.go($("slider").value);
 }
 
-// What is done by key; a button has the id that follows.
+// Actions by key, with the id of their button.
 function actsOf(player) {
 	const toggle = (name) => [() => player.toggle(name), name];
 	return {
@@ -94,7 +94,7 @@ function listen(acts) {
 		if (!id) continue;
 		$(id).onclick = (event) => {
 			act(event);
-			// After a mouse the space bar shall play again.
+			// After a click the space bar plays again.
 			if (event.detail) $(id).blur();
 		};
 	}
@@ -107,8 +107,7 @@ function listen(acts) {
 	};
 }
 
-// Until a picture is seen: it is drawn for the next frame, and on the screen by the third. Nothing is drawn for a page that is not
-// looked at.
+// Waits until a picture is visible: it is drawn for the next frame and on the screen by the third. A hidden page draws nothing.
 const seen = () => new Promise((done) => {
 	const frames = (n) => (n && !document.hidden ? requestAnimationFrame(() => frames(n - 1)) : done());
 	frames(3);
@@ -126,7 +125,7 @@ async function main() {
 	const dark = prefers("color-scheme: dark");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 	$("app").hidden = false;
-	// The page is whole. While the worker begins nothing is wrong.
+	// The page is complete. A starting worker is no error.
 	$("message").hidden = true;
 	player.open(1);
 
@@ -136,7 +135,7 @@ async function main() {
 	player.place(trials[0], trials[page.beside]);
 	const whole = attach?.(player);
 	await seen();
-	// What is below the scene comes after it.
+	// The parts below the scene follow.
 	farsa.first = performance.now();
 	if (whole) await whole();
 	else player.fill();

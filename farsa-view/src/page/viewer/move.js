@@ -1,9 +1,9 @@
-// Bodies that are put elsewhere or pushed by hand.
+// Bodies that are moved or pushed by hand.
 
-// How long a push lasts [s].
+// The duration of a push [s].
 const PUSH = 0.1;
 
-// What a thing or a whole robot weighs if it is as dense as water [kg].
+// The mass of a thing or robot with the density of water [kg].
 function weightOf({shapes}, body) {
 	const thing = shapes.find((shape) => shape.body === body).role === "thing";
 	const own = shapes.filter((shape) => (thing ? shape.body === body : shape.role === "robot"));
@@ -13,8 +13,8 @@ function weightOf({shapes}, body) {
 	}, 0);
 }
 
-// While `grip()` is "move" or "push", a body that is taken in a view follows the pointer in the plane in which it was taken, or is
-// pulled towards it; by keys that is `own.body`. `put` and `push` hear what came of it.
+// While `grip()` is "move" or "push", a body that is taken in a view follows the pointer in a plane or is pulled toward it. Keys act
+// on `own.body`. The result is passed to `put` or `push`.
 function carry(player, grip, own, {put, push, say}) {
 	const views = $("views");
 	let held = null;
@@ -32,11 +32,11 @@ function carry(player, grip, own, {put, push, say}) {
 		held = {trial, body, ...pose, point, offset: sub(pose.position, point), pushes: grip() === "push", ...more};
 	}
 
-	// Brings it so far, or pulls at it so much.
+	// Moves or pulls the body.
 	function bring(way) {
 		const {trial, body, point, offset, pushes} = held;
 		if (pushes) {
-			// As much as moves what weighs so much there in half the time that a push lasts; the arrow reaches to the pointer.
+			// The force that moves this mass to the pointer in half the duration of a push. The arrow ends at the pointer.
 			const {long, newtons} = player.camera.arrow();
 			held.force = mul(way, weightOf(trial, body)*4/PUSH**2);
 			trial.pull = {pair: [trial.bodies[body], "outside"], point, force: mul(way, newtons/long)};
@@ -84,7 +84,7 @@ function carry(player, grip, own, {put, push, say}) {
 		leave(done);
 	};
 
-	// Along the picture's sides, but level with the ground, and up.
+	// Moves along the sides of the picture, level with the ground, and up.
 	function press(event) {
 		const {key, target, shiftKey} = event;
 		const [[right], up] = [player.camera.axes(), [0, 0, 1]];
@@ -103,7 +103,7 @@ function carry(player, grip, own, {put, push, say}) {
 		if (!held) hold(trial, body, placedAt(trial, player.tickOf(trial)).find(({shape}) => shape.body === body).origin, {way: [0, 0, 0]});
 		held.way = add(held.way, mul(way, rounded(player.camera.radius*0.02)*(shiftKey ? 10 : 1)));
 		bring(held.way);
-		say(`${trial.bodies[body]}, ${held.pushes ? short(hypot(...held.force), "N") : length(hypot(...held.way))}: Enter does it, Escape leaves it.`);
+		say(`${trial.bodies[body]}, ${held.pushes ? short(hypot(...held.force), "N") : length(hypot(...held.way))}: Enter applies it, Escape cancels it.`);
 	}
 
 	for (const [name, act] of [["down", take], ["move", drag], ["up", release(true)], ["cancel", release(false)]]) views.addEventListener(`pointer${name}`, act, true);
@@ -115,17 +115,17 @@ function carry(player, grip, own, {put, push, say}) {
 const HANDS = `
 while bodies of the first trial are moved or pushed
 [ ]         another body
-arrows      it goes, or is pulled, along the ground
-Page \u2191 \u2193    up, down; ten times as far with shift
-Enter Esc   does it; leaves it
+arrows      move or pull it along the ground
+Page \u2191 \u2193    up, down, ten times as far with shift
+Enter Esc   apply, cancel
 `;
 
-// Bodies can be dragged or pushed while its button is pressed; gives what does either.
+// Bodies can be dragged or pushed while the button is pressed. Returns functions for both.
 function movable(page, player, state, own, show, say) {
 	const [{about}, {move: moving, push: pushing}] = [page.live, own];
 	const on = (one) => one.getAttribute("aria-pressed") === "true";
 	const grip = () => (on(moving) ? "move" : on(pushing) ? "push" : "");
-	// What is nearest to be taken: a thing, else a robot.
+	// Things first, then robots.
 	const {bodies, shapes} = page.trials[0];
 	const some = ["thing", "robot"].flatMap((role) => shapes.filter((shape) => shape.role === role && shape.body >= 0).map((shape) => shape.body));
 	own.body.replaceChildren(...options([...new Set(some)].map((body) => [body, bodies[body]])));
@@ -141,7 +141,7 @@ function movable(page, player, state, own, show, say) {
 	}
 	const timeOf = (trial, step) => trial.times[min(step, trial.ticks) - 1];
 
-	// The trial runs anew with the body there.
+	// Runs the trial again with the body moved.
 	async function put(move, trial) {
 		const name = trial.bodies[move.body];
 		state.moves = [...state.moves, {...move, what: `${name} moved`, time: timeOf(trial, move.step)}];
@@ -149,10 +149,10 @@ function movable(page, player, state, own, show, say) {
 		const [whole, moved] = page.trials;
 		if (!moved || move.step >= min(whole.ticks, moved.ticks)) return;
 		const [from, to] = [whole, moved].map((one) => one.pose(move.step, move.body).position);
-		if (hypot(...sub(to, from)) < 0.1*hypot(...sub(move.position, from))) say(`${name} hangs on something and stays where it is.`);
+		if (hypot(...sub(to, from)) < 0.1*hypot(...sub(move.position, from))) say(`${name} is attached by a joint and cannot be moved.`);
 	}
 
-	// And with a force on it for a moment.
+	// Runs the trial again with a push.
 	function push({step, body, point, force}, trial) {
 		const {times} = trial;
 		const long = max(1, round(PUSH/(times[1] - times[0]) || 1));

@@ -1,11 +1,11 @@
-// The network: columns of nodes lit by their channels, links coloured by sign and as strong as their weight.
+// The network: columns of nodes lit by their channels, links colored by sign and as strong as their weight.
 
-// Who is told which node or link was chosen.
+// Is called with the chosen node or link.
 let graphChosen = () => {};
 const LABEL = "12px system-ui, sans-serif";
 const signed = (x) => (x < 0 ? "" : "+") + x.toFixed(3);
 
-// The node at a place, if one is near; its name counts as well, where `named` says that the place is on that side.
+// The nearest node at a place, if any. Its name counts, too, if the place is on that side by `named`.
 function nearestNode(nodes, named, x, y) {
 	let [best, found] = [12, null];
 	for (const node of nodes) {
@@ -15,7 +15,7 @@ function nearestNode(nodes, named, x, y) {
 	return found;
 }
 
-// The link at a place, if one is near: its curve is taken as ten straight pieces.
+// The nearest link at a place, if any, with its curve as ten straight pieces.
 function nearestLink(links, x, y) {
 	let [best, found] = [4, null];
 	for (const link of links) {
@@ -28,16 +28,16 @@ function nearestLink(links, x, y) {
 			near = min(near, hypot(px + s*ux - x, py + s*uy - y));
 			[px, py] = [px + ux, py + uy];
 		}
-		// Of links about as near the strongest, which comes last.
+		// Among links of similar distance the strongest, which is last.
 		if (near < best) [best, found] = [min(4, near + 0.5), link];
 	}
 	return found;
 }
 
-// A node's name, where its label stands for it.
+// A node's name if it differs from its label.
 const nameOf = ({name, label}) => (name === label ? "" : `${name} `);
 
-// The numbers of a node or a link; `say` is a node's value at present.
+// The numbers of a node or link. `say` returns a node's present value.
 function aboutOf(chosen, links, say) {
 	if (!chosen) return [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
 	if (!chosen.links) {
@@ -55,7 +55,7 @@ function aboutOf(chosen, links, say) {
 	];
 }
 
-// How a link runs, as a Bezier curve. Links within a column bend out, down on one side and up on the other.
+// The Bezier curve of a link. Links within a column bend out, down on one side and up on the other.
 function curveOf({from: a, to: b}) {
 	const [dx, dy] = [b.x - a.x, b.y - a.y];
 	const bend = dx ? 0 : (dy < 0 ? -1 : 1)*(14 + abs(dy)*0.28);
@@ -63,7 +63,7 @@ function curveOf({from: a, to: b}) {
 		: [a.x, a.y, a.x + dx/3 + bend, a.y + dy/3, b.x - dx/3 + bend, b.y - dy/3, b.x, b.y];
 }
 
-// Draws links, each as opaque as `alpha` makes of its part of the strongest.
+// Draws links with an opacity that depends on the relative weight.
 function paintLinks(c, links, some, alpha) {
 	const strongest = abs(links.at(-1)?.weight) || 1;
 	for (const {weight, curve: [x, y, ...rest]} of some) {
@@ -77,7 +77,7 @@ function paintLinks(c, links, some, alpha) {
 	c.globalAlpha = 1;
 }
 
-// Draws a node lit by its value, which is the colour `fill`.
+// Draws a node in the color of its value.
 function paintNode(c, {x, y}, lit, fill) {
 	const [ink, soft] = ["--ink", "--soft"].map(colorOf);
 	c.beginPath();
@@ -88,14 +88,14 @@ function paintNode(c, {x, y}, lit, fill) {
 	c.stroke();
 }
 
-// Writes a node's name beside it: of the first column to the left, of others to the right.
+// Writes a node's name next to it, on the left for the first column.
 function paintName(c, {x, y, layer, label: text}, width, ink) {
 	text = fitted(c, text, (layer ? width - x : x) - 12);
 	Object.assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
 	for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
 }
 
-// Writes above a column how many nodes it has; `side` picks by where the column stands: first, between, last.
+// Writes the number of nodes above a column. `side` chooses by position: first, between, last.
 function paintHead(c, column, side) {
 	if (!column[0]) return;
 	c.textAlign = side("right", "center", "left");
@@ -150,7 +150,7 @@ function graphOf() {
 		const left = room(columns[0]);
 		const right = last ? width - room(columns[last]) : left;
 		columns.forEach((column, layer) => {
-			// A short column stays together, so that its links do not cross all of the picture.
+			// A short column stays together, so that its links do not cross the whole picture.
 			const step = min((height - 30)/column.length, side(layer, 24, 34, 24));
 			column.forEach((node, i) => {
 				node.x = left + (right - left)*layer/(last || 1);

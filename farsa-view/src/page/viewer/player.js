@@ -1,4 +1,4 @@
-// What is shown when: one clock, up to two trials in step.
+// One clock for up to two trials.
 
 class Player {
 	constructor({trials, view, made_by: maker}) {
@@ -17,7 +17,7 @@ class Player {
 		return this.clock.timeAt(this.tick);
 	}
 
-	// In step by time; a shorter trial stands still at its end.
+	// Trials are synchronized by time. A shorter one rests at its end.
 	tickOf(trial) {
 		return trial === this.clock ? this.tick : trial.tickAt(this.now);
 	}
@@ -36,7 +36,7 @@ class Player {
 		this.asked = false;
 		if (!clock) return;
 		if (farsa.playing) {
-			// A page that was hidden goes on where it was.
+			// A page that was hidden continues at its tick.
 			this.tick = clock.tickAt(this.now + min(100, max(0, time - this.before))/1000*this.speed);
 			this.before = time;
 			if (this.tick >= clock.ticks - 1) this.pause();
@@ -70,7 +70,7 @@ class Player {
 		this.marks();
 	}
 
-	// From here to where it is paused, or the trial ends.
+	// Records until the pause or the end of the trial.
 	record() {
 		if (this.film) return this.pause();
 		const {shown, views} = this;
@@ -85,7 +85,7 @@ class Player {
 	pause() {
 		this.film?.stop();
 		this.film = null;
-		// It stands on a tick: what is shown was recorded.
+		// The clock rests on a tick, so that recorded values are shown.
 		this.tick = floor(this.tick);
 		farsa.playing = false;
 		this.marks();
@@ -113,7 +113,7 @@ class Player {
 		this.marks();
 	}
 
-	// Of `farsa draw`, or `free`: where the camera was.
+	// Sets a view of `farsa draw`, or `free` for the last one.
 	setView(name) {
 		if (name in VIEWS) {
 			this.camera.name = name;
@@ -122,7 +122,7 @@ class Player {
 		this.marks();
 	}
 
-	// A body by its name, or none for "".
+	// Follows a body by its name, or none for "".
 	follow(name) {
 		const body = this.shown[0].bodies.indexOf(name);
 		Object.assign(this.camera, {followed: body < 0 ? null : body, carried: null});
@@ -130,7 +130,7 @@ class Player {
 		this.ask();
 	}
 
-	// The buttons say what is on.
+	// Updates the states of buttons.
 	marks() {
 		$("play").classList.toggle("playing", farsa.playing);
 		$("play").setAttribute("aria-label", farsa.playing ? "Pause" : "Play");
@@ -143,7 +143,7 @@ class Player {
 		const {clientWidth: w, clientHeight: h} = this.views[0].element;
 		const [trial] = this.shown;
 		const thing = trial.shapes.find((shape) => shape.role === "thing");
-		// What flies away in a changed trial does not take the camera along.
+		// The camera is not fitted to a changed trial, in which bodies may fly away.
 		this.camera.frame(this.shown.filter((one) => !one.changed), w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position);
 		this.ask();
 	}
@@ -156,7 +156,7 @@ class Player {
 		this.ask();
 	}
 
-	// Makes the first views, so many.
+	// Creates views up to a number.
 	open(count) {
 		while (this.views.length < count) this.views.push(viewOf(this.camera, () => this.ask()));
 	}
@@ -166,7 +166,7 @@ class Player {
 		this.fill();
 	}
 
-	// Trials in the views, with what moves them.
+	// Places trials in the views.
 	place(a, b) {
 		this.shown = [...new Set([a, b || a])];
 		const {shown} = this;
@@ -193,7 +193,7 @@ class Player {
 		this.marks();
 	}
 
-	// Their strips, images, network and facts.
+	// Fills strips, images, network and facts.
 	fill() {
 		const {shown, clock} = this;
 		this.images.set(shown);
@@ -204,7 +204,7 @@ class Player {
 	}
 }
 
-// The colours of the track under the slider: phases, where the trial on the clock has them.
+// The colors of the track under the slider, by phase if the trial has them.
 function trackOf(trial, clock) {
 	const words = trial === clock && trial.channels.find((c) => c.words);
 	const percent = (t) => `${100*t/(trial.ticks - 1 || 1)}%`;
@@ -215,5 +215,5 @@ function trackOf(trial, clock) {
 function factsOf(trial, mark) {
 	return make("div", "", make("h2", mark, trial.name),
 		make("dl", "", ...trial.facts.flatMap(([name, text]) => [make("dt", "", name), make("dd", "", text)])),
-		make("p", "soft", `Positions within ${length(trial.position_unit/2)}, forces within ${short(trial.force_unit/2, "N")} of what was recorded; channels: point at their names.`));
+		make("p", "soft", `Positions within ${length(trial.position_unit/2)}, forces within ${short(trial.force_unit/2, "N")} of what was recorded; for channels point at their names.`));
 }

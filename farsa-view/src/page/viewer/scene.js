@@ -5,7 +5,7 @@ const SUN = unit([0.35, -0.45, 1.3]);
 const paint = (name) => rgb(colorOf(`--${name}`));
 const rgb = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)/255);
 // Vertices of position 3, normal 3, and 1 for the end of a capsule on which they are: -1, 1.
-// Those of fewer corners around, `n`, serve for what is small in the picture.
+// Meshes with fewer corners around, `n`, are used for small shapes.
 function meshes(n) {
 	const vertex = ([r, z, nr, nz, end], j, n) => {
 		const [c, s] = [cos(2*Math.PI*(j + 0.5)/n), sin(2*Math.PI*(j + 0.5)/n)];
@@ -22,7 +22,7 @@ function meshes(n) {
 		return [cos(a), sin(a), cos(a), sin(a), k <= quarter ? -1 : 1];
 	});
 	return {
-		// Without normals: the shader finds those of flat faces.
+		// Without normals. The shader computes those of flat faces.
 		box: around([[0, -1], [Math.SQRT2, -1], [Math.SQRT2, 1], [0, 1]].map((row) => [...row, 0, 0, 0]), 4), capsule: around(arc), cone: around([[0, 0, 0, -1, 0], [1, 0, 0.9, 0.4, 0], [0, 1, 0.9, 0.4, 0]]),
 		cylinder: [-1, 0, 1].flatMap((z) => around(z ? [[0, z, 0, z, 0], [1, z, 0, z, 0]] : [[1, -1, 1, 0, 0], [1, 1, 1, 0, 0]])),
 	};
@@ -36,7 +36,7 @@ void main() {
 	at = turn(position*size + vec3(0, 0, end*stretch)) + origin;
 	facing = turn(normal);
 	if (ribbon > 0.) {
-		// A trail is seen as a tube of that radius: its normal is the way along it, its end the side.
+		// A trail looks like a tube of that radius. Its normal is the direction along it, its end the side.
 		vec3 across = cross(normal, eye - position);
 		across /= max(length(across), 1e-9);
 		vec3 front = cross(across, normal)/max(length(normal), 1e-9);
@@ -62,7 +62,7 @@ void main() {
 		for (int i = 0; i < 9; i++) open += texture(shadows, lit + vec3(i%3 - 1, i/3 - 1, 0)*.0012)/9.;
 	}
 	float face = max(dot(n, sun), 0.)*mix(.25, 1., open);
-	// A little light from the eye keeps the far side from the sun readable.
+	// A little light from the eye keeps the side away from the sun readable.
 	vec3 c = color.rgb*mix(.38 + .1*n.z + .18*dot(n, to) + .36*face, 1., plain);
 	if (grid == 0.) c += (1. - plain)*.12*face*pow(max(dot(n, normalize(sun + to)), 0.), 40.);
 	else {
@@ -73,7 +73,7 @@ void main() {
 	pixel = vec4(c, color.a);
 }`];
 
-// What is compiled and laid out once for a context of WebGL: the shaders, the meshes, and the map of the shadows.
+// Shaders, meshes and the shadow map, created once per WebGL context.
 function programOf(gl) {
 	const program = gl.createProgram();
 	SOLID.forEach((source, i) => {
@@ -111,24 +111,24 @@ function shadowsOf(gl) {
 	return {map, frame};
 }
 
-// A path without pieces that nobody could see in a scene of this radius.
+// A path without pieces that are invisible in a scene of this radius.
 function thinned(path, radius) {
 	const kept = [path[0]];
 	for (const p of path) if (hypot(...sub(p.at, kept.at(-1).at)) >= radius*0.01) kept.push(p);
 	return kept;
 }
 
-// The opacity of a tube, both of whose sides are seen.
+// The opacity of a tube, both sides of which are visible.
 const twice = (alpha) => alpha*(2 - alpha);
 
-// A ribbon along a path, to be drawn as a strip, and how many of its vertices are there up to each time.
+// A ribbon along a path, drawn as a strip, with the number of its vertices up to each time.
 function ribbonOf(gl, path) {
 	const data = [];
 	const way = (i) => unit(sub((path[i + 1] || path[i]).at, (path[i] || path[i + 1]).at));
 	const counts = path.map(({t, at}, i) => {
 		const [before, after] = [way(max(0, i - 1)), way(min(i, path.length - 2))];
 		const open = dot(before, after);
-		// A bend is mitred; where the path turns back a second pair begins.
+		// A bend is mitered. Where the path turns back, a second pair begins.
 		const ways = open > 0 ? [mul(add(before, after), 1/(1 + open))] : [before, after];
 		for (const along of ways) for (const side of [-1, 1]) data.push(...at, ...along, side);
 		return {t, count: data.length/7};
@@ -136,7 +136,7 @@ function ribbonOf(gl, path) {
 	return {...solidOf(gl, data), counts};
 }
 
-// How each trail of a trial is drawn at a tick: of many robots each has its colour, and that which is followed stands out.
+// The appearance of each trail at a tick. Each of several robots has its color, and the followed one is highlighted.
 function trailsAt({trails}, tick, {followed}) {
 	const many = trails.filter((trail) => !trail.thing)[1];
 	const chosen = trails.some((trail) => trail.body === followed);
@@ -144,12 +144,12 @@ function trailsAt({trails}, tick, {followed}) {
 		path,
 		color: many && !thing ? rgb(tint) : paint(thing ? "thing" : "trail"),
 		part: chosen && body !== followed ? 0.25 : 1,
-		// Whose it is.
+		// The mark of the robot.
 		end: many && !thing && add(path.findLast(({t}) => t <= tick).at, [0, 0, top]),
 	}));
 }
 
-// The shapes of a trial that are shown at a tick and the spots on the ground, each with its place and colour.
+// The visible shapes of a trial at a tick and the spots on the ground, each with its place and color.
 function placedAt(trial, tick) {
 	const poses = trial.bodies.map((_, b) => (trial.held?.body === b ? trial.held : trial.between(tick, b)));
 	const shapes = trial.shapes.filter(({shown}) => {
@@ -157,7 +157,7 @@ function placedAt(trial, tick) {
 		return !shown || value >= shown[1] && value <= shown[2];
 	}).map((shape) => {
 		const {position, rotation} = poses[shape.body] || HOME;
-		// Neighbours along a chain differ a little, so that joints are seen, and walls from the floor.
+		// Neighbors along a chain differ a little, so that joints are visible, as do walls and the floor.
 		const wall = shape.role === "ground" && shape.position[2] > 0;
 		const color = shape.color ? rgb(shape.color) : mul(paint(shape.role), wall ? 0.7 : shape.role === "robot" && shape.body%2 ? 0.86 : 1);
 		return {shape, wall, color: [...color, 1], origin: add(position, turn(rotation, shape.position)), rotation: join(rotation, shape.rotation)};
@@ -170,13 +170,13 @@ function placedAt(trial, tick) {
 
 const casts = ({shape: {role}}) => role === "robot" || role === "thing";
 
-// How far along a ray a placed shape is met, or Infinity.
+// The distance along a ray to a placed shape, or Infinity.
 function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, rotation}, from, along) {
 	const back = [...mul(rotation, -1), rotation[3]];
 	const [o, d] = [turn(back, sub(from, origin)), turn(back, along)];
 	if (kind === "plane") return d[2] < 0 ? -o[2]/d[2] : Infinity;
 	const slab = (h, i) => [(-h - o[i])/d[i], (h - o[i])/d[i]].sort((a, b) => a - b);
-	// Where the ray is in a ball, or without its z in a cylinder without ends; NaN where it is not.
+	// The distances within a ball, or without z in an endless cylinder, NaN for a miss.
 	const round = (o, d) => {
 		const [a, b] = [max(dot(d, d), 1e-12), dot(o, d)];
 		const s = Math.sqrt(b*b - a*(dot(o, o) - r*r));
@@ -191,7 +191,7 @@ function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, r
 	return kind === "cylinder" ? side : min(side, ...[long, -long].map((z) => both(round(sub(o, [0, 0, z]), d))));
 }
 
-// Where a ray first meets a shape, or null.
+// The first point of a ray on a shape, or null.
 function metBy(placed, from, along) {
 	const far = min(...placed.map((item) => metAt(item, from, along)).filter((t) => t > 0));
 	return far < Infinity ? add(from, mul(along, far)) : null;
@@ -268,14 +268,14 @@ class Scene {
 		this.drawMarks(trial, tick, visible);
 	}
 
-	// What is seen and from where; the ground fades out at a reach.
+	// Sets the view and the visible shapes. The ground fades out at a reach.
 	look(trial, tick, camera) {
 		const {top, half, distance, radius} = camera;
 		const {eye, lens} = camera.lens(this.canvas.width/this.canvas.height);
-		// Half the height of what is in sight [m].
+		// Half the height of the view [m].
 		const seen = top ? half : distance*TAN;
 		const middle = middleOf(boundsOf(trial.balls));
-		// Up to 20 pixels in radius a coarse mesh is off by less than half a pixel.
+		// Up to a radius of 20 pixels the error of a coarse mesh is below half a pixel.
 		this.coarse = 40*seen/this.canvas.height;
 		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
 	}
@@ -304,7 +304,7 @@ class Scene {
 		const grid = rounded(this.camera.radius/8);
 		for (const item of placed) {
 			this.set({camera: this.matrix, grid: item.shape.role === "ground" && !item.wall ? grid : 0});
-			// An area lies in the floor and wins over it.
+			// An area is in the floor and covers it.
 			gl.polygonOffset(...item.shape.role === "area" ? [-2, -8] : [0, 0]);
 			this.shape(item);
 		}
@@ -316,7 +316,7 @@ class Scene {
 		gl.enable(gl.BLEND);
 		gl.depthMask(false);
 		this.set({plain: 0.6, grid: 0});
-		// What is behind a shape shows through it faintly: contacts always lie between two of them.
+		// Hidden marks show faintly through shapes, because contacts are always between two of them.
 		for (const [order, alpha] of [[gl.GREATER, 0.3], [gl.LEQUAL, 1]]) {
 			gl.depthFunc(order);
 			this.marks(trial, tick, visible, alpha);
@@ -350,7 +350,7 @@ class Scene {
 		}
 	}
 
-	// The way so far, and faintly the way to come.
+	// The past trail, and faintly the future one.
 	trail(trial, i, {color}, tick, thick, alpha) {
 		const {gl, ribbons, camera: {radius}} = this;
 		if (ribbons.get(trial)?.radius !== radius) ribbons.set(trial, {radius, made: trial.trails.map(({path}) => ribbonOf(gl, thinned(path, radius)))});

@@ -1,10 +1,10 @@
-// The channels over time: bands for words, lines for small groups, heat for large ones.
+// Channels over time: bands for words, lines for small groups, heat maps for large ones.
 
 const CIVIDIS = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"];
 const DIVERGING = ["#6db5f2", "#2e5f8d", "#20262e", "#94591f", "#f5a04c"];
 const WORDS = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
 
-// Values on both sides of zero are shown by colour, others by brightness. Gives 0..255.
+// Values of both signs differ in color, others in brightness. Returns 0..255.
 function heatOf({low, high}, value) {
 	const both = low < 0 && high > 0;
 	const stops = both ? DIVERGING : CIVIDIS;
@@ -18,22 +18,22 @@ function heatOf({low, high}, value) {
 function show({words, low, high, whole}, value) {
 	if (words || Number.isNaN(value)) return words?.[value] ?? "–";
 	if (whole) return value.toFixed(0);
-	// Of what hardly changes not more digits than of what does.
+	// A nearly constant value has no more digits than others.
 	const span = max(high - low, 1e-3*max(abs(low), abs(high))) || 1;
 	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(span)))));
 	return +text ? text : text.replace("-", "");
 }
 
-// An end of a scale: with as many digits as its span wants.
+// An end of a scale with the digits that its span requires.
 const bound = (x, span) => +x.toFixed(min(9, max(0, Math.ceil(2 - Math.log10(max(span, 1e-3*abs(x)))))));
 
-// The scale of values from `low` to `high`: never so small that rounding fills it, with what is constant in its middle.
+// The scale of values from `low` to `high`, large enough to hide rounding, with constant values in its middle.
 function scaleOf(low, high) {
 	const room = max(1e-4*max(abs(low), abs(high)), 1e-9) - (high - low);
 	return room > 0 ? [low - room/2, high + room/2] : [low, high];
 }
 
-// Equal values in a row: [first tick, tick after, colour, value].
+// Runs of equal values: [first tick, tick after, color, value].
 function runs(values) {
 	const found = [];
 	values.forEach((value, t) => {
@@ -49,18 +49,18 @@ function make(tag, className = "", ...children) {
 	return made;
 }
 
-// What draws on a plain canvas, at once: where the scene is drawn without a graphics processor, other contexts would queue with it.
+// A context that draws at once. Others would queue with the scene where it is drawn without a graphics processor.
 const plain = (canvas) => canvas.getContext("2d", {willReadFrequently: true});
 
-// A text without its middle, where there is no room for all of it.
+// A text without its middle if it is too long.
 function fitted(c, text, room) {
 	let short = text;
 	for (let kept = text.length - 1; kept > 3 && c.measureText(short).width > room; kept--) short = `${text.slice(0, (kept + 1) >> 1)}…${text.slice(-(kept >> 1))}`;
 	return short;
 }
 
-// What is drawn in a strip: bands for words, heat for large groups, else a line. `x` is where a tick stands, `tall` and `top`
-// are the height of the trial's part of the field and where it begins, all in pixels; `ratio` is that of a CSS pixel.
+// Painters of a strip. `x` is the place of a tick, `tall` and `top` are the height and the top of the trial's part, all in pixels.
+// `ratio` is the number of pixels per CSS pixel.
 function paintBands(c, {values}, {words}, {x, tall, top, ratio}) {
 	Object.assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
 	for (const [t, after, color, value] of runs(values)) {
@@ -90,12 +90,12 @@ function paintLine(c, {values}, {low, high}, {x, ratio, width, height, color}) {
 	if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
 	Object.assign(c, {strokeStyle: colorOf(color), lineWidth: 1.5*ratio, lineJoin: "round"});
 	c.beginPath();
-	// No line leads to a value that is not there.
+	// Missing values interrupt the line.
 	values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
 	c.stroke();
 }
 
-// Draws a row's strip from one time to another, unless it stands there already.
+// Draws a row's strip between two times, unless it is current.
 function paintStrip(row, trials, from, to) {
 	const {canvas, channels, kind, scale} = row;
 	const ratio = min(2, devicePixelRatio);
@@ -111,14 +111,14 @@ function paintStrip(row, trials, from, to) {
 		const {times, end} = trials[i];
 		const at = (time) => (time - from)/(to - from || 1)*width;
 		const x = (t) => at(times[0]) + (at(end) - at(times[0]))*t/max(1, channel.values.length - 1);
-		// Lines of two trials share the field, bands and heat stand apart.
+		// Lines of two trials share the field, bands and heat maps do not.
 		const tall = height/shown.length;
 		const place = {x, tall, top: shown.indexOf(channel)*tall, ratio, width, height, color: i ? "--b" : "--a"};
 		({bands: paintBands, heat: paintHeat, lines: paintLine})[kind](c, channel, scale, place);
 	});
 }
 
-// A finger or the mouse along the strips seeks; `box` is where the strips stand.
+// Seeks by dragging along the strips, whose place is `box`.
 function dragOn(element, box, seek) {
 	let dragged = false;
 	const move = ({clientX}) => {
@@ -134,7 +134,7 @@ function dragOn(element, box, seek) {
 	element.onpointerup = element.onpointercancel = () => (dragged = false);
 }
 
-// What the colours of a group's bands mean.
+// The legend of a group's bands.
 function legendOf(trials, group) {
 	const words = trials.flatMap((trial) => trial.channels).find((channel) => channel.group === group && channel.words)?.words || [];
 	return words.map((word, i) => {
@@ -146,7 +146,7 @@ function legendOf(trials, group) {
 
 const ruler = document.createElement("canvas").getContext("2d");
 
-// How wide the widest text of a size is.
+// The width of the widest text of a size.
 function wide(size, texts) {
 	ruler.font = `${size}px system-ui, sans-serif`;
 	return ceil(max(...texts.map((text) => ruler.measureText(text).width)));
@@ -177,13 +177,13 @@ function stripsOf(seek) {
 	}
 
 	function section(group, names) {
-		// What all names begin with, as "force on sphere.", takes the room of what differs.
+		// A common prefix of all names, such as "force on sphere.", is omitted.
 		let cut = 0;
 		while (names[1] && names.every(([, label]) => label[cut] && label[cut] === names[0][1][cut])) cut++;
 		const body = make("div", "rows", ...names.map(([name, label]) => row(group, name, label.slice(cut > 7 ? cut : 0), names.length > 10 ? "heat" : "lines")));
 		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length), ...legendOf(trials, group));
 		const made = make("section", "", fold, body);
-		// Columns of a narrow page are as wide as what stands in them.
+		// Columns of a narrow page are as wide as their content.
 		const own = rows.slice(-names.length);
 		const values = own.flatMap(({scale}) => scale.words || [scale.low, scale.high].map((end) => show(scale, end)));
 		const columns = {w: trials.length*(wide(13, values) + 14) - 14, u: wide(12, own.map(({unit}) => unit)), s: min(106, wide(12, own.map(({told}) => told)))};

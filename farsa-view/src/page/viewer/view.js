@@ -1,6 +1,6 @@
-// A trial in a figure of the page: its picture with labels, and the hands that move the camera.
+// A trial in a figure of the page: its picture with labels, and gestures that move the camera.
 
-// Mouse, fingers and wheel turn, move and zoom.
+// Turns, moves and zooms the camera by mouse, fingers and wheel.
 function steer(canvas, camera, ask, centre) {
 	const fingers = new Map();
 	// Half heights from the middle, upwards.
@@ -24,7 +24,7 @@ function steer(canvas, camera, ask, centre) {
 		if (other) {
 			const gap = (f) => hypot(f.clientX - other.clientX, f.clientY - other.clientY) || 1;
 			camera.zoom(gap(last)/gap(event), ...placeOf({clientX: (event.clientX + other.clientX)/2, clientY: (event.clientY + other.clientY)/2}));
-			// Each finger moves the picture by its half.
+			// Each finger contributes half of the movement.
 			camera.pan(dx/2/height, dy/2/height);
 		} else if (camera.top || event.shiftKey || event.buttons & 6) camera.pan(dx/height, dy/height);
 		else camera.turn(dx, dy);
@@ -40,7 +40,7 @@ function steer(canvas, camera, ask, centre) {
 
 const namesOf = (trails) => trails.slice(0, 4).map((trail) => trail.name).join(", ") + (trails[4] ? " ..." : "") || "nothing moves";
 
-// A picture with labels, to be moved with mouse and fingers.
+// A picture with labels and gestures.
 function viewOf(camera, ask) {
 	const canvas = make("canvas", "scene");
 	const scene = new Scene(canvas, ask);
@@ -57,7 +57,7 @@ function viewOf(camera, ask) {
 
 	function set(trial, mark) {
 		canvas.setAttribute("aria-label", `Scene of ${trial.name}`);
-		// Of one trial the head of the page says it.
+		// The head of the page names a single trial.
 		caption.replaceChildren(...mark ? [make("b", mark, trial.name)] : [], note);
 		labels.replaceChildren(...trial.points.map((name) => make("span", "", name)));
 		size();
