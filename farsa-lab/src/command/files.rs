@@ -17,11 +17,11 @@ impl Invocation<'_, '_> {
     pub(super) fn new_file(&self, args: &NewArgs) -> Result<(), Error> {
         let templates = self.laboratory.files()?.templates;
         let names = || templates.iter().map(|template| template.name);
-        let found = match &args.from {
+        let template = match &args.from {
             None => templates.first(),
             Some(name) => templates.iter().find(|template| template.name == name),
         };
-        let Some(Template { name, text, .. }) = found else {
+        let Some(Template { name, text, .. }) = template else {
             let asked = args.from.as_deref().unwrap_or_default();
             let mut list = Error::unknown("--from", "template", asked, names()).to_string();
             for Template { name, summary, .. } in templates {
@@ -43,14 +43,14 @@ impl Invocation<'_, '_> {
     pub(super) fn check(&self, args: &CheckArgs) -> Result<(), Error> {
         let plan = args.variant.plan(self.laboratory.experiment(&args.experiment, "")?)?;
         plan.strategy()?;
-        let found = Connections::new(&plan)?;
+        let connections = Connections::new(&plan)?;
         if let Some(path) = &args.graph {
-            create_results(&[(path.clone(), found.svg())])?;
+            create_results(&[(path.clone(), connections.svg())])?;
         }
         match (args.json, self.quiet) {
-            (true, _) => say(&pretty(&found)?),
+            (true, _) => say(&pretty(&connections)?),
             (false, true) => Ok(()),
-            (false, false) => tell(&found.text()),
+            (false, false) => tell(&connections.text()),
         }
     }
 }

@@ -88,16 +88,16 @@ impl Invocation<'_, '_> {
             return Err(Error::Other(format!("{}: {why}", path.display())));
         }
         create_results(&[(out, text)])?;
-        let mut said = String::new();
+        let mut text = String::new();
         // Writing to a string cannot fail.
-        let _ = writeln!(said, "{}: from {}", OneLine(&name), OneLine(path.display()));
+        let _ = writeln!(text, "{}: from {}", OneLine(&name), OneLine(path.display()));
         let _ = writeln!(
-            said,
+            text,
             "{} not carried over as it is, {} without effect; the file begins with them",
             lost,
             idle.len() + more_idle
         );
-        let _ = writeln!(said, "{} check {}", self.program, OneLine(&name));
+        let _ = writeln!(text, "{} check {}", self.program, OneLine(&name));
         let summary = Summary {
             file: name.clone(),
             left,
@@ -105,7 +105,7 @@ impl Invocation<'_, '_> {
             more_left: *more_left,
             more_without_effect: *more_idle,
         };
-        self.summary(args.json, &said, &|| pretty(&summary))
+        self.summary(args.json, &text, &|| pretty(&summary))
     }
 }
 

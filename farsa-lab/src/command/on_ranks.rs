@@ -96,12 +96,12 @@ impl Invocation<'_, '_> {
             return Err(Error::Usage(format!("--groups {groups}: there {ranks}")));
         }
         let group = rank * groups / size;
-        let own = ranks.split(group)?;
+        let members = ranks.split(group)?;
         let part = Invocation {
             program: self.program,
             laboratory: self.laboratory,
             quiet: self.quiet || group > 0,
-            exchange: Rc::new(Exchange::new(&*own)),
+            exchange: Rc::new(Exchange::new(&*members)),
             sharing: self.sharing,
         };
         let result = if part.exchange.is_follower() {
@@ -111,8 +111,8 @@ impl Invocation<'_, '_> {
                 .step_by(groups)
                 .try_for_each(|number| part.replicate(args, count, Some(number)).map(drop));
             let code = result.as_ref().map_or_else(Error::exit_code, |()| 0);
-            let told = part.dismiss(code);
-            result.and(told)
+            let dismissed = part.dismiss(code);
+            result.and(dismissed)
         };
         self.exchange.begin(result.map(|()| Facts::new()))?;
         if rank > 0 {

@@ -38,9 +38,9 @@ fn item(argument: &Arg) -> String {
 fn section(command: &mut Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let usage = command.render_usage().to_string().replace("Usage: ", "");
-    let own = command.get_arguments().filter(|argument| !argument.is_hide_set() && !is_common(argument));
-    let own = own.filter(|argument| argument.get_id() != "help").map(item);
-    let mut text = format!("{about}: `{usage}`\n\n{}", own.collect::<String>());
+    let arguments = command.get_arguments().filter(|argument| !argument.is_hide_set() && !is_common(argument));
+    let arguments = arguments.filter(|argument| argument.get_id() != "help").map(item);
+    let mut text = format!("{about}: `{usage}`\n\n{}", arguments.collect::<String>());
     if !text.ends_with("\n\n") {
         text.push('\n');
     }

@@ -64,14 +64,14 @@ pub(crate) fn robot(
         }
         _ => None,
     };
-    let own = evaluator.exports().and_then(|exports| exports.robot(parameters.as_deref()));
+    let robot = evaluator.exports().and_then(|exports| exports.robot(parameters.as_deref()));
     let recorded = || match (&parameters, evaluator.bodies()) {
         (Some(parameters), Some(bodies)) => bodies.schema_with(parameters).robot,
         _ => evaluator.info().schema.robot,
     };
     // The control step of a planar robot is not a step of dynamics.
-    let step = if own.is_some() { 0.0 } else { evaluator.info().description.step_seconds };
-    let robot = own.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
+    let step = if robot.is_some() { 0.0 } else { evaluator.info().description.step_seconds };
+    let robot = robot.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
         ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref(), step)),
         ModelFormat::Urdf => urdf::write(&robot),
@@ -116,8 +116,8 @@ impl Champion {
 
 /// Returns the options of a MuJoCo model: those of the experiment, otherwise the given time step [s] and gravity 9.81 m/s2.
 fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
-    let own = evaluator.exports().and_then(Exports::mjcf_options);
-    own.unwrap_or_else(|| {
+    let options = evaluator.exports().and_then(Exports::mjcf_options);
+    options.unwrap_or_else(|| {
         let plain = MjcfOptions::default();
         MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
     })

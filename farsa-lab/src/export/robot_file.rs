@@ -101,7 +101,7 @@ impl Summary {
                 }
                 Law::MusclePair(_) => "muscles".into(),
             };
-            let own = robot.actuators.iter().filter(|actuator| actuator.joint == id);
+            let actuators = robot.actuators.iter().filter(|actuator| actuator.joint == id);
             let parent = segment.parent.map_or("the world", |parent| robot.segments[parent.index()].name.as_str());
             JointSummary {
                 name: joint.name.clone(),
@@ -112,7 +112,7 @@ impl Summary {
                 armature: joint.armature,
                 damping: joint.damping,
                 mass: segment.mass,
-                actuators: own.map(|actuator| law(&actuator.law)).collect(),
+                actuators: actuators.map(|actuator| law(&actuator.law)).collect(),
             }
         });
         Self {

@@ -32,11 +32,11 @@ pub(crate) fn median_interval(values: &[f64]) -> Option<[f64; 2]> {
         // The values are in order, so their counts find the two in the middle.
         let at = |place: usize| {
             let mut before = 0;
-            let found = drawn.iter().position(|count| {
+            let position = drawn.iter().position(|count| {
                 before += count;
                 before > place
             });
-            sorted[found.unwrap_or(n - 1)]
+            sorted[position.unwrap_or(n - 1)]
         };
         let [low, high] = [at((n - 1) / 2), at(n / 2)];
         medians.push(if low == high { low } else { 0.5 * low + 0.5 * high });

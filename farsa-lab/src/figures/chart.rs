@@ -206,11 +206,11 @@ mod tests {
 
     #[test]
     fn gaps_divide_curves_and_many_points_are_thinned() {
-        let found = parts([1.0, f64::NAN, 3.0, 4.0].into_iter().enumerate(), f64::is_finite);
-        assert_eq!(found, vec![vec![(0, 1.0)], vec![(2, 3.0), (3, 4.0)]]);
+        let runs = parts([1.0, f64::NAN, 3.0, 4.0].into_iter().enumerate(), f64::is_finite);
+        assert_eq!(runs, vec![vec![(0, 1.0)], vec![(2, 3.0), (3, 4.0)]]);
         let long: Series = (0..10 * MAX_POINTS + 3).map(|_| 0.0).collect();
-        let found = parts(long.points(), f64::is_finite).concat();
-        assert!(found.len() <= MAX_POINTS + 1 && found.last().is_some_and(|point| point.0 == 10 * MAX_POINTS + 2));
+        let runs = parts(long.points(), f64::is_finite).concat();
+        assert!(runs.len() <= MAX_POINTS + 1 && runs.last().is_some_and(|point| point.0 == 10 * MAX_POINTS + 2));
     }
 
     #[test]

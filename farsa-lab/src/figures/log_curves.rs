@@ -104,10 +104,10 @@ mod tests {
         for title in ["run: fox", "run: hare"] {
             assert_eq!(both.matches(title).count(), 1, "{both}");
         }
-        let one = LogCurves::from_lines(&lines, 1).draw("run", &names[..1]);
+        let single = LogCurves::from_lines(&lines, 1).draw("run", &names[..1]);
         let height =
             |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
-        assert_eq!(height(&both), 2.0 * height(&one));
-        assert!(one.contains(">run<") && both.matches("generation").count() == 2, "{one}");
+        assert_eq!(height(&both), 2.0 * height(&single));
+        assert!(single.contains(">run<") && both.matches("generation").count() == 2, "{single}");
     }
 }

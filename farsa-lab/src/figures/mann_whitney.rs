@@ -45,7 +45,7 @@ pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
 
 /// Returns the share of the choices of `n` ranks whose sum is at least as far from the mean as this one.
 fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
-    let all = ranks.len();
+    let count = ranks.len();
     // ways[k][s] is the number of choices of k values whose ranks add up to s.
     let largest: usize = ranks.iter().sum();
     let mut ways = vec![vec![0.0_f64; largest + 1]; n + 1];
@@ -59,7 +59,7 @@ fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
         }
     }
     // The mean of the doubled sum is n (all + 1).
-    let distance = |sum: usize| sum.abs_diff(n * (all + 1));
+    let distance = |sum: usize| sum.abs_diff(n * (count + 1));
     let total: f64 = ways[n].iter().sum();
     let far: f64 =
         ways[n].iter().enumerate().filter(|(s, _)| distance(*s) >= distance(sum)).map(|(_, ways)| ways).sum();
@@ -107,11 +107,11 @@ mod tests {
     #[test]
     fn a_published_example_and_ties_by_hand() {
         let (first, second) = ([19.0, 22.0, 16.0, 29.0, 24.0], [20.0, 11.0, 17.0, 12.0]);
-        let found = compare(&first, &second).unwrap();
+        let comparison = compare(&first, &second).unwrap();
         let pairs = first.iter().flat_map(|a| second.iter().map(move |b| a > b)).filter(|&larger| larger).count();
         // SciPy's documentation of `mannwhitneyu`: U = 17, exact p = 0.1111.
-        assert_eq!((found.u, pairs), (17.0, 17));
-        assert!((found.p - 14.0 / 126.0).abs() < 1e-15, "{found:?}");
+        assert_eq!((comparison.u, pairs), (17.0, 17));
+        assert!((comparison.p - 14.0 / 126.0).abs() < 1e-15, "{comparison:?}");
         // Ranks 1, 2.5 against 2.5, 4. Four of the six divisions are as far from the mean of 5 as 3.5 is.
         let tied = compare(&[1.0, 2.0], &[2.0, 3.0]).unwrap();
         assert_eq!((tied.u, tied.larger, tied.p), (0.5, 0.125, 4.0 / 6.0));
@@ -123,17 +123,17 @@ mod tests {
         for case in fixture("mann_whitney") {
             let values = |name: &str| case[name].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
             let (first, second): (Vec<f64>, Vec<f64>) = (values("first"), values("second"));
-            let found = compare(&first, &second).unwrap();
+            let comparison = compare(&first, &second).unwrap();
             let [u, p] = ["u", "p"].map(|name| case[name].as_f64().unwrap());
-            assert_eq!((found.u, found.exact), (u, case["exact"].as_bool().unwrap()));
-            assert!((found.p - p).abs() <= 1e-12 * p, "{found:?} where SciPy has {p:e}");
+            assert_eq!((comparison.u, comparison.exact), (u, case["exact"].as_bool().unwrap()));
+            assert!((comparison.p - p).abs() <= 1e-12 * p, "{comparison:?} where SciPy has {p:e}");
         }
     }
 
     #[test]
     fn equal_values_are_no_difference_however_many() {
-        let found = compare(&[1.0; 150], &[1.0; 150]).unwrap();
-        assert_eq!((found.p, found.larger, found.exact), (1.0, 0.5, false));
+        let comparison = compare(&[1.0; 150], &[1.0; 150]).unwrap();
+        assert_eq!((comparison.p, comparison.larger, comparison.exact), (1.0, 0.5, false));
     }
 
     proptest! {
@@ -152,9 +152,9 @@ mod tests {
             let first = u((1 << n) - 1);
             let divisions: Vec<u32> = (0_u32..1 << values.len()).filter(|set| set.count_ones() as usize == n).collect();
             let far = divisions.iter().filter(|&&set| (u(set) - mean).abs() >= (first - mean).abs()).count();
-            let found = compare(&values[..n], &values[n..]).unwrap();
-            prop_assert_eq!(found.u, first);
-            prop_assert!((found.p - far as f64 / divisions.len() as f64).abs() < 1e-12);
+            let comparison = compare(&values[..n], &values[n..]).unwrap();
+            prop_assert_eq!(comparison.u, first);
+            prop_assert!((comparison.p - far as f64 / divisions.len() as f64).abs() < 1e-12);
         }
     }
 }

@@ -41,8 +41,8 @@ mod tests {
     fn the_tail_is_that_of_scipy() {
         for case in fixture("normal") {
             let [z, p] = ["z", "p"].map(|name| case[name].as_f64().unwrap());
-            let found = upper_tail(z);
-            assert!((found - p).abs() <= 1e-13 * p, "{z}: {found:e} where SciPy has {p:e}");
+            let probability = upper_tail(z);
+            assert!((probability - p).abs() <= 1e-13 * p, "{z}: {probability:e} where SciPy has {p:e}");
         }
         assert_eq!((upper_tail(0.0), upper_tail(60.0)), (0.5, 0.0));
         assert!(upper_tail(f64::NAN).is_nan());

@@ -73,10 +73,10 @@ mod tests {
                 (0..3).map(|k| (5.0 + k as f64 + a * long[k] + b * short[k]) as f32).collect()
             })
             .collect();
-        let found = of(&points).unwrap();
-        assert!((found.shares[0] - 0.9).abs() < 1e-6 && (found.shares[1] - 0.1).abs() < 1e-6, "{:?}", found.shares);
+        let components = of(&points).unwrap();
+        assert!((components.shares[0] - 0.9).abs() < 1e-6 && (components.shares[1] - 0.1).abs() < 1e-6, "{:?}", components.shares);
         for (i, point) in points.iter().enumerate() {
-            let [x, y] = found.place(point);
+            let [x, y] = components.place(point);
             let (sine, cosine) = sin_cos(angle(i));
             let expected = [3.0 * cosine, sine];
             assert!((x - expected[0]).abs() < 1e-5 && (y - expected[1]).abs() < 1e-5, "{x} {y} for {expected:?}");
@@ -85,8 +85,8 @@ mod tests {
 
     #[test]
     fn points_of_one_coordinate_have_one_component_and_equal_points_none() {
-        let found = of(&[vec![1.0], vec![3.0]]).unwrap();
-        assert_eq!((found.shares, found.place(&[3.0])), ([1.0, 0.0], [1.0, 0.0]));
+        let components = of(&[vec![1.0], vec![3.0]]).unwrap();
+        assert_eq!((components.shares, components.place(&[3.0])), ([1.0, 0.0], [1.0, 0.0]));
         assert!(of(&[]).is_none() && of(&[vec![], vec![]]).is_none());
         assert!(of(&[vec![0.25, 1.0], vec![0.25, 1.0]]).is_none());
         assert!(of(&[vec![0.25, f32::NAN], vec![0.25, 1.0]]).is_none());

@@ -51,9 +51,9 @@ pub(crate) fn fisher(first: Proportion, second: Proportion) -> f64 {
     for x in (least..peak).rev() {
         weights[x - least] = weights[x + 1 - least] / next(x);
     }
-    let own = weights[first.successes - least] * (1.0 + 1e-7);
+    let limit = weights[first.successes - least] * (1.0 + 1e-7);
     let total: f64 = weights.iter().sum();
-    let as_rare: f64 = weights.iter().filter(|weight| **weight <= own).sum();
+    let as_rare: f64 = weights.iter().filter(|weight| **weight <= limit).sum();
     as_rare / total
 }
 
@@ -98,9 +98,9 @@ mod tests {
             let [first, second] = [(a, b), (c, d)].map(|(successes, failures)| Proportion { successes, of: successes + failures });
             let (n, m, all) = (first.of as u64, second.of as u64, (a + c) as u64);
             let ways = |x: u64| choose(n, x) * choose(m, all - x);
-            let own = ways(a as u64);
+            let limit = ways(a as u64);
             let tables = || all.saturating_sub(m)..=all.min(n);
-            let rare: u64 = tables().map(ways).filter(|ways| *ways <= own).sum();
+            let rare: u64 = tables().map(ways).filter(|ways| *ways <= limit).sum();
             let total: u64 = tables().map(ways).sum();
             let p = fisher(first, second);
             prop_assert!((p - rare as f64 / total as f64).abs() < 1e-12, "{}", p);

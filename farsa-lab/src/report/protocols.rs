@@ -78,11 +78,11 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
             }
         }
     }
-    let all = groups.iter().map(|group| group.runs.len()).sum::<usize>();
+    let run_count = groups.iter().map(|group| group.runs.len()).sum::<usize>();
     let mut table = Table::new(&["protocol", "purpose", "not run with", "command"]);
     for (protocol, runs) in others {
         let Some(first) = runs.first() else { continue };
-        let missing = if all == 1 { first.name() } else { format!("{} of {all} runs", runs.len()) };
+        let missing = if run_count == 1 { first.name() } else { format!("{} of {run_count} runs", runs.len()) };
         let words = [program.into(), "test".into(), first.name(), "--protocol".into(), protocol.name.clone()];
         table.rows.push(vec![protocol.name.clone(), protocol.summary.clone(), missing, shell(&words)?]);
     }
@@ -94,17 +94,17 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
 fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
     let mut all: Vec<Alike<'r>> = Vec::new();
     for group in groups {
-        let first = all.len();
+        let first = alike.len();
         for &run in &group.runs {
             let Some(tested) = run.protocols.iter().find(|tested| tested.protocol.name == name) else { continue };
             let cases = tested.cases();
-            match all.iter_mut().skip(first).find(|alike| alike.cases == cases) {
+            match alike.iter_mut().skip(first).find(|alike| alike.cases == cases) {
                 Some(alike) => alike.runs.push((run, tested)),
-                None => all.push(Alike { label: &group.label, cases, runs: vec![(run, tested)] }),
+                None => alike.push(Alike { label: &group.label, cases, runs: vec![(run, tested)] }),
             }
         }
     }
-    all
+    alike
 }
 
 impl Alike<'_> {
@@ -242,7 +242,7 @@ impl Alike<'_> {
             blocks.extend(states(run, tested));
             return blocks;
         }
-        let mut all = Table::new(&["case", "median", "quartiles", "lowest", "highest"]);
+        let mut table = Table::new(&["case", "median", "quartiles", "lowest", "highest"]);
         for (number, case) in self.cases.iter().enumerate() {
             let rates = self.rates(number);
             let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&rates) else { continue };
@@ -251,16 +251,16 @@ impl Alike<'_> {
             let mut row = vec![format!("{}{held_out}", case.name()), percent(median)];
             row.push(format!("{} to {}", percent(lower), percent(upper)));
             row.extend(ends.map(percent));
-            all.rows.push(row);
+            table.rows.push(row);
         }
-        let each = self.runs.iter().flat_map(|(run, tested)| {
-            let found = [Block::Text(champion(run, tested)), Block::Table(single(tested))];
-            found.into_iter().chain(states(run, tested))
+        let details = self.runs.iter().flat_map(|(run, tested)| {
+            let blocks = [Block::Text(champion(run, tested)), Block::Table(single(tested))];
+            blocks.into_iter().chain(states(run, tested))
         });
         vec![
             Block::Text(format!("{}: share of the trials that succeeded.", self.whose())),
-            Block::Table(all),
-            Block::Fold(format!("Each of the {} runs", self.runs.len()), each.collect()),
+            Block::Table(table),
+            Block::Fold(format!("Each of the {} runs", self.runs.len()), details.collect()),
         ]
     }
 }

@@ -215,12 +215,12 @@ impl<'r> Group<'r> {
         };
         let mut own: Vec<String> = Vec::new();
         if others.iter().any(|other| strategy(other) != strategy(run)) {
-            own.push(strategy(run).to_owned());
+            differences.push(strategy(run).to_owned());
         }
         // The last part of a key is enough for a name. The table of differences has whole keys.
         let settings = run.settings().filter(|(key, value)| differs(key, *value));
-        own.extend(settings.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))));
-        if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
+        differences.extend(settings.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))));
+        if differences.is_empty() { condition.into() } else { format!("{condition}, {}", differences.join(", ")) }
     }
 
     /// Describes the groups whose best is the best so far, or nothing.

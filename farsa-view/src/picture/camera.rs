@@ -78,8 +78,8 @@ impl Camera {
     /// # Errors
     /// [`Error::UnknownCamera`] for an unknown name, with the nearest valid one.
     pub fn named(name: &str) -> Result<Self, Error> {
-        let known = CAMERAS.into_iter().find(|camera| camera.name == name);
-        known.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
+        let camera = CAMERAS.into_iter().find(|camera| camera.name == name);
+        camera.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
     }
 
     /// Returns the camera that a view starts with.

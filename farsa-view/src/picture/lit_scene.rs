@@ -124,8 +124,8 @@ impl Solid {
         if aside > self.reach * self.reach * 1.000_001 {
             return None;
         }
-        let own = |v: Vector| self.axes.map(|axis| dot(axis, v));
-        let Meeting { distance, normal } = self.geometry.meet(own(from), own(direction))?;
+        let local = |v: Vector| self.axes.map(|axis| dot(axis, v));
+        let Meeting { distance, normal } = self.geometry.meet(local(from), local(direction))?;
         Some(Meeting { distance, normal: self.turned(normal) })
     }
 
@@ -160,8 +160,8 @@ impl Solid {
 
     /// Returns the form factor of a box, of its faces toward the point and above the horizon, by Lambert's formula for polygons.
     fn box_hides(&self, point: Vector, normal: Vector) -> f64 {
-        let own = |v: Vector| self.axes.map(|axis| dot(axis, v));
-        let (point, normal) = (own(sub(point, self.pose.position)), own(normal));
+        let local = |v: Vector| self.axes.map(|axis| dot(axis, v));
+        let (point, normal) = (local(sub(point, self.pose.position)), local(normal));
         let mut sum = 0.0;
         for (outwards, corners) in &self.faces {
             if dot(*outwards, sub(point, corners[0])) <= 1e-6 {

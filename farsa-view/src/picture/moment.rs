@@ -99,12 +99,12 @@ impl Picture {
             let (i, at) = (body.index(), pose(body).compose(&placement));
             let leaf = robot.segments.iter().all(|s| s.parent != Some(body));
             if leaf && (robot.segments[i].joint.kind == JointKind::Floating || robot.sliders(body).is_some()) {
-                let known = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
+                let index = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
                     things.push(i);
                     things.len() - 1
                 });
                 // Blue colors belong to the robot.
-                let blue = [0, 2, 6, 3][known % 4];
+                let blue = [0, 2, 6, 3][index % 4];
                 self.shapes.push(own(Instance::new(shape, at, Role::Object).with_color(OKABE_ITO[blue])));
                 continue;
             }

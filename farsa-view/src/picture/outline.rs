@@ -47,30 +47,30 @@ pub(crate) fn bounds(places: &[Point2]) -> [Point2; 2] {
 
 /// Clips a convex polygon to the part where the linear function `room` is not negative. `mix` interpolates between corners.
 pub(crate) fn clip<P: Copy>(corners: &[P], room: impl Fn(&P) -> f64, mix: impl Fn(P, P, f64) -> P) -> Vec<P> {
-    let mut kept = Vec::with_capacity(corners.len() + 1);
+    let mut clipped = Vec::with_capacity(corners.len() + 1);
     for (i, corner) in corners.iter().enumerate() {
         let next = &corners[(i + 1) % corners.len()];
         let (here, there) = (room(corner), room(next));
         if here >= 0.0 {
-            kept.push(*corner);
+            clipped.push(*corner);
         }
         if (here >= 0.0) != (there >= 0.0) {
-            kept.push(mix(*corner, *next, here / (here - there)));
+            clipped.push(mix(*corner, *next, here / (here - there)));
         }
     }
-    kept
+    clipped
 }
 
 /// Clips a convex polygon to a frame of this size with a `margin` around it.
 pub(crate) fn framed(corners: &[Point2], size: [u32; 2], margin: f64) -> Vec<Point2> {
     let mix = |a: Point2, b: Point2, s: f64| [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s];
-    let mut kept = corners.to_vec();
+    let mut clipped = corners.to_vec();
     for axis in 0..2 {
         let high = f64::from(size[axis]) + margin;
-        kept = clip(&kept, |place| place[axis] + margin, mix);
-        kept = clip(&kept, |place| high - place[axis], mix);
+        clipped = clip(&clipped, |place| place[axis] + margin, mix);
+        clipped = clip(&clipped, |place| high - place[axis], mix);
     }
-    kept
+    clipped
 }
 
 #[cfg(test)]

@@ -217,10 +217,10 @@ mod tests {
             let [x, y] = view.project([0.1, -0.2, 0.03]).unwrap();
             let color = pixels[y as usize * 90 + x as usize].map(f64::from);
             // Equal hue: red, green and blue differ as in its own color.
-            let own = OKABE_ITO[0].map(f64::from);
-            let bright = color[0] / own[0];
+            let role = OKABE_ITO[0].map(f64::from);
+            let bright = color[0] / role[0];
             assert!((0.6..1.15).contains(&bright), "{name}: {color:?}");
-            assert!((color[1] / own[1] / bright - 1.0).abs() < 0.2 && color[2] < 0.5 * color[0], "{name}: {color:?}");
+            assert!((color[1] / role[1] / bright - 1.0).abs() < 0.2 && color[2] < 0.5 * color[0], "{name}: {color:?}");
         }
         let alone = Picture { shapes: vec![ball([0.0; 3])], ..Picture::default() };
         let pixels = pixels(&alone, &alone.window(Camera::default(), [90, 60]), [90, 60]);

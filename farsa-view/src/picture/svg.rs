@@ -363,17 +363,17 @@ impl Drawing<'_> {
 
 /// Returns the points at which the line of a coordinate `at` enters and leaves a convex polygon.
 fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Point2>; 2] {
-    let mut found = [None; 2];
+    let mut crossings = [None; 2];
     let mut count = 0;
     for (i, a) in corners.iter().enumerate() {
         let b = corners[(i + 1) % corners.len()];
         if (a[axis] < at) != (b[axis] < at) && count < 2 {
             let share = (at - a[axis]) / (b[axis] - a[axis]);
-            found[count] = Some([a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]);
+            crossings[count] = Some([a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]);
             count += 1;
         }
     }
-    found
+    crossings
 }
 
 #[cfg(test)]

@@ -334,7 +334,7 @@ mod tests {
     #[test]
     fn no_tick_is_kept_beyond_the_room() {
         let schema = || Schema::from_robot(&ArmAndHand::default().robot().unwrap()).with_sensors(["a"]);
-        let each = 4 * (POSE * schema().body_count() + 1) + 8 + 2 * size_of::<usize>();
+        let tick_bytes = 4 * (POSE * schema().body_count() + 1) + 8 + 2 * size_of::<usize>();
         let fill = |recording: &mut Recording, ticks: u32| {
             for tick in 1..=ticks {
                 recording.sensors(&[tick as f32]);
@@ -348,13 +348,13 @@ mod tests {
         fill(&mut whole, 9);
         let of_contacts = |ticks: usize| size_of::<Touching>() * ticks * (ticks + 1) / 2;
         let open = 4 * (POSE * schema().body_count() + 1);
-        assert_eq!((whole.bytes(), whole.is_cut()), (9 * each + open + of_contacts(9), false));
+        assert_eq!((whole.bytes(), whole.is_cut()), (9 * tick_bytes + open + of_contacts(9), false));
         // The current tick counts, with its contacts.
-        let mut cut = Recording::new(schema()).with_room(5 * each + open + of_contacts(6));
+        let mut cut = Recording::new(schema()).with_room(5 * tick_bytes + open + of_contacts(6));
         fill(&mut cut, 9);
         assert!(cut.is_cut());
         assert_eq!((cut.times(), cut.contacts_at(5).len()), (&whole.times()[..6], 6));
-        assert_eq!(cut.bytes(), 6 * each + open + of_contacts(6));
+        assert_eq!(cut.bytes(), 6 * tick_bytes + open + of_contacts(6));
         assert!(
             (0..6).all(|tick| cut.row(tick).eq(whole.row(tick)) && cut.contacts_at(tick) == whole.contacts_at(tick))
         );
