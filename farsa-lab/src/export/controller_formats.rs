@@ -221,7 +221,7 @@ fn write_block(f: &mut fmt::Formatter<'_>, block: &Block) -> fmt::Result {
             let (first, count) = (neurons.first, neurons.count);
             writeln!(f, "    Block::ModulatedGain {{ neurons: Span::new({first}, {count}), by: {by} }},")
         }
-        // There is no other; one more would not compile where it is read.
+        // There is no other kind. A new one would not compile in its reader.
         _ => f.write_str("    compile_error!(\"a block of a later version\"),\n"),
     }
 }

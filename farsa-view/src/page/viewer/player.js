@@ -34,7 +34,8 @@ class Player {
 	frame(time) {
 		const {clock, shown} = this;
 		this.asked = false;
-		if (!clock) return;
+		// Without a trial, or without WebGL 2, nothing is drawn.
+		if (!clock || !this.views[0]) return;
 		if (farsa.playing) {
 			// A page that was hidden continues at its tick.
 			this.tick = clock.tickAt(this.now + min(100, max(0, time - this.before))/1000*this.speed);
