@@ -21,7 +21,7 @@ use crate::strategy::settings::POPULATION;
 /// The suffixes of configuration files.
 const CONFIGURATIONS: [&str; 2] = ["ini", "conf"];
 /// The most remarks that are listed.
-const MOST_TOLD: usize = 1000;
+const MAX_REMARKS: usize = 1000;
 
 /// The result of importing a configuration.
 #[derive(Debug, Serialize)]
@@ -112,10 +112,10 @@ impl Invocation<'_, '_> {
 /// Reports differences on standard error. A closed pipe is no error.
 fn tell_left(left: &[LeftOut], lost: usize) {
     let mut errors = io::stderr().lock();
-    for remark in left.iter().take(MOST_TOLD) {
+    for remark in left.iter().take(MAX_REMARKS) {
         let _ = writeln!(errors, "{remark}");
     }
-    let told = left.len().min(MOST_TOLD);
+    let told = left.len().min(MAX_REMARKS);
     if lost > told {
         let _ = writeln!(errors, "and {} more", lost - told);
     }

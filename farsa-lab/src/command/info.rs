@@ -15,7 +15,7 @@ use crate::json::pretty;
 use crate::run::plan::Plan;
 
 /// The most names of a kind that are listed before the last.
-const MOST_NAMES: usize = 12;
+const MAX_NAMES: usize = 12;
 
 /// Returns a line per experiment with its conditions.
 pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {
@@ -218,8 +218,8 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let width = info.lesions.iter().map(|lesion| lesion.kind.len()).max().unwrap_or(0);
     for PartNames { kind, names } in &info.lesions {
         let names = match names.as_slice() {
-            [first @ .., last] if first.len() > MOST_NAMES => {
-                format!("{}, ..., {last}", first[..MOST_NAMES].join(", "))
+            [first @ .., last] if first.len() > MAX_NAMES => {
+                format!("{}, ..., {last}", first[..MAX_NAMES].join(", "))
             }
             all => all.join(", "),
         };

@@ -186,7 +186,7 @@ pub const LEAK: Leak = Leak::{};",
     }
 }
 
-/// How many parameters there are, by the layout.
+/// The number of parameters of the layout.
 struct ParameterCount<'a>(&'a NetworkExport);
 
 impl fmt::Display for ParameterCount<'_> {

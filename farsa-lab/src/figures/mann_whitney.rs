@@ -3,7 +3,7 @@
 use crate::figures::normal::upper_tail;
 
 /// The most values of both groups for the exact test, which takes too long beyond that.
-const MOST: usize = 200;
+const MAX_EXACT: usize = 200;
 
 /// The comparison of two groups of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
     }
     let sum: usize = ranks.iter().zip(&sorted).filter(|(_, value)| value.1).map(|(rank, _)| rank).sum();
     let u = sum as f64 / 2.0 - (n * (n + 1)) as f64 / 2.0;
-    let exact = all <= MOST;
+    let exact = all <= MAX_EXACT;
     let p = if exact { counted(&ranks, n, sum) } else { approximated(&sorted, n, u) };
     Some(Comparison { u, larger: u / (n * m) as f64, p, exact })
 }

@@ -74,7 +74,11 @@ mod tests {
             })
             .collect();
         let components = of(&points).unwrap();
-        assert!((components.shares[0] - 0.9).abs() < 1e-6 && (components.shares[1] - 0.1).abs() < 1e-6, "{:?}", components.shares);
+        assert!(
+            (components.shares[0] - 0.9).abs() < 1e-6 && (components.shares[1] - 0.1).abs() < 1e-6,
+            "{:?}",
+            components.shares
+        );
         for (i, point) in points.iter().enumerate() {
             let [x, y] = components.place(point);
             let (sine, cosine) = sin_cos(angle(i));

@@ -28,7 +28,8 @@ pub(crate) fn states(run: &Run<'_>, tested: &TestedProtocol) -> Option<Block> {
     let columns = Protocol::places(&cases, |case| &case.column).len();
     let picture = Trajectories { title: &title, axes, columns, panels: &panels }.draw()?;
     let trials = panels.iter().map(|panel| panel.curves.len()).max().unwrap_or(0);
-    let neurons = format!("{} neurons, {} to {}", states.neurons.len(), states.neurons.first()?, states.neurons.last()?);
+    let neurons =
+        format!("{} neurons, {} to {}", states.neurons.len(), states.neurons.first()?, states.neurons.last()?);
     let caption = format!(
         "{}: the states of {neurons}, in the first {trials} trials of each case, from the circle to the dot. Pale curves are those of all cases.",
         run.name()

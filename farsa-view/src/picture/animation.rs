@@ -6,7 +6,7 @@ use crate::picture::moment::Picture;
 use crate::picture::png::pixels;
 
 /// The most pictures of an animation.
-const MOST: usize = 1000;
+const MAX_PICTURES: usize = 1000;
 
 /// Returns an endless animated PNG of pictures of `size` [pixels], each shown for the given time [ms].
 ///
@@ -20,8 +20,11 @@ pub(crate) fn animation(
     size: [u32; 2],
     milliseconds: u16,
 ) -> Result<Vec<u8>, Error> {
-    if pictures.is_empty() || pictures.len() > MOST {
-        return Err(Error::Size { size, why: format!("{} pictures; an animation has 1 to {MOST}", pictures.len()) });
+    if pictures.is_empty() || pictures.len() > MAX_PICTURES {
+        return Err(Error::Size {
+            size,
+            why: format!("{} pictures; an animation has 1 to {MAX_PICTURES}", pictures.len()),
+        });
     }
     let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
     let window = camera.fit(pictures.iter().flat_map(|picture| picture.interest(camera.is_close())).collect(), size);
@@ -85,6 +88,6 @@ mod tests {
         assert!(balls.iter().all(|(count, _)| (count / balls[0].0 - 1.0).abs() < 0.2), "{balls:?}");
         assert!(length(way(0)) > 8.0 && length([way(0)[0] - way(1)[0], way(0)[1] - way(1)[1]]) < 1.0, "{balls:?}");
         assert!(animation(&[], camera, [60, 40], 40).is_err());
-        assert!(animation(&vec![at(0.0); MOST + 1], camera, [60, 40], 40).is_err());
+        assert!(animation(&vec![at(0.0); MAX_PICTURES + 1], camera, [60, 40], 40).is_err());
     }
 }

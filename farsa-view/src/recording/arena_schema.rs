@@ -21,7 +21,7 @@ const SIDE: f64 = 2e-3;
 /// The height of an area above the one below [m].
 const LAYER: f64 = 1e-4;
 /// The number of robots above which only hulls are shown.
-const MOST_WITH_PARTS: usize = 50;
+const MAX_WITH_PARTS: usize = 50;
 
 /// Returns a frame on the ground, turned around the vertical.
 fn standing([x, y]: [f64; 2], z: f64, heading: f64) -> Pose<f64> {
@@ -150,7 +150,7 @@ impl Schema {
             }
             objects.push(moving(cylinder(it), body));
         }
-        let look = if arena.robots.len() > MOST_WITH_PARTS { wheeled_look::hull } else { wheeled_look::parts };
+        let look = if arena.robots.len() > MAX_WITH_PARTS { wheeled_look::hull } else { wheeled_look::parts };
         for (number, placed) in arena.robots.iter().enumerate() {
             for Part { name, geometry, place, color } in look(&placed.robot) {
                 let name = format!("{} {name}", bodies[number]);

@@ -6,9 +6,9 @@ use crate::recording::images::{packed, unpacked};
 use crate::recording::schema::ImageChannel;
 
 /// The most pixels of an image, because pages number them in 16 bits.
-const MOST_PIXELS: usize = u16::MAX as usize;
+const MAX_PIXELS: usize = u16::MAX as usize;
 /// The most changes of a recording, 8 MB.
-const MOST_CHANGES: usize = 1 << 21;
+const MAX_CHANGES: usize = 1 << 21;
 
 /// A pixel with another color than at the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl GroundImages {
     /// Creates black images for those of the schema that are on the ground.
     pub(crate) fn new(channels: &[ImageChannel]) -> Self {
         let image = |channel: &ImageChannel| {
-            let black = vec![0; Some(channel.pixels()).filter(|pixels| *pixels <= MOST_PIXELS)?];
+            let black = vec![0; Some(channel.pixels()).filter(|pixels| *pixels <= MAX_PIXELS)?];
             channel.ground.map(|_| GroundImage { now: black.clone(), last: black, ..GroundImage::default() })
         };
         Self { images: channels.iter().map(image).collect(), changes: 0 }
@@ -91,7 +91,7 @@ impl GroundImages {
     /// Ends the tick.
     pub(crate) fn tick(&mut self) {
         for image in self.images.iter_mut().flatten() {
-            self.changes += image.tick(MOST_CHANGES - self.changes);
+            self.changes += image.tick(MAX_CHANGES - self.changes);
         }
     }
 
@@ -155,9 +155,9 @@ mod tests {
             (0..255 * 256).for_each(|pixel| grounds.pixel(0, pixel, [f32::from(tick % 2), 0.0, 1.0]));
             grounds.tick();
         }
-        assert_eq!(grounds.changes, MOST_CHANGES);
+        assert_eq!(grounds.changes, MAX_CHANGES);
         let counted: Vec<usize> = (0..60).map(|tick| grounds.changes(tick, 0).len()).collect();
-        let full = MOST_CHANGES / (255 * 256);
+        let full = MAX_CHANGES / (255 * 256);
         assert!(counted[..full].iter().all(|count| *count == 255 * 256) && counted[full + 1..].iter().all(|c| *c == 0));
         assert!(grounds.at(59, 0).is_some());
     }

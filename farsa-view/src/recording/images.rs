@@ -6,9 +6,9 @@ use std::ops::Range;
 use crate::recording::schema::ImageChannel;
 
 /// The most pixels of a recording, 8 MB or 5461 different images of 32 x 24 pixels.
-const MOST_PIXELS: usize = 1 << 22;
+const MAX_PIXELS: usize = 1 << 22;
 /// The largest counts of red, green and blue.
-const LARGEST: [f32; 3] = [31.0, 63.0, 31.0];
+const MAX_COUNTS: [f32; 3] = [31.0, 63.0, 31.0];
 /// The first bit of red, green and blue in a pixel.
 const SHIFT: [u32; 3] = [11, 5, 0];
 
@@ -39,7 +39,7 @@ impl Images {
             .map(|channel| {
                 // An image above the limit is never stored, and images on the ground are stored as changes.
                 let begin = end;
-                let kept = |pixels: &usize| channel.ground.is_none() && *pixels <= MOST_PIXELS;
+                let kept = |pixels: &usize| channel.ground.is_none() && *pixels <= MAX_PIXELS;
                 end += Some(channel.pixels()).filter(kept).unwrap_or(0);
                 begin..end
             })
@@ -69,7 +69,7 @@ impl Images {
                 None
             } else if let Some(start) = self.last[image].filter(like_last) {
                 Some(start)
-            } else if self.pixels.len() + seen.len() <= MOST_PIXELS {
+            } else if self.pixels.len() + seen.len() <= MAX_PIXELS {
                 let start = Some(self.pixels.len() as u32);
                 self.pixels.extend_from_slice(seen);
                 self.last[image] = start;
@@ -105,12 +105,13 @@ impl Images {
 
 /// Converts a color to counts of 5, 6 and 5 bits. NaN becomes 0.
 pub(super) fn packed(color: [f32; 3]) -> u16 {
-    let counts = iter::zip(color, LARGEST).map(|(shade, largest)| (shade * largest).round().clamp(0.0, largest) as u16);
+    let counts =
+        iter::zip(color, MAX_COUNTS).map(|(shade, largest)| (shade * largest).round().clamp(0.0, largest) as u16);
     iter::zip(counts, SHIFT).fold(0, |pixel, (count, shift)| pixel | count << shift)
 }
 
 pub(super) fn unpacked(pixel: u16) -> [f32; 3] {
-    core::array::from_fn(|k| f32::from((pixel >> SHIFT[k]) & LARGEST[k] as u16) / LARGEST[k])
+    core::array::from_fn(|k| f32::from((pixel >> SHIFT[k]) & MAX_COUNTS[k] as u16) / MAX_COUNTS[k])
 }
 
 #[cfg(test)]
@@ -156,7 +157,7 @@ mod tests {
             images.pixel(1, 0, [1.0; 3]);
             images.tick();
         }
-        assert_eq!(images.pixels().len(), MOST_PIXELS);
+        assert_eq!(images.pixels().len(), MAX_PIXELS);
         let kept: Vec<bool> = (0..6).map(|tick| images.at(tick, 0).is_some()).collect();
         assert_eq!(kept, [true, true, true, true, false, false]);
         assert!((0..6).all(|tick| images.at(tick, 1).is_none()));
@@ -167,7 +168,7 @@ mod tests {
         fn a_colour_is_kept_within_half_a_count(color in proptest::array::uniform3(0.0_f32..=1.0)) {
             let read = unpacked(packed(color));
             for k in 0..3 {
-                prop_assert!((read[k] - color[k]).abs() <= 0.5001 / LARGEST[k], "{color:?} {read:?}");
+                prop_assert!((read[k] - color[k]).abs() <= 0.5001 / MAX_COUNTS[k], "{color:?} {read:?}");
             }
             prop_assert_eq!(packed(read), packed(color));
         }

@@ -244,7 +244,8 @@ impl Schema {
         let mut of_objects: Vec<BodyId> = self.objects.iter().filter_map(|object| object.body).collect();
         of_objects.sort_unstable();
         of_objects.dedup();
-        let visible = |body: &BodyId| self.robot.as_ref().is_some_and(|robot| robot.shaped_bodies().any(|b| b == *body));
+        let visible =
+            |body: &BodyId| self.robot.as_ref().is_some_and(|robot| robot.shaped_bodies().any(|b| b == *body));
         of_objects.retain(|body| !visible(body));
         of_robot.chain(of_objects)
     }
