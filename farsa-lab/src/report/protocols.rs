@@ -92,7 +92,7 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
 
 /// Returns the runs of each group with the same tested cases.
 fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
-    let mut all: Vec<Alike<'r>> = Vec::new();
+    let mut alike: Vec<Alike<'r>> = Vec::new();
     for group in groups {
         let first = alike.len();
         for &run in &group.runs {

@@ -213,7 +213,7 @@ impl<'r> Group<'r> {
             let comparable = |other: &Run<'_>| strategy(other) == strategy(run) || !of_strategy(key);
             others.iter().any(|other| comparable(other) && other.value(key) != value)
         };
-        let mut own: Vec<String> = Vec::new();
+        let mut differences: Vec<String> = Vec::new();
         if others.iter().any(|other| strategy(other) != strategy(run)) {
             differences.push(strategy(run).to_owned());
         }
