@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use clap::builder::PossibleValue;
 use clap::{Arg, Command};
 
 use crate::command::manual;
@@ -23,7 +24,7 @@ fn item(argument: &Arg) -> String {
     let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
     let values = argument.get_possible_values();
     let values: Vec<&str> =
-        values.iter().filter(|_| argument.get_long().is_some()).map(|value| value.get_name()).collect();
+        values.iter().filter(|_| argument.get_long().is_some()).map(PossibleValue::get_name).collect();
     let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
     let defaults: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
     let default = if defaults.is_empty() || argument.get_num_args().is_some_and(|count| !count.takes_values()) {
