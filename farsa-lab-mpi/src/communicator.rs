@@ -11,23 +11,23 @@ use mpi::point_to_point::{Destination as _, Source as _};
 use mpi::request::Request;
 use mpi::topology::{Color, Communicator as _, SimpleCommunicator};
 
-/// Most bytes that all ranks together give in one call of MPI, which counts them in 32 bits.
+/// The largest number of bytes of all ranks together in one MPI call, which counts in 32 bits.
 const MOST: usize = 1 << 30;
-/// The shortest and the longest pause between two looks whether the others have come.
+/// The shortest and the longest pause between two checks for the other ranks.
 const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(1)];
 
-/// The ranks of an MPI communicator, for one thread. An error of MPI ends all processes, as MPI does by itself.
+/// The ranks of an MPI communicator, for one thread. An MPI error ends all processes.
 pub struct MpiRanks {
     communicator: SimpleCommunicator,
 }
 
 impl MpiRanks {
-    /// The ranks of a communicator that nobody else sends messages in.
+    /// Creates the ranks of a communicator without other users.
     pub fn new(communicator: SimpleCommunicator) -> Self {
         Self { communicator }
     }
 
-    /// Waits until all ranks are here. A library of MPI keeps a processor busy while it waits, which threads of trials may need.
+    /// Waits for all ranks. MPI libraries occupy a processor while they wait, so this function polls with pauses.
     fn meet(&self) {
         let since = Instant::now();
         let mut here: Request<'static, ()> = self.communicator.immediate_barrier();
@@ -75,7 +75,7 @@ impl Ranks for MpiRanks {
     }
 
     fn send(&self, to: usize, message: [u64; 2]) -> Result<(), Error> {
-        // So few bytes are on their way at once, whether anybody receives or not.
+        // The small number of bytes is sent even without a receiver.
         self.communicator.process_at_rank(to as Count).send(&message[..]);
         Ok(())
     }

@@ -11,14 +11,14 @@ use mpi::topology::Communicator as _;
 
 pub use communicator::MpiRanks;
 
-/// What all ranks end with when one panics outside a trial.
+/// The exit code of all ranks after a panic outside a trial.
 const PANICKED: i32 = 101;
 
-/// Runs the command over a laboratory on all ranks of MPI: the whole of a `main`. Without `mpirun` there is one rank.
+/// Runs the command over a laboratory on all MPI ranks, as the body of a `main`. Without `mpirun` there is one rank.
 ///
-/// The exit code is that of [`Laboratory::main`], on all ranks. A program is to be called like the one of one process, with `-mpi` behind.
+/// The exit code is that of [`Laboratory::main`] on all ranks. Name the program like that of one process, with `-mpi` at the end.
 pub fn main(laboratory: &Laboratory<'_>) -> ExitCode {
-    // Trials run in threads of their own, which know nothing of MPI.
+    // Trials run in other threads, which make no MPI calls.
     let Some((universe, _)) = initialize_with_threading(Threading::Funneled) else {
         eprintln!("error: MPI was initialised before");
         return ExitCode::FAILURE;
@@ -27,7 +27,7 @@ pub fn main(laboratory: &Laboratory<'_>) -> ExitCode {
     let ranks = MpiRanks::new(world);
     let result = catch_unwind(AssertUnwindSafe(|| laboratory.main_on_ranks(&ranks)));
     result.unwrap_or_else(|_| {
-        // The others would wait for this one.
+        // The other ranks would wait for this one.
         universe.world().abort(PANICKED)
     })
 }

@@ -1,6 +1,6 @@
-//! `farsa-mpi` under `mpirun`: the files of `farsa`, whatever happens to ranks. `./ci mpi` runs it.
+//! Compares the files of `farsa-mpi` under `mpirun` with those of `farsa`, with killed ranks. `./ci mpi` runs it.
 //!
-//! `FARSA_KILLS` is how often a rank is killed; `./ci long` asks for a hundred.
+//! `FARSA_KILLS` is the number of kills. `./ci long` sets it to a hundred.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use farsa_num::{Domain, Stream};
 
-/// Experiments with what makes their generations short: a world in lanes, populations that meet, and training.
+/// Experiments with short generations: a world in lanes, populations with opponents, and training.
 const RUNS: [(&str, &str, u32); 4] = [
     ("discrimination", "--set trial.count=2 --set trial.steps=50", 40),
     ("predator-prey", "--population 6 --set evolution.parents=2 --set trial.count=2 --set trial.steps=40", 6),
@@ -19,7 +19,7 @@ const RUNS: [(&str, &str, u32); 4] = [
     ("reach-grasp-lift", "--population 12 --set evolution.parents=2", 2),
 ];
 
-/// The command of one process, which `./ci mpi` builds beside the other one.
+/// The command of one process, which `./ci mpi` builds.
 fn farsa(here: &Path, arguments: &str) -> Command {
     let beside = Path::new(env!("CARGO_BIN_EXE_farsa-mpi")).with_file_name("farsa");
     let program = std::env::var_os("FARSA").map_or(beside, PathBuf::from);
@@ -29,7 +29,7 @@ fn farsa(here: &Path, arguments: &str) -> Command {
     in_folder(command, here)
 }
 
-/// So many ranks of `farsa-mpi`; what stands after a colon are more ranks, as `mpirun` has it.
+/// Runs ranks of `farsa-mpi`. More ranks follow after a colon, as in `mpirun`.
 fn mpirun(here: &Path, ranks: usize, arguments: &str) -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--oversubscribe", "--allow-run-as-root", "-n", &ranks.to_string()]);
@@ -64,7 +64,7 @@ fn scratch(name: &str) -> PathBuf {
     here
 }
 
-/// Refuses another content than that of a run, but for the manifest, which has the times of its sessions.
+/// Refuses other content than that of a run, except for the manifest with its times.
 fn same(found: &Path, expected: &Path) {
     let content = |run: &Path| -> BTreeMap<String, Vec<u8>> {
         let entries = fs::read_dir(run).expect("a run").map(|entry| entry.expect("an entry"));
@@ -159,18 +159,18 @@ fn what_goes_wrong_is_said_once_and_ends_all() {
     once("run discriminaton", 2, "unknown experiment `discriminaton`; the nearest is `discrimination`");
     once("run --resume nowhere", 2, "nowhere: there is no such directory");
     assert!(!here.join("r").exists());
-    // A directory in the place of a file that rank 0 is to replace.
+    // A directory instead of a file that rank 0 replaces.
     succeed(mpirun(&here, 2, run));
     fs::remove_file(here.join("r/fitness.svg")).expect("a picture");
     fs::create_dir(here.join("r/fitness.svg")).expect("a directory");
     once("run --resume r --generations 5 -q", 1, "fitness.svg");
-    // Other verbs are rank 0's.
+    // Rank 0 alone runs other verbs.
     let output = mpirun(&here, 3, "list").output().expect("mpirun");
     let list = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!((output.status.code(), list.matches("predator-prey").count()), (Some(0), 1), "{list}");
 }
 
-/// The processes that a process has started, by Linux.
+/// Returns the child processes of a process on Linux.
 fn children(of: u32) -> Vec<u32> {
     let entries =
         fs::read_dir("/proc").expect("/proc").filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
@@ -185,9 +185,9 @@ fn signal(name: &str, process: u32) {
     let _ = Command::new("kill").args([name, &process.to_string()]).stderr(Stdio::null()).status();
 }
 
-/// Whether `mpirun` ends by itself once a rank is lost; if not, it is killed.
+/// Returns whether `mpirun` ends after a rank is lost. Otherwise it is killed.
 ///
-/// That of Open MPI 4 sometimes locks itself out when all its ranks are gone (its issue 7790). A rank that goes on is no such case.
+/// Open MPI 4 sometimes deadlocks when all its ranks are gone (its issue 7790). A rank that continues is another case.
 fn ends(mpirun: &mut Child) -> bool {
     let begun = Instant::now();
     while begun.elapsed() < Duration::from_secs(30) {
@@ -206,7 +206,8 @@ fn ends(mpirun: &mut Child) -> bool {
     false
 }
 
-/// Three ranks that go on with the run `r`, in the order of their numbers, once they have finished generations together.
+/// Starts three ranks that continue the run `r`, and waits until they have finished generations together. They are in the order
+/// of their numbers.
 fn go_on(here: &Path) -> (Child, Vec<u32>) {
     let saved = || fs::metadata(here.join("r/fitness.csv")).expect("the log").len();
     let (before, begun) = (saved(), Instant::now());
@@ -245,20 +246,20 @@ fn a_lost_rank_ends_all_and_is_named() {
         signal("-KILL", ranks[lost]);
         let output = child.wait_with_output().expect("its end");
         let said = said(&output).split_whitespace().collect::<Vec<_>>().join(" ");
-        // With the number of its process, or with 0.
+        // The number of the process, or 0.
         assert!(said.contains(&format!("process rank {lost} with PID ")), "{said}");
         assert!(said.contains("exited on signal 9"), "{said}");
         assert_eq!(output.status.code(), Some(128 + 9), "{said}");
     }
-    // What was saved is whole.
+    // The saved files are complete.
     let end = fs::read_to_string(here.join("r/fitness.csv")).expect("the log").lines().count() + 5;
     succeed(mpirun(&here, 2, &format!("run --resume r --generations {end} -q")));
     succeed(farsa(&here, &format!("{run} --generations {end} --out whole -q")));
     same(&here.join("r"), &here.join("whole"));
 }
 
-/// One rank on a full disk and more that have room: no file of the former grows beyond some blocks of 512 bytes. Messages go
-/// through sockets, because shared memory is a file, too.
+/// Runs one rank on a full disk and others with space. No file of the former grows beyond some blocks of 512 bytes. Messages use
+/// sockets, because shared memory is a file, too.
 fn with_a_full_disk(here: &Path, full: usize, blocks: u32, arguments: &str) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" {arguments}");
     let mut command = Command::new("mpirun");
@@ -285,7 +286,7 @@ fn a_full_disk_of_one_rank_loses_nothing() {
     succeed(mpirun(&here, 2, &format!("{run} --generations 4 --out r -q")));
     let file = |name: &str| fs::read(here.join("r").join(name)).expect("a file");
     let before = ["champion.bin", "checkpoint.bin", "record.bin", "fitness.csv"].map(|name| (name, file(name)));
-    // Not even the configuration can be written; then some generations can be.
+    // At first not even the configuration can be written, then some generations can.
     for (blocks, cannot) in [(0, "r/config.toml: File too large (os error 27)"), (8, "r/")] {
         let output = with_a_full_disk(&here, 0, blocks, resume).output().expect("mpirun");
         let said = said(&output);
@@ -299,7 +300,7 @@ fn a_full_disk_of_one_rank_loses_nothing() {
         }
         assert_eq!(file("record.bin").len() > before[2].1.len(), blocks > 0, "it should come some way");
     }
-    // Others than rank 0 need no room, and with room for rank 0 the run goes on as if nothing had been.
+    // Only rank 0 needs space. With space the run continues as usual.
     succeed(with_a_full_disk(&here, 1, 0, resume));
     same(&here.join("r"), &here.join("whole"));
 }
@@ -319,7 +320,7 @@ fn a_run_whose_ranks_are_killed_again_and_again_is_the_run_that_was_not() {
         };
         let size = 2 + kill % 3;
         let mut child = mpirun(&here, size, &arguments).spawn().expect("mpirun");
-        // Often while ranks begin, and while they save for the first time, which is after a second.
+        // Most kills are at the start and at the first save, after a second.
         let seconds = if stream.uniform_f64() < 0.4 { 0.6 * stream.uniform_f64() } else { 1.0 + stream.uniform_f64() };
         thread::sleep(Duration::from_secs_f64(seconds));
         let ranks = children(child.id());
@@ -330,7 +331,7 @@ fn a_run_whose_ranks_are_killed_again_and_again_is_the_run_that_was_not() {
         assert!(!output.status.success(), "kill {kill}: it ended by itself");
     }
     assert!(10 * hung <= kills.max(10), "{hung} of {kills} launchers hung without a rank");
-    // At least one was killed after its first save.
+    // At least one rank was killed after its first save.
     let log = fs::read_to_string(here.join("r/fitness.csv")).expect("the log");
     let end = log.lines().count() + 20;
     succeed(mpirun(&here, 3, &format!("run --resume r --generations {end} -q")));

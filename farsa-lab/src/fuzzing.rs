@@ -1,9 +1,9 @@
 //! The readers of a run's files, configurations, command lines and lines of an optimiser, one call each: for the fuzz targets
 //! in `fuzz/`.
 //!
-//! Why they are here: the one public way to them is [`Laboratory::main`], which takes the arguments of the process, starts threads,
-//! writes the files of a run and waits for the disk. A target calls a reader ten million times. This is no part of the
-//! interface: it is hidden, behind a feature that nothing else asks for, and may change with any version.
+//! The command has one public entry, [`Laboratory::main`], which reads the arguments of the process, starts threads and writes
+//! files. A fuzz target calls a reader ten million times. This module is hidden behind a feature, is not part of the interface,
+//! and may change with any version. Directories of runs have a public reader, [`RunDirectory`](crate::RunDirectory).
 
 use std::fs;
 use std::path::Path;
@@ -38,7 +38,7 @@ use crate::store::manifest::Manifest;
 use crate::strategy::search::{Genome, Search};
 use crate::sweep::SweepFile;
 
-/// What command lines are read by: making it takes a hundred times as long as reading one.
+/// A reader of command lines. Creating it takes a hundred times as long as reading one.
 pub struct CommandLineReader(clap::Command);
 
 impl CommandLineReader {
@@ -47,10 +47,10 @@ impl CommandLineReader {
         Self(manual::command("farsa", laboratory))
     }
 
-    /// Reads a command line, and does nothing of what it asks for.
+    /// Reads a command line and executes nothing.
     ///
     /// # Errors
-    /// What the command prints.
+    /// The message of the command.
     pub fn read(&mut self, words: &[&str]) -> Result<(), String> {
         cli::read_by(&mut self.0, words).map(drop).map_err(|error| error.to_string())
     }
@@ -59,7 +59,7 @@ impl CommandLineReader {
 /// Reads a configuration, and writes it as a run keeps it.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The error in the text.
 pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<String, Error> {
     Plan::from_file(laboratory, &ConfigFile::parse("config.toml", text)?)?.to_toml()
 }
@@ -67,7 +67,7 @@ pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<Str
 /// Reads the file of a sweep.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The error in the text.
 pub fn read_sweep(text: &str) -> Result<(), Error> {
     SweepFile::parse("sweep.toml", text).map(drop)
 }
@@ -75,7 +75,7 @@ pub fn read_sweep(text: &str) -> Result<(), Error> {
 /// Reads a table of trials and writes it again.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The error in the text.
 pub fn read_trials(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
     let path = Path::new("test.csv");
     let table = Table::from_text(path, text)?;
@@ -87,7 +87,7 @@ pub fn read_trials(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
 /// Reads the table of a protocol and writes it again.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The error in the text.
 pub fn read_cases(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
     let path = Path::new("cases.csv");
     let table = ProtocolTable::from_text(path, text)?;
@@ -100,7 +100,7 @@ pub fn read_cases(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
 /// Reads the states of neurons and writes them again.
 ///
 /// # Errors
-/// What is wrong with them.
+/// The error in the text.
 pub fn read_states(text: &str) -> Result<Vec<u8>, Error> {
     let path = Path::new("states.csv");
     States::from_text(text).map_err(|why| Error::damaged(path, why))?.csv(path)
@@ -122,7 +122,7 @@ pub fn read_test_record(text: &str) -> Result<String, Error> {
 /// Reads a manifest and writes it again.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The error in the text.
 pub fn read_manifest(text: &str) -> Result<String, Error> {
     let path = Path::new("manifest.json");
     let manifest = Manifest::from_text(path, text)?;
@@ -133,7 +133,7 @@ pub fn read_manifest(text: &str) -> Result<String, Error> {
 /// Reads genotypes of three genes of eight bits, or a list of three reals, and writes them again.
 ///
 /// # Errors
-/// What is wrong with them.
+/// The error in the text.
 pub fn read_genotypes(text: &str) -> Result<String, Error> {
     let genomes = Shape::new(3, 8).genomes(Path::new("genotypes.gen"), text)?;
     let texts = genomes.iter().map(|genome| match genome {
@@ -143,7 +143,7 @@ pub fn read_genotypes(text: &str) -> Result<String, Error> {
     Ok(texts.collect())
 }
 
-/// What the lines of an optimiser are read by: two parameters of each individual, of one population or of two.
+/// A reader of an optimizer's lines, with two parameters of each individual, for one population or two.
 pub struct RequestReader([Wanted; 2]);
 
 impl Default for RequestReader {
@@ -162,10 +162,10 @@ impl Default for RequestReader {
 }
 
 impl RequestReader {
-    /// Reads a line, of one population or of several, and writes one that asks for the same.
+    /// Reads a line, and writes another with the same request.
     ///
     /// # Errors
-    /// What the answer says.
+    /// The error of the answer.
     pub fn read(&self, several: bool, line: &[u8]) -> Result<String, String> {
         let wanted = &self.0[usize::from(several)];
         let Request { id, seed, generation, individual, parameters, evaluated } = Request::from_line(line, wanted)?;
@@ -183,7 +183,7 @@ impl RequestReader {
     }
 }
 
-/// What the files of one run are read by.
+/// A reader of the files of one run.
 pub struct RunReader<'l> {
     plan: Plan<'l>,
     evaluator: Box<dyn Evaluator>,
@@ -194,7 +194,7 @@ impl<'l> RunReader<'l> {
     /// A reader of runs of this configuration.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error in the text.
     pub fn new(laboratory: &Laboratory<'l>, configuration: &str) -> Result<Self, Error> {
         let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", configuration)?)?;
         let evaluator = plan.evaluator()?;
@@ -205,17 +205,17 @@ impl<'l> RunReader<'l> {
     /// The head of the record of a run that has no generation yet.
     ///
     /// # Errors
-    /// What keeps it from being written.
+    /// An error of the identity.
     pub fn record_head(&self) -> Result<Vec<u8>, Error> {
         let strategy = self.plan.definition().name().to_owned();
         let head = crate::run::records::RecordHead { identity: self.plan.identity()?, strategy };
         checksummed::to_bytes(Path::new("record.bin"), &head)
     }
 
-    /// Reads a checkpoint, goes on from its state for a generation, and writes it.
+    /// Reads a checkpoint, continues from its state for a generation, and writes it.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error in the text.
     ///
     /// # Panics
     /// When a state that was restored is saved as another.
@@ -236,10 +236,10 @@ impl<'l> RunReader<'l> {
         Ok(written)
     }
 
-    /// Reads a record of so many generations, and rebuilds the genomes of each.
+    /// Reads a record with the given number of generations, and rebuilds the genomes of each.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error in the text.
     ///
     /// # Panics
     /// When an entry that was read is written as another.
@@ -266,10 +266,10 @@ impl<'l> RunReader<'l> {
     /// `failures.csv`. Returns whether the log was kept under another name.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// The error in the text.
     ///
     /// # Panics
-    /// When a log that was taken up says something else than the run.
+    /// When a resumed log differs from that of the run.
     pub fn logs(&self, path: &Path) -> Result<bool, Error> {
         let directory = Directory::at(path.into());
         let populations = self.evaluator.info().populations.len();
@@ -285,9 +285,9 @@ impl<'l> RunReader<'l> {
         Ok(kept.is_some())
     }
 
-    /// Tells a generation some fitness, as a run that goes on does.
+    /// Reports some fitness of a generation, as in a resumed run.
     fn go_on(&self, search: &mut Search) -> Result<(), EvoError> {
-        // What cannot be decoded ends a run with an error.
+        // A genome that cannot be decoded ends a run with an error.
         let _ = search.parameters(&self.genotype);
         let shape = search.score_shape();
         let numbers = search.individuals().saturating_mul(shape.width());

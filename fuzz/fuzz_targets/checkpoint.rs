@@ -1,5 +1,5 @@
-//! Where runs go on from: `checkpoint.bin`, of any strategy. The first byte selects the strategy; the rest is the content, whose
-//! head and checksum are made here.
+//! Checkpoints of runs: `checkpoint.bin`, of any strategy. The first byte selects the strategy. The rest is the content, which
+//! gets a valid head and checksum.
 #![no_main]
 
 use farsa_fuzz::{bounded, sealed_file, selected, with_run};

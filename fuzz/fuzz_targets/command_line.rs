@@ -17,7 +17,7 @@ thread_local! {
 fuzz_target!(|input: &[u8]| {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let words: Vec<&str> = std::iter::once("farsa").chain(text.lines()).collect();
-    // What the system hands over: each word is a text of its own.
+    // The system passes each word as a separate text.
     let given = input.len() + words.len() * size_of::<OsString>();
     READER.with_borrow_mut(|reader| {
         if let Err(said) = bounded(given, || reader.read(&words)) {

@@ -8,7 +8,7 @@ use farsa_nn::quantized::QuantizedNetwork;
 use farsa_nn::{Controller, Ctrnn, LeakyNetwork, Perceptron};
 use libfuzzer_sys::fuzz_target;
 
-/// A short description may ask for a large state, or for inputs without weights: who allocates looks at their number first.
+/// The largest state. A short description may have a large state, or inputs without weights, so the number is checked first.
 const MOST_STATE: usize = 1 << 16;
 
 /// Two steps, with inputs that are numbers and with others.

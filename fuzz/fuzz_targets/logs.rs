@@ -1,5 +1,5 @@
-//! The logs of a run that goes on: `fitness.csv`, `lineage.csv` and `failures.csv`. The first byte selects which of them the rest
-//! is; the others are not there.
+//! Logs of a resumed run: `fitness.csv`, `lineage.csv` and `failures.csv`. The first byte selects one of them for the rest. The
+//! others are missing.
 #![no_main]
 
 use std::fs;
@@ -21,7 +21,7 @@ fuzz_target!(|input: &[u8]| {
     let take_up = || with_run(0, |reader| reader.logs(SCRATCH.path()));
     let kept = bounded(input.len(), take_up).expect("no log keeps a run from going on");
     assert!(!kept || which == 0);
-    // What was taken up is taken up again.
+    // Logs are resumed twice with the same result.
     assert!(!take_up().expect("what was written is read"));
     if which == 2 && !content.is_empty() {
         assert!(SCRATCH.get(FILES[2]).starts_with(content) || content.starts_with(b"generation,"), "a failure is lost");

@@ -5,8 +5,7 @@ use farsa_fuzz::{bounded, same_model};
 use farsa_models::{Imported, Limits, MjcfOptions, ReadOptions, mjcf};
 use libfuzzer_sys::fuzz_target;
 
-/// Each geom may touch each other: the pairs of as many as a limit allows by default take hundreds of megabytes, and those of so
-/// many no more than any reader may.
+/// The largest number of contacts. Pairs of geoms under the default limit take hundreds of megabytes.
 const CONTACTS: usize = 64;
 
 fn read(text: &str) -> Option<Imported> {

@@ -1,5 +1,6 @@
-//! What a strategy was told: `record.bin`, of any strategy. The first byte selects the strategy, the second says of how many
-//! generations the checkpoint speaks, and with the third the head is the run's own, or one whose checksum is made here.
+//! Records of runs: `record.bin`, of any strategy. The first byte selects the strategy, the second the number of generations in
+//! the checkpoint. With a third byte of 0 the head is that of the run. Otherwise the byte is the length of a head that gets a
+//! valid checksum.
 #![no_main]
 
 use farsa_fuzz::{bounded, sealed_file, selected, with_run};

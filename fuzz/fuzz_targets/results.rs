@@ -1,4 +1,4 @@
-//! What tests have left in a run's directory: tables, records, states, and the manifest. The first byte selects.
+//! Results of tests in a run's directory: tables, records, states, and the manifest. The first byte selects one of them.
 #![no_main]
 
 use farsa_fuzz::{bounded, selected};

@@ -1,4 +1,4 @@
-//! How much memory a reader takes at once: an allocator that counts.
+//! A bound on the memory of a reader, by an allocator that counts.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Once;
@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Bytes that any reader may take, however short its input.
+/// Bytes that any reader may take.
 const SPARE: usize = 1 << 20;
 /// Bytes that it may take for each byte of its input.
 const EACH: usize = 16;
-/// Bytes that it may take for each token of TOML beside that, whose tree the crate `toml` makes: see [`bounded_toml`].
+/// Additional bytes for each token of TOML, for the tree of the crate `toml`. See [`bounded_toml`].
 const EACH_TOKEN: usize = 128;
-/// The same for a point, `=` and `[`, which begin a table: its first key comes with room for eleven. A part of an experiment
-/// (`[[sensors]]`) takes as much for all the settings that such a part has.
+/// Additional bytes for a point, `=` and `[`, which begin a table. Its first key reserves space for eleven. A part of an
+/// experiment (`[[sensors]]`) takes as much for all settings of such a part.
 const EACH_OF_TABLES: usize = 1200;
 
 struct Counting;
@@ -24,7 +24,7 @@ static ALLOCATOR: Counting = Counting;
 
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
-/// What was taken by the reader that came nearest to what is allowed: bytes, bytes of the input, and that per thousand.
+/// The largest share of the limit so far: bytes taken, bytes of the input, and the share in thousandths.
 static MOST: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 static AT_EXIT: Once = Once::new();
 
@@ -33,7 +33,7 @@ fn grown(bytes: usize) {
     PEAK.fetch_max(now, Relaxed);
 }
 
-// SAFETY: all is left to the system's allocator; beside it only numbers are changed.
+// SAFETY: all calls go to the system's allocator, and the rest only changes numbers.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         grown(layout.size());
@@ -64,8 +64,8 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-// SAFETY: C's own function, of this signature (C11, 7.22.4.2), may be called at any time and with any function that does not unwind;
-// `tell` reads numbers and writes a line.
+// SAFETY: this function of C has this signature (C11, 7.22.4.2). It may be called at any time with a function that does not
+// unwind, and `tell` only reads numbers and writes a line.
 unsafe extern "C" {
     safe fn atexit(done: extern "C" fn()) -> i32;
 }
@@ -76,7 +76,7 @@ extern "C" fn tell() {
     eprintln!("most memory: {used} bytes at once for an input of {input} bytes, {share} % of what is allowed");
 }
 
-/// Runs a reader of an input of so many bytes.
+/// Runs a reader of an input with the given number of bytes.
 ///
 /// # Panics
 /// When it takes more than 16 times as many bytes at once, and 1 MiB.
@@ -92,13 +92,14 @@ pub fn bounded_toml<T>(text: &str, read: impl FnOnce() -> T) -> T {
     bounded_by(text.len(), || tree(text), read)
 }
 
-/// Bytes that the tree of a text may take. The definition of an experiment, a string of several lines, is read as a text of its own.
+/// Returns the bytes that the tree of a text may take. The definition of an experiment is a string of several lines, which is
+/// read as a separate text.
 fn tree(text: &str) -> usize {
     let tokens = Source::new(text).lex().map(|token| match token.kind() {
         TokenKind::Dot | TokenKind::Equals | TokenKind::LeftSquareBracket => EACH_OF_TABLES,
         TokenKind::MlBasicString | TokenKind::MlLiteralString => {
             let span = token.span();
-            // What stands within the quotes is shorter, so this ends.
+            // The text within the quotes is shorter, so this ends.
             EACH_TOKEN + tree(text[span.start()..span.end()].trim_matches(['"', '\'']))
         }
         _ => EACH_TOKEN,
@@ -116,7 +117,7 @@ fn bounded_by<T>(input: usize, more: impl FnOnce() -> usize, read: impl FnOnce()
     let used = PEAK.load(Relaxed).saturating_sub(before);
     let mut allowed = input.saturating_mul(EACH).saturating_add(SPARE);
     let share = |allowed: usize| used.saturating_mul(1000) / allowed;
-    // Tokens take time to count, so only what can come nearest is asked for them.
+    // Counting tokens takes time, so they are only counted when the result can matter.
     if used > allowed || share(allowed) > MOST[2].load(Relaxed) {
         allowed = allowed.saturating_add(more());
     }

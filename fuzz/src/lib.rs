@@ -1,12 +1,12 @@
-//! What the fuzz targets share.
+//! Shared parts of the fuzz targets.
 
-/// How much memory a reader takes at once.
+/// A bound on the memory of a reader.
 mod allocation;
 /// The experiment whose runs the targets read.
 mod experiment;
 /// Models of robots that are the same.
 mod models;
-/// How the fuzzer changes texts.
+/// Changes of texts by the fuzzer.
 mod mutation;
 /// Readers and directories of runs by each strategy.
 mod runs;

@@ -1,9 +1,9 @@
-//! Whether two models of a robot are the same but for rounding.
+//! A comparison of robot models up to rounding.
 
-/// The attributes whose numbers may be others for the same robot: angles of a rotation, and the impedance of a contact, which is
-/// found from its stiffness.
+/// The attributes with numbers that may differ for the same robot: angles of a rotation, and the impedance of a contact, computed
+/// from its stiffness.
 const DERIVED: [&str; 3] = ["rpy", "solref", "solimp"];
-/// How much numbers may differ, as a share of the largest.
+/// The largest difference of numbers, as a share of the largest.
 const ROUNDING: f64 = 1e-9;
 
 /// The words of a text, without the derived numbers.
@@ -18,7 +18,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Two words that are the same, or numbers that nearly are.
+/// Compares two words, with a tolerance for numbers.
 fn alike(one: &str, other: &str, largest: f64) -> bool {
     match (one == other, one.parse::<f64>(), other.parse::<f64>()) {
         (true, ..) => true,
@@ -27,7 +27,7 @@ fn alike(one: &str, other: &str, largest: f64) -> bool {
     }
 }
 
-/// Whether two models that we have written say the same, but for what rounding makes of rotations.
+/// Compares two written models, except for the rounding of rotations.
 pub fn same_model(one: &str, other: &str) -> bool {
     let numbers = words(one).filter_map(|word| word.parse::<f64>().ok()).filter(|number| number.is_finite());
     let largest = numbers.fold(1.0, |largest: f64, number| largest.max(number.abs()));

@@ -1,5 +1,5 @@
-//! How the fuzzer changes texts: as it does by itself, and now and then a part is repeated many times, so that what grows faster
-//! than its input is found.
+//! Changes of texts: those of the fuzzer, and sometimes a part repeated many times, to find costs that grow faster than the
+//! input.
 
 use libfuzzer_sys::fuzzer_mutate;
 
@@ -8,7 +8,7 @@ pub fn mutated(data: &mut [u8], size: usize, most: usize, seed: u32) -> usize {
     if seed % 16 > 0 || size == 0 {
         return fuzzer_mutate(data, size, most);
     }
-    // Numbers of its own: the next draws are the library's.
+    // Separate random numbers, so that the next draws of the library are unchanged.
     let mut state = seed | 1;
     let mut draw = |below: usize| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -6,7 +6,7 @@ use farsa_lab::fuzzing::RunReader;
 use farsa_lab::{RunDirectory, strategies};
 
 thread_local! {
-    /// Of all strategies alone, in the order in which they are listed; then of those that have opponents.
+    /// Readers for all strategies with one population, then for those with opponents.
     static READERS: Vec<RunReader<'static>> = readers();
     /// Directories of runs in the same order.
     static DIRECTORIES: Vec<RunDirectory<'static>> = directories();
@@ -55,7 +55,7 @@ pub fn with_directory<T>(byte: u8, read: impl FnOnce(&RunDirectory<'static>) -> 
 fn configuration(condition: &str, strategy: &str) -> String {
     let head =
         format!("experiment = \"tune\"\ncondition = \"{condition}\"\nstrategy.name = \"{strategy}\"\nseed = 1\n");
-    // Beside the population, which the trials of several count by.
+    // Settings next to the population size, on which the trials of several populations depend.
     let more = match (condition, strategy) {
         ("alone", _) => return format!("{head}evolution.generations = 2\n"),
         (_, "truncation" | "novelty-search") => "evolution.parents = 2\n",
@@ -67,7 +67,7 @@ fn configuration(condition: &str, strategy: &str) -> String {
     format!("{head}evolution.generations = 2\nevolution.population = 10\n{more}")
 }
 
-/// The first bytes of an input, which select, and the rest; none where there are fewer.
+/// Splits an input into its first bytes and the rest, or returns `None` for a shorter input.
 pub fn selected<const N: usize>(input: &[u8]) -> Option<([u8; N], &[u8])> {
     input.split_first_chunk().map(|(first, rest)| (*first, rest))
 }

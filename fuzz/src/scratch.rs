@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A directory of this process among the system's temporary files; `./ci` puts those into memory and removes them.
+/// A directory of this process among the system's temporary files. `./ci` puts those into memory and removes them.
 pub struct Scratch(PathBuf);
 
 impl Scratch {
@@ -32,7 +32,7 @@ impl Scratch {
         path
     }
 
-    /// What a file holds.
+    /// Reads a file.
     ///
     /// # Panics
     /// When it is gone.

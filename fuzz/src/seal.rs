@@ -1,8 +1,8 @@
-//! Lengths, hashes and checksums that are right, so that what they guard is read: whoever forges a file can compute them.
+//! Valid lengths, hashes and checksums, as a forger can compute them, so that the content behind them is read.
 
 use farsa_num::{Digest, crc32};
 
-/// Bytes before the parameters of a controller, and of its checksum; docs/controller-format.md.
+/// Bytes before the parameters of a controller, and of its checksum (docs/controller-format.md).
 const CONTROLLER: usize = 72;
 const CHECKSUM: usize = 4;
 /// Bytes before the content of a file of a run.
@@ -18,7 +18,7 @@ fn digest(parts: &[&[u8]]) -> u64 {
     digest.finish()
 }
 
-/// The bytes of a controller with the right beginning, version, lengths, hashes and checksum; none of too few bytes.
+/// Returns a controller with valid magic bytes, version, lengths, hashes and checksum, or `None` for too few bytes.
 pub fn sealed_controller(bytes: &[u8]) -> Option<Vec<u8>> {
     let end = bytes.len().checked_sub(CHECKSUM)?;
     let parameters = end.checked_sub(CONTROLLER)?;
@@ -43,7 +43,7 @@ pub fn sealed_controller(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(sealed)
 }
 
-/// A file of a run: of this kind, with this content.
+/// Returns a file of a run of the given kind and content.
 pub fn sealed_file(kind: &[u8; 8], content: &[u8]) -> Vec<u8> {
     let length = content.len() as u64;
     let mut bytes = [kind.as_slice(), &1_u32.to_le_bytes(), &length.to_le_bytes(), content].concat();
@@ -51,7 +51,7 @@ pub fn sealed_file(kind: &[u8; 8], content: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The content of a file of a run, without head and checksum; none of too few bytes.
+/// Returns the content of a file of a run without head and checksum, or `None` for too few bytes.
 pub fn sealed_head(bytes: &[u8]) -> Option<&[u8]> {
     bytes.get(HEAD..bytes.len().checked_sub(CHECKSUM)?)
 }

@@ -1,4 +1,4 @@
-//! The command over the experiment whose runs the targets read; and `tune configurations DIR`, which writes what they are runs of.
+//! The command over the experiment of the targets. `tune configurations DIR` writes the configurations of its runs.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! Runs copied whole to one directory, and nothing overwritten.
+//! Complete copies of runs in one directory. Existing files are not overwritten.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -11,23 +11,23 @@ use crate::run::laboratory::Laboratory;
 use crate::store::directory::{Directory, vacant};
 use crate::store::replace::sync_directory;
 
-/// How deep folders within a run are copied.
+/// The largest depth of folders in a run.
 const DEEPEST: usize = 8;
 
-/// Where a run is to go.
+/// The destination of a run.
 pub(crate) struct Copy<'r, 'e> {
     run: &'r Gathered<'e>,
     pub(crate) to: PathBuf,
-    /// Whether the same run is there already, to the last generation.
+    /// True if the destination already has the same run with the same generations.
     pub(crate) there: bool,
 }
 
 impl<'r, 'e> Copy<'r, 'e> {
-    /// Looks at the places of all runs before the first is copied.
+    /// Checks the destinations of all runs before the first is copied.
     ///
     /// # Errors
-    /// [`Error::Usage`] for two runs that would have one name, and for a run that is there with another number of generations;
-    /// [`Error::Occupied`] and [`Error::OtherConfiguration`] for a place with something else.
+    /// [`Error::Usage`] for two runs with one name, and for an existing run with another number of generations.
+    /// [`Error::Occupied`] and [`Error::OtherConfiguration`] for a destination with other content.
     pub(crate) fn all(
         runs: impl Iterator<Item = &'r Gathered<'e>>,
         root: &Path,
@@ -47,14 +47,14 @@ impl<'r, 'e> Copy<'r, 'e> {
         copies.collect()
     }
 
-    /// Copies the run, so that it is there whole or not at all.
+    /// Copies the run. After an error nothing is left.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Usage`] for a link or a pipe in the run; what reading the copy says.
+    /// [`Error::Io`], [`Error::Usage`] for a link or a pipe in the run, and the errors of reading the copy.
     pub(crate) fn make(&self, laboratory: &Laboratory<'e>) -> Result<(), Error> {
         let from = self.run.directory.path();
         Directory::create(&self.to, |draft| {
-            // What the checkpoint says of the other files stays true while they grow.
+            // The marks of the checkpoint remain valid while the other files grow.
             copy_file(&self.run.directory.checkpoint(), &draft.checkpoint())?;
             copy_folder(from, draft.path(), 0)?;
             let copy = Gathered::read(laboratory, draft.clone(), self.run.name.clone())?;
@@ -68,7 +68,7 @@ fn changed(path: &Path) -> Error {
     Error::Other(format!("{}: was changed while it was copied", path.display()))
 }
 
-/// Whether a run is at its place already; false if there is nothing.
+/// Returns whether the destination has the run. The result is `false` for a vacant destination.
 fn is_there(run: &Gathered<'_>, to: &Path, laboratory: &Laboratory<'_>) -> Result<bool, Error> {
     let Ok(directory) = Directory::open(to) else { return vacant(to).map(|()| false) };
     let there = Gathered::read(laboratory, directory, run.name.clone())?;
@@ -81,7 +81,7 @@ fn is_there(run: &Gathered<'_>, to: &Path, laboratory: &Laboratory<'_>) -> Resul
     Err(Error::Usage(format!("{}: holds {found} generations of the run that has {other} in {from}", to.display())))
 }
 
-/// Copies what is in a folder and not there yet; hidden files are those of processes.
+/// Copies the files of a folder that are missing in the destination. Hidden files belong to running processes.
 fn copy_folder(from: &Path, to: &Path, depth: usize) -> Result<(), Error> {
     let read = || fs::read_dir(from)?.collect::<Result<Vec<_>, _>>();
     for entry in read().map_err(Error::io("read", from))? {
@@ -102,7 +102,7 @@ fn copy_folder(from: &Path, to: &Path, depth: usize) -> Result<(), Error> {
     sync_directory(to)
 }
 
-/// Copies a file to a new one and brings it to the disk.
+/// Copies a file to a new one and synchronizes it with the disk.
 fn copy_file(from: &Path, to: &Path) -> Result<(), Error> {
     let mut source = File::open(from).map_err(Error::io("read", from))?;
     let mut copy = OpenOptions::new().write(true).create_new(true).open(to).map_err(Error::io("write", to))?;

@@ -1,4 +1,4 @@
-//! The runs below directories, each once.
+//! The distinct runs below directories.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,34 +14,34 @@ use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Line;
 
-/// How deep runs may lie below a directory that is named.
+/// The largest depth of runs below a named directory.
 const DEEPEST: usize = 8;
 
-/// A run that was found.
+/// A run below the directories.
 pub(crate) struct Gathered<'e> {
     pub(crate) directory: Directory,
-    /// Its path below the directory that was named.
+    /// Its path below the named directory.
     pub(crate) name: PathBuf,
     pub(crate) plan: Plan<'e>,
     pub(crate) identity: Identity,
-    /// Of the finished generations.
+    /// The lines of the finished generations.
     pub(crate) lines: Vec<Line>,
-    /// The generations that its configuration asks for.
+    /// The number of generations in its configuration.
     pub(crate) asked: usize,
 }
 
-/// The runs that there are, each once, in the order in which they were found, and where some are again.
+/// The distinct runs, in the order in which they were found, and the duplicates.
 pub(crate) struct Gathering<'e> {
     pub(crate) runs: Vec<Gathered<'e>>,
-    /// The directory that is left out, and the one of the same run that has as many generations or more.
+    /// The skipped directory, and that of the same run with at least as many generations.
     pub(crate) twins: Vec<[PathBuf; 2]>,
 }
 
 impl<'e> Gathered<'e> {
-    /// Reads a run, also one that is under way: its finished generations up to the last checkpoint.
+    /// Reads a run, up to the last checkpoint if it is in progress.
     ///
     /// # Errors
-    /// Those of [`Plan::from_file`], [`Checkpoint::read`] and [`RunRecord::read`].
+    /// The errors of [`Plan::from_file`], [`Checkpoint::read`] and [`RunRecord::read`].
     pub(crate) fn read(laboratory: &Laboratory<'e>, directory: Directory, name: PathBuf) -> Result<Self, Error> {
         let plan = Plan::from_file(laboratory, &ConfigFile::read_regular(&directory.config())?)?;
         let RunRecord { identity, lines, .. } =
@@ -54,18 +54,18 @@ impl<'e> Gathered<'e> {
         self.lines.len() >= self.asked
     }
 
-    /// The first generation in which two runs of one configuration and seed differ, as they never should.
+    /// Returns the first generation in which two runs of one configuration and seed differ. They never should.
     fn differs_from(&self, other: &Self) -> Option<usize> {
         self.lines.iter().zip(&other.lines).position(|(a, b)| a != b)
     }
 }
 
 impl<'e> Gathering<'e> {
-    /// Finds and reads the runs in and below some directories.
+    /// Finds and reads the runs in and below directories.
     ///
     /// # Errors
-    /// [`Error::NoRun`] for a directory without a run, [`Error::Other`] for runs of one experiment that were made with other
-    /// versions of the values, and for one run with two results; those of [`Gathered::read`].
+    /// [`Error::NoRun`] for a directory without a run, [`Error::Other`] for runs of one experiment with other versions of the
+    /// values, and for one run with two results. Also the errors of [`Gathered::read`].
     pub(crate) fn new(laboratory: &Laboratory<'e>, roots: &[PathBuf]) -> Result<Self, Error> {
         let mut gathering = Self { runs: Vec::new(), twins: Vec::new() };
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
@@ -95,9 +95,9 @@ impl<'e> Gathering<'e> {
         Ok(gathering)
     }
 
-    /// Adds a run, or leaves out the shorter of two that are the same; `known` are the places of what was added.
+    /// Adds a run, or skips the shorter of two equal runs. `known` has the places of the added runs.
     fn add(&mut self, run: Gathered<'e>, known: &mut BTreeMap<String, usize>) -> Result<(), Error> {
-        // A run is another one by its settings and by the content of files, not by how long it is.
+        // Runs differ by their settings and by the content of files, not by their length.
         let Identity { experiment, condition, seed, settings, .. } = &run.identity;
         let key = format!("{experiment:?} {condition:?} {seed} {settings:?}");
         let Some(first) = known.get(&key).and_then(|index| self.runs.get_mut(*index)) else {
@@ -123,7 +123,7 @@ impl<'e> Gathering<'e> {
     }
 }
 
-/// Refuses runs of one experiment whose numbers mean other trials.
+/// Refuses runs of one experiment with other versions of the values.
 pub(crate) fn same_version(first: &Gathered<'_>, second: &Gathered<'_>) -> Result<(), Error> {
     let versions = |run: &Gathered<'_>| [run.identity.values_version, run.identity.experiment_version];
     let [a, b] = [versions(first), versions(second)];
@@ -142,7 +142,7 @@ pub(crate) fn same_version(first: &Gathered<'_>, second: &Gathered<'_>) -> Resul
     )))
 }
 
-/// The runs in a directory and below, sorted by name; hidden folders and links are passed over, and what lies in a run.
+/// Returns the runs in and below a directory, sorted by name. Hidden folders, links and the content of runs are skipped.
 fn find(path: &Path, name: &Path, depth: usize, found: &mut Vec<(Directory, PathBuf)>) -> Result<(), Error> {
     if let Ok(directory) = Directory::open(path) {
         let own = || path.canonicalize().ok().and_then(|path| path.file_name().map(PathBuf::from)).unwrap_or_default();
@@ -180,7 +180,7 @@ mod tests {
     use crate::run::{begin, evolve};
     use crate::strategy::settings::{GENERATIONS, POPULATION};
 
-    /// Earns its gene, and a bonus from a mistake that no version tells of.
+    /// Its fitness is the gene, with a bonus from a fault that no version reports.
     #[derive(Clone, Copy)]
     struct Toy {
         version: u32,
@@ -213,7 +213,7 @@ mod tests {
 
     impl Evaluator for Toy {
         fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
-            // Only from the second generation on.
+            // The fault begins with the second generation.
             let bonus = if evaluation.id.generation > 0 { self.bonus } else { 0.0 };
             Outcome { terms: vec![f64::from(evaluation.parameters[0]) + bonus], steps: 1, ..Outcome::default() }
         }

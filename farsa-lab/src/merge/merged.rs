@@ -1,4 +1,4 @@
-//! `farsa merge`: what is copied and told of the runs.
+//! `farsa merge`: copies runs and makes a table of them.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -14,32 +14,32 @@ use crate::merge::run_table;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// What is asked for.
+/// The options of the command.
 pub(crate) struct Merge<'a> {
-    /// Runs, or directories that hold some.
+    /// Runs, or directories with runs.
     pub(crate) directories: &'a [PathBuf],
-    /// Where the finished runs are copied to.
+    /// The destination of the finished runs.
     pub(crate) out: Option<&'a Path>,
     /// A new file for the table.
     pub(crate) csv: Option<&'a Path>,
 }
 
-/// What was found and made.
+/// The results of the command.
 #[derive(Debug, Serialize)]
 pub(crate) struct Merged {
     runs: usize,
-    /// Directories of runs that other directories have, too.
+    /// Duplicate directories.
     twice: Vec<[String; 2]>,
     unfinished: Vec<Unfinished>,
-    /// The directories that were made.
+    /// The created directories.
     copied: Vec<String>,
-    /// Those that were there already.
+    /// The directories that existed.
     there: Vec<String>,
     #[serde(skip)]
     pub(crate) table: Vec<u8>,
 }
 
-/// A run that has generations to come: it is in the table, and not copied.
+/// An unfinished run, which is in the table and not copied.
 #[derive(Debug, Serialize)]
 struct Unfinished {
     directory: String,
@@ -48,11 +48,11 @@ struct Unfinished {
 }
 
 impl Merge<'_> {
-    /// Reads all runs, copies those that are finished, and makes a table of all.
+    /// Reads all runs, copies the finished ones, and makes a table of all.
     ///
     /// # Errors
-    /// Those of [`Gathering::new`] and [`Copy::all`], after which nothing was written; [`Error::Usage`] for a place of the
-    /// copies within a directory that is read. Copies before one that fails are whole, and the same command goes on.
+    /// The errors of [`Gathering::new`] and [`Copy::all`], before anything is written. [`Error::Usage`] for a destination within
+    /// a directory that is read. Copies before a failed one are complete, and the same command continues.
     pub(crate) fn make(&self, laboratory: &Laboratory<'_>) -> Result<Merged, Error> {
         if let Some(out) = self.out {
             apart(out, self.directories)?;
@@ -100,7 +100,7 @@ fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Refuses to copy runs into a directory that is searched for them: they would be found again.
+/// Refuses a destination within a searched directory, where the copies would be found again.
 fn apart(out: &Path, directories: &[PathBuf]) -> Result<(), Error> {
     let real = out.ancestors().find_map(|path| {
         let path = if path == Path::new("") { Path::new(".") } else { path };
@@ -120,7 +120,7 @@ fn apart(out: &Path, directories: &[PathBuf]) -> Result<(), Error> {
 }
 
 impl Merged {
-    /// The same in a few lines.
+    /// Formats the results in a few lines.
     pub(crate) fn text(&self) -> String {
         let plural = |count: usize| if count == 1 { "run" } else { "runs" };
         let mut text = format!("{} {}", self.runs, plural(self.runs));

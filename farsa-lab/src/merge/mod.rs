@@ -1,13 +1,12 @@
-//! Runs from many places brought together: `farsa merge`.
-//!
-//! - `copy`: runs copied whole to one directory, and nothing overwritten
-//! - `gather`: the runs below directories, each once
-//! - `merged`: `farsa merge`: what is copied and told of the runs
-//! - `run_table`: a table of runs: what differs, and what came of each
+//! Runs from several directories combined: `farsa merge`.
 
+/// Complete copies of runs.
 mod copy;
+/// The distinct runs below directories.
 mod gather;
+/// `farsa merge`: copies runs and makes a table.
 mod merged;
+/// A table of runs.
 mod run_table;
 
 pub(crate) use merged::Merge;

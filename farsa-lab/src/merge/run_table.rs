@@ -1,4 +1,4 @@
-//! A table of runs: what differs, and what came of each.
+//! A table of runs, with their differences and results.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use crate::merge::gather::Gathered;
 use crate::store::log::Line;
 use crate::strategy::settings::{GENERATIONS, STRATEGY};
 
-/// A line for each run as CSV, each at the place that is given beside it.
+/// Formats a CSV line for each run, with the given place.
 ///
 /// # Errors
-/// Those of reading a test, and [`Error::Damaged`] should the table be refused.
+/// The errors of reading a test, and [`Error::Damaged`] if the table cannot be written.
 pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
     let keys = differing(runs);
     let populations = populations(runs)?;
@@ -71,13 +71,13 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     Ok(row)
 }
 
-/// The names of a run's populations, if there are several.
+/// Returns the names of a run's populations, if there are several.
 fn names(run: &Gathered<'_>) -> Result<Vec<String>, Error> {
     let several = run.lines.last().is_some_and(|line| !line.each.is_empty());
     Ok(if several { run.plan.evaluator()?.info().populations } else { Vec::new() })
 }
 
-/// The names of all populations of runs that have several, each once.
+/// Returns the distinct names of all populations of runs with several.
 fn populations(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<String>, Error> {
     let mut all: Vec<String> = Vec::new();
     let mut known: Vec<(&str, &str)> = Vec::new();
@@ -91,7 +91,7 @@ fn populations(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<String>, Error> {
     Ok(all)
 }
 
-/// The settings in which two runs that have them differ, in the order of their tables.
+/// Returns the settings in which two runs differ, in the order of their tables.
 fn differing<'r>(runs: &[(&'r Gathered<'_>, &Path)]) -> Vec<&'r str> {
     let mut keys: Vec<(&str, &Value, bool)> = Vec::new();
     for (run, _) in runs {
@@ -109,7 +109,7 @@ fn differing<'r>(runs: &[(&'r Gathered<'_>, &Path)]) -> Vec<&'r str> {
     keys.into_iter().filter(|key| key.2).map(|key| key.0).collect()
 }
 
-/// A value without the quotes of a word.
+/// Formats a value without the quotes of a word.
 fn plain(value: &Value) -> String {
     match value {
         Value::Word(word) => word.clone(),

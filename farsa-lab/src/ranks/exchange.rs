@@ -21,7 +21,7 @@ pub(crate) struct Exchange<'r> {
     next: Cell<SyncPoint>,
     /// A fingerprint of the evaluations of this rank, compared when outcomes are exchanged.
     fingerprint: Cell<Option<u64>>,
-    /// Whether no fingerprint was compared yet in this run.
+    /// True if no fingerprint was compared yet in this run.
     fresh: Cell<bool>,
 }
 
@@ -99,12 +99,12 @@ impl<'r> Exchange<'r> {
         self.ranks
     }
 
-    /// Whether there is only one rank.
+    /// Returns whether there is only one rank.
     pub(crate) fn is_alone(&self) -> bool {
         self.ranks.size() == 1
     }
 
-    /// Whether this rank is a worker.
+    /// Returns whether this rank is a worker.
     pub(crate) fn is_follower(&self) -> bool {
         self.ranks.rank() > 0
     }

@@ -28,7 +28,7 @@ pub(crate) struct AssignedBlocks {
 struct Blocks {
     left: Range<usize>,
     reserve: Range<usize>,
-    /// Whether this is the last block.
+    /// True if this is the last block.
     last: bool,
 }
 

@@ -81,7 +81,7 @@ pub(crate) fn resumed(
 /// Restores the search of a run from its checkpoint, with the opponents of previous generations.
 ///
 /// # Errors
-/// Those of [`resumed`] and of [`Hall::before`].
+/// The errors of [`resumed`] and of [`Hall::before`].
 pub(crate) fn search_state(
     plan: &Plan<'_>,
     directory: &Directory,

@@ -338,7 +338,7 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
-    /// Trials of 7 steps of at most 10. Those of individual 1 fail in their first trial.
+    /// Trials of 7 steps of at most 10. Individual 1 fails in its first trial.
     struct Toy {
         most: usize,
     }

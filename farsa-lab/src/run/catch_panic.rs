@@ -1,4 +1,4 @@
-//! Code of an experiment that panics, caught.
+//! Panics of an experiment's code, caught.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -10,23 +10,23 @@ use std::sync::Once;
 const MAX_MESSAGE_CHARS: usize = 300;
 
 thread_local! {
-    /// Whether a panic of this thread is caught, so that it need not be printed.
+    /// True if panics of this thread are caught and not printed.
     static WATCHED: Cell<bool> = const { Cell::new(false) };
-    /// What the latest panic said.
+    /// The message of the last panic.
     static SAID: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `work` and returns what it returns or, if it panics, the message of the panic and its place in the source.
+/// Runs `work` and returns its result, or the message and the place of a panic.
 ///
-/// Nothing is printed. A stack overflow, an allocation that fails and a panic in a program built with `panic = "abort"` end
-/// the process all the same.
+/// No message is printed. A stack overflow, a failed allocation and a panic in a program built with `panic = "abort"` still end
+/// the process.
 pub(crate) fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             if WATCHED.try_with(Cell::get).unwrap_or(false) {
-                // A thread that ends has no use for it.
+                // An ending thread does not need the message.
                 let _ = SAID.try_with(|said| said.replace(Some(message(info))));
             } else {
                 before(info);
@@ -39,10 +39,10 @@ pub(crate) fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     result.map_err(|()| SAID.take().unwrap_or_else(|| "it said nothing".into()))
 }
 
-/// Runs `work` and returns what it returns unless it panics, which is printed as usual.
+/// Runs `work` and returns its result. A panic is printed as usual.
 pub(crate) fn catch_printed_panic<T>(work: impl FnOnce() -> T) -> Result<T, ()> {
     let drop_quietly = |payload: Box<dyn Any + Send>| {
-        // What a panic carries may panic when it is dropped; what that carries is left alone.
+        // The payload of a panic may panic when it is dropped. The payload of that panic is leaked.
         if let Err(next) = panic::catch_unwind(AssertUnwindSafe(|| drop(payload))) {
             std::mem::forget(next);
         }
@@ -50,7 +50,7 @@ pub(crate) fn catch_printed_panic<T>(work: impl FnOnce() -> T) -> Result<T, ()> 
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(drop_quietly)
 }
 
-/// What a panic says, on one line, and where.
+/// Returns the message of a panic on one line, with its place.
 fn message(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let said = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
@@ -85,7 +85,7 @@ mod tests {
         assert!(long.chars().count() < MAX_MESSAGE_CHARS + 200, "{long}");
         let other = catch_panic(|| -> u8 { panic_any(7_u8) }).unwrap_err();
         assert!(other.starts_with("no words ("), "{other}");
-        // The first panic was already caught when what it carries panics.
+        // The first panic is already caught when its payload panics.
         assert!(catch_panic(|| -> u8 { panic_any(Bomb) }).is_err());
         let nested = catch_panic(|| catch_panic(|| -> u8 { panic!("inner") }).unwrap_err());
         assert!(nested.is_ok_and(|said| said.starts_with("inner")));

@@ -1,4 +1,4 @@
-//! `archive.csv` and its picture: what a strategy keeps beyond a generation, the elites of an archive or a front.
+//! `archive.csv` and its picture: the elites of an archive, or a front.
 
 use farsa_evo::{Collection, Member, ScoreShape};
 
@@ -11,15 +11,15 @@ use crate::store::directory::Directory;
 use crate::store::replace::replace;
 use crate::strategy::search::Search;
 
-/// What the numbers of a judgement are called.
+/// The names of the scores.
 pub(crate) struct CollectionTable {
-    /// The fitness first.
+    /// The objectives, the fitness first.
     objectives: Vec<String>,
     descriptors: Vec<Parameter>,
 }
 
 impl CollectionTable {
-    /// The table of a strategy that keeps something; none of another.
+    /// Creates the table of a strategy with an archive or front, and `None` for another.
     pub(crate) fn new(search: &Search, evaluator: &dyn Evaluator) -> Option<Self> {
         search.collection()?;
         let ScoreShape { objectives, measures: descriptors, .. } = search.score_shape();
@@ -32,7 +32,7 @@ impl CollectionTable {
         })
     }
 
-    /// Writes both files.
+    /// Writes the table and the picture.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -48,7 +48,7 @@ impl CollectionTable {
         self.picture(&members(search), title)
     }
 
-    /// A line for each, with the numbers that `farsa replay` wants.
+    /// Writes a line for each member, with the numbers for `farsa replay`.
     fn csv(&self, members: &[Member<'_>]) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let names = self.objectives.iter().chain(self.descriptors.iter().map(|value| &value.name));
@@ -63,7 +63,7 @@ impl CollectionTable {
         writer.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))
     }
 
-    /// The first two descriptor values, or one and the fitness, or the first two objectives.
+    /// Draws the first two measures, or one and the fitness, or the first two objectives.
     fn picture(&self, members: &[Member<'_>], title: &str) -> String {
         let mut axes: Vec<(&str, Option<[f64; 2]>)> =
             self.descriptors.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
@@ -81,7 +81,7 @@ impl CollectionTable {
     }
 }
 
-/// What a strategy keeps, by cells, fitness and origin.
+/// Returns all members, sorted by cell, fitness and origin.
 fn members(search: &Search) -> Vec<Member<'_>> {
     let mut members = search.collection().map_or_else(Vec::new, Collection::members);
     members.sort_by(|a, b| {

@@ -1,4 +1,4 @@
-//! What ranks do around the generations of a run: rank 0 gives the run to the others, and all meet before each generation.
+//! Rank 0 of a run: it sends commands to the workers and synchronizes all ranks.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,10 +13,10 @@ use crate::run::records::Checkpoint;
 use crate::store::checksummed;
 use crate::store::directory::Directory;
 
-/// What the other ranks need to go on with a run; none where there are no others.
+/// Returns the command that continues a run on the workers, or `None` without workers.
 ///
 /// # Errors
-/// Those of [`RunRecord::content`] and [`Plan::to_toml`].
+/// The errors of [`RunRecord::content`] and [`Plan::to_toml`].
 pub(crate) fn run_command(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -34,18 +34,18 @@ pub(crate) fn run_command(
     }))
 }
 
-/// What must be the same on all ranks of a run.
+/// Returns the values of a run that must be equal on all ranks.
 ///
 /// # Errors
-/// Those of [`Plan::identity`].
+/// The errors of [`Plan::identity`].
 pub(crate) fn facts(plan: &Plan<'_>) -> Result<Facts, Error> {
     Ok(facts::of_run(&plan.identity()?, plan.definition().name(), plan.generations()?))
 }
 
-/// Has the other ranks follow, if there is an command for them, while `work` leads; however it ends, they hear of it.
+/// Runs `work` while the workers execute a command, if there is one, and sends them the final status.
 ///
 /// # Errors
-/// Those of `work`, and [`Error::Rank`].
+/// The errors of `work`, and [`Error::Rank`].
 pub(crate) fn coordinate<'e>(
     pool: &mut Pool<'e>,
     command: Option<WorkerCommand>,
@@ -64,10 +64,10 @@ pub(crate) fn coordinate<'e>(
     shut_down(pool, &status).and(result)
 }
 
-/// The meeting before a generation: whether all ranks go on.
+/// Synchronizes all ranks before a generation.
 ///
 /// # Errors
-/// [`Unfinished::Stopped`] when one does not, [`Unfinished::Error`] when one has failed.
+/// [`Unfinished::Stopped`] when a rank stops, [`Unfinished::Error`] when one has failed.
 pub(crate) fn barrier(pool: &Pool<'_>, stop: &AtomicBool) -> Result<(), Unfinished> {
     let exchange = pool.exchange();
     if exchange.is_alone() {
@@ -80,10 +80,10 @@ pub(crate) fn barrier(pool: &Pool<'_>, stop: &AtomicBool) -> Result<(), Unfinish
     }
 }
 
-/// Takes part in the meetings that the other ranks still expect of one that goes on no more.
+/// Passes the synchronization points at which other ranks still expect this one, with its final status.
 ///
 /// # Errors
-/// Those of the ranks' messages; that of another rank is not repeated.
+/// The errors of the ranks' messages. The error of another rank is not repeated.
 pub(crate) fn shut_down(pool: &Pool<'_>, status: &Status) -> Result<(), Error> {
     let exchange = pool.exchange();
     if exchange.next() == SyncPoint::Outcomes {

@@ -1,4 +1,4 @@
-//! What a strategy says of each generation beside the fitness, as a table and a picture.
+//! The diagnostics of a strategy for each generation, as a table and a picture.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::store::replace::replace;
 use crate::strategy::definition::Diagnostics;
 use crate::strategy::search::Search;
 
-/// What a run's strategy has said so far: a table that grows at its end, and its curves.
+/// The table of diagnostics, which grows, and its curves.
 pub(crate) struct DiagnosticsTable(Option<Table>);
 
 struct Table {
@@ -25,7 +25,7 @@ struct Table {
 }
 
 impl DiagnosticsTable {
-    /// Writes the table of a run that goes on anew, from the rows so far, where its strategy says something.
+    /// Writes the table of a resumed run from its rows, for a strategy with diagnostics.
     pub(crate) fn resume(
         diagnostics: Option<Diagnostics>,
         directory: &Directory,
@@ -48,7 +48,7 @@ impl DiagnosticsTable {
         Ok(Self(Some(Table { diagnostics, file, picture, generations: rows.len(), curves })))
     }
 
-    /// Adds what the strategy says of the generation that it has just been told.
+    /// Appends the diagnostics of the last generation.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -59,10 +59,10 @@ impl DiagnosticsTable {
         table.file.append(line.as_bytes())
     }
 
-    /// Brings the table to the disk, and draws its curves.
+    /// Synchronizes the table with the disk and draws its curves.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the table.
+    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the table.
     pub(crate) fn save(&mut self, title: &str) -> Result<(), Error> {
         let Some(table) = &mut self.0 else { return Ok(()) };
         table.file.check()?;
@@ -71,7 +71,7 @@ impl DiagnosticsTable {
     }
 }
 
-/// The line of a generation, whose numbers are added to the curves.
+/// Formats the line of a generation and adds its numbers to the curves.
 fn line(generation: usize, row: &[f64], curves: &mut [Series]) -> String {
     let mut text = generation.to_string();
     for (column, curve) in curves.iter_mut().enumerate() {

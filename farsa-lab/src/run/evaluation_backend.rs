@@ -1,30 +1,30 @@
-//! Who evaluates a generation: the threads and ranks of a run, or the workers of a page.
+//! The interface to what evaluates a generation: the threads and ranks of a run, or the workers of a page.
 
 use crate::error::Error;
 use crate::experiment::evaluator::{Evaluation, Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::outcome::Outcome;
 
-/// The evaluation of a number, or nothing if it is not needed any more.
+/// A function that returns the evaluation of a number, or `None` if it is not needed.
 pub(crate) type TaskOf<'t, 'g> = dyn Fn(usize) -> Option<Evaluation<'g>> + Sync + 't;
-/// Who hears of every number that has ended.
+/// A function that is called after each evaluation.
 pub(crate) type Heard<'t> = dyn Fn(usize, Option<&Outcome>) + Sync + 't;
 
-/// Evaluates what a generation consists of.
+/// A backend that runs the evaluations of a generation.
 pub(crate) trait EvaluationBackend {
-    /// The experiment.
+    /// Returns the experiment.
     fn evaluator(&self) -> &dyn Evaluator;
 
-    /// The data of the task.
+    /// Returns the data of the task.
     fn info(&self) -> &TaskInfo;
 
-    /// How genes stand for the experiment's parameters.
+    /// Returns the genotype of the experiment's parameters.
     fn genotype(&self) -> &Genotype;
 
-    /// The outcomes of `count` evaluations, in their order.
+    /// Runs `count` evaluations and returns the outcomes in order.
     ///
     /// # Errors
-    /// [`Unfinished`] where there are fewer: nothing then comes of the generation.
+    /// [`Unfinished`] if some are missing. The generation is then discarded.
     fn evaluate(
         &mut self,
         count: usize,
@@ -32,16 +32,16 @@ pub(crate) trait EvaluationBackend {
         done: &Heard<'_>,
     ) -> Result<Vec<Option<Outcome>>, Unfinished>;
 
-    /// Compares with others who evaluate the same, by its fingerprint.
+    /// Compares the fingerprint of a generation with those of other ranks.
     fn compare(&self, _generation: u32, _fingerprint: &dyn Fn() -> u64) {}
 }
 
-/// Why a round has no results.
+/// The reason for a round without results.
 #[derive(Debug)]
 pub(crate) enum Unfinished {
-    /// It was told to stop.
+    /// A stop was requested.
     Stopped,
-    /// There is no thread, or no evaluator after a panic.
+    /// A thread could not start, or an evaluator could not be prepared after a panic.
     Error(Error),
 }
 
@@ -60,7 +60,7 @@ impl From<Unfinished> for Error {
     }
 }
 
-/// Evaluates until `next` has no more, in lanes if there are any.
+/// Runs evaluations until `next` returns none, in lanes if there are any.
 pub(crate) fn round<'g>(
     evaluator: &mut dyn Evaluator,
     next: &mut dyn FnMut() -> Option<Evaluation<'g>>,

@@ -371,7 +371,7 @@ mod tests {
         let [line] = panicked.as_slice() else { panic!("{failures}") };
         assert!(line.starts_with("2,3,0,\"panicked: as planned (") && line.contains("evolve.rs:"), "{line}");
         assert!(line.ends_with(",\"farsa replay . --generation 2 --individual 3 --trial 0\""), "{line}");
-        // As many as the log counts, each once.
+        // The log counts each failure once.
         let counted: u64 =
             log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
         assert_eq!(failures.lines().count() as u64 - 1, counted);
@@ -397,7 +397,7 @@ mod tests {
         let plan = Plan::new(&new, None, "").unwrap();
         let replayed = said(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
-        // The champion's genes are what they are; that it may behave otherwise is worth a warning.
+        // The champion's genes are valid, but its behavior may differ, so there is a warning.
         let tested = test::test(&plan, &directory, None, 3, 1, 1, Wanted::ONE, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();

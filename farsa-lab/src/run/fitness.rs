@@ -1,4 +1,4 @@
-//! What a generation comes to: all trials of all individuals, their fitness and behaviour, and which of them failed.
+//! The fitness of a generation from the trials of all individuals.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
@@ -13,38 +13,38 @@ use crate::run::catch_panic::catch_panic;
 use crate::run::evaluation_backend::{EvaluationBackend, Unfinished};
 use crate::store::failures::FailedEvaluation;
 
-/// The opponents of a generation's evaluations, in their order, so many for each.
+/// The opponents of a generation's evaluations, in order, with the same number for each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Opponents<'g> {
     pub(crate) parameters: &'g [&'g [f32]],
     pub(crate) each: usize,
-    /// How many opponents are met in turn, where the strategy is told what was earned against each.
+    /// Number of opponents that take turns, for a strategy with fitness against each of them.
     pub(crate) told_apart: Option<usize>,
 }
 
-/// A generation that is evaluated.
+/// A generation to evaluate.
 #[derive(Clone, Copy)]
 pub(crate) struct Generation<'g> {
-    /// Those of every individual.
+    /// The parameters of every individual.
     pub(crate) parameters: &'g [Vec<f32>],
     pub(crate) opponents: Opponents<'g>,
-    /// What was observed in the generations before, where observations are normalised.
+    /// The observation statistics of the previous generations, where observations are normalized.
     pub(crate) normalisation: Option<&'g ObservationStatistics>,
-    /// Seed, generation, and the number of the first individual; the others' and the trial are set for each evaluation.
+    /// Seed, generation, and the number of the first individual. The other numbers and the trial are set for each evaluation.
     pub(crate) id: EpisodeId,
 }
 
-/// What a generation comes to.
+/// The scores of a generation.
 pub(crate) struct Judged {
     pub(crate) judgements: Scores,
     pub(crate) failed: Vec<FailedEvaluation>,
-    /// What was observed in it, individual after individual and trial after trial, where observations are normalised; those of
-    /// individuals that failed are left out.
+    /// The observation statistics of the generation, without failed individuals, where observations are normalized. Individuals
+    /// and trials are added in order.
     pub(crate) observed: Option<ObservationStatistics>,
 }
 
 impl Generation<'_> {
-    /// A fingerprint of individuals, those that they meet, and what their observations are normalised by.
+    /// Returns a fingerprint of the individuals, their opponents and the normalization.
     fn fingerprint(&self) -> u64 {
         let mut digest = Digest::new();
         let opponents = self.opponents.parameters.iter().copied();
@@ -61,16 +61,15 @@ impl Generation<'_> {
 }
 
 impl<'g> Opponents<'g> {
-    /// Those of the evaluation with a number.
+    /// Returns the opponents of the evaluation with a number.
     pub(crate) fn get(&self, number: usize) -> &'g [&'g [f32]] {
         self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
     }
 }
 
-/// Evaluates all trials of all individuals and says what each comes to, as many numbers as are asked for, and which failed.
-/// `advance` hears of every individual that ends.
+/// Evaluates all trials of all individuals and returns their scores and the failures. `advance` is called after each individual.
 ///
-/// A trial that failed makes its individual the worst, whatever comes of the others.
+/// A failed trial makes its individual the worst, whatever its other trials return.
 pub(crate) fn judgements_of_all(
     by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
@@ -106,8 +105,8 @@ pub(crate) fn judgements_of_all(
     Ok(Judged { judgements, failed, observed })
 }
 
-/// Evaluates all trials of all individuals and says what each comes to, by as many numbers as are asked for, with its trials, or
-/// its first trial that failed and why. `done` hears of every trial that ends.
+/// Evaluates all trials of all individuals. Returns the scores and trials of each, or its first failed trial with the reason.
+/// `done` is called after each trial.
 pub(crate) fn individuals(
     by: &mut dyn EvaluationBackend,
     of: Generation<'_>,
@@ -122,15 +121,15 @@ pub(crate) fn individuals(
     Ok((0..count).map(one).collect())
 }
 
-/// An error of farsa-evo.
+/// Converts an error of farsa-evo.
 fn other(error: EvoError) -> Error {
     Error::Other(error.to_string())
 }
 
-/// Adds what was observed in the trials of an individual.
+/// Adds the observations in the trials of an individual.
 ///
 /// # Errors
-/// [`Error::Other`] for an outcome that does not say it, or of other channels.
+/// [`Error::Other`] for an outcome without observations, or with other channels.
 fn add_observed(all: &mut ObservationStatistics, trials: &[Outcome]) -> Result<(), Error> {
     for outcome in trials {
         let Some(own) = &outcome.observed else {
@@ -142,8 +141,8 @@ fn add_observed(all: &mut ObservationStatistics, trials: &[Outcome]) -> Result<(
     Ok(())
 }
 
-/// The objectives, the fitness first, and then the descriptor values of an individual, or what is wrong with them. Where
-/// opponents are told apart, the objectives behind the fitness are that of the trials against each.
+/// Returns the objectives, the fitness first, and then the measures of an individual. With opponents in turn, the other
+/// objectives are the fitness against each.
 fn row(
     evaluator: &dyn Evaluator,
     shape: ScoreShape,
@@ -175,7 +174,7 @@ fn row(
         if let Some((name, x)) = names.iter().zip(&described).find(|(_, x)| !x.is_finite()) {
             return Err(format!("`{name}` of its behaviour is {x}"));
         }
-        // A strategy may want fewer objectives than there are, and wants all descriptor values or none.
+        // A strategy may use fewer objectives than there are. It uses all measures or none.
         let objectives = behaviour.objectives().len();
         row.extend(described.iter().take(objectives.min(shape.objectives.saturating_sub(1))));
         row.extend(described.iter().skip(objectives).take(shape.measures));
@@ -184,16 +183,16 @@ fn row(
     if expected == found { Ok(row) } else { Err(format!("{found} numbers where the strategy wants {expected}")) }
 }
 
-/// The numbers that an individual comes to by its trials, or what is wrong with them.
+/// A function from the trials of an individual to its scores.
 type Row<'r> = dyn Fn(&[Outcome]) -> Result<Vec<f64>, String> + 'r;
 
-/// The numbers that an individual comes to, and its trials.
+/// The scores of an individual, and its trials.
 pub(crate) type Individual = (Vec<f64>, Vec<Outcome>);
 
-/// The first trial of an individual that failed, if it is a trial, and why.
+/// The first failed trial of an individual, with the reason. `None` for a failure of the fitness.
 pub(crate) type FailedTrial = (Option<u32>, String);
 
-/// What an individual comes to, or its first trial that failed and why.
+/// Returns the scores of an individual, or its first failed trial with the reason.
 fn judged(
     trials: impl Iterator<Item = Option<Outcome>>,
     names: &[String],
@@ -201,7 +200,7 @@ fn judged(
 ) -> Result<Individual, FailedTrial> {
     let mut outcomes = Vec::new();
     for (trial, outcome) in (0..).zip(trials) {
-        // Only what comes after a trial that failed is left out.
+        // Only trials after a failed trial are left out.
         let Some(outcome) = outcome else { return Err((Some(trial), "it was left out".into())) };
         if let Some(why) = outcome.why_failed(names) {
             return Err((Some(trial), why));
@@ -214,11 +213,12 @@ fn judged(
     }
 }
 
-/// Evaluates all trials of all individuals, the first of all before the second of any: trial t of individual i has number
-/// t x individuals + i. `done` hears of every one that ends.
+/// Evaluates all trials of all individuals, trial by trial: trial t of individual i has number t x individuals + i. `done` is
+/// called after each of them.
 ///
-/// Episodes side by side cost least when they are alike. What an individual has left after the first of its trials that failed is
-/// left out; those before it never are, so that it is the first on any number of threads.
+/// Episodes in lanes are fastest when they are alike, so the same trial of several individuals runs together. Trials after the
+/// first failed trial of an individual are left out. Earlier trials never are, so that the first failure does not depend on the
+/// number of threads.
 pub(crate) fn run_generation(
     by: &mut dyn EvaluationBackend,
     of: Generation<'_>,

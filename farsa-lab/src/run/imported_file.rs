@@ -1,4 +1,4 @@
-//! A file in another format as one that describes an experiment.
+//! A file in another format, converted to a file that describes an experiment.
 
 use std::fmt;
 
@@ -6,36 +6,36 @@ use serde::Serialize;
 
 use crate::escaped::{OneLine, Quoted};
 
-/// What came of a file in another format.
+/// The result of an import.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedFile {
     /// The file that describes the experiment.
     pub text: String,
-    /// What is lost, or other here than it was there.
+    /// Lines that are lost or changed.
     pub left: Vec<LeftOut>,
-    /// What was passed over because it changes nothing that comes out.
+    /// Lines that were skipped because they have no effect.
     pub idle: Vec<LeftOut>,
-    /// How many more lines than stand in `left` are lost; an importer bounds what it tells.
+    /// Number of further lost lines. An importer limits the length of `left`.
     pub more_left: usize,
-    /// The same of `idle`.
+    /// Number of further skipped lines.
     pub more_idle: usize,
 }
 
-/// A line that is not carried over as it is.
+/// A line that is not imported as it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// Where it stands, from 1; none for what the other program takes where nothing is said.
+    /// The number of the line, from 1. `None` for a default of the other program.
     pub line: Option<usize>,
-    /// Its key, with those that it is in.
+    /// Its key with the groups around it.
     pub key: String,
-    /// Its value.
+    /// The value of the key.
     pub value: String,
-    /// Why, and what is nearest here.
+    /// The reason, and the nearest setting.
     pub why: String,
 }
 
 impl fmt::Display for LeftOut {
-    /// In one line.
+    /// Formats the line as one line of text.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, key, value, why } = self;
         match line {

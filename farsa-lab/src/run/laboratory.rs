@@ -58,7 +58,7 @@ pub struct ExperimentFiles {
     pub schema: fn() -> String,
     /// The templates for a new file, the default first.
     pub templates: &'static [Template],
-    /// Converts a configuration of the 2013 program into such a file; `None` in programs without `farsa import FILE.ini`.
+    /// Converts a configuration of the 2013 program into such a file. `None` in programs without `farsa import FILE.ini`.
     pub import: Option<ImportExperiment>,
 }
 

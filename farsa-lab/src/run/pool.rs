@@ -1,4 +1,4 @@
-//! Trials on several threads, with results that no thread can be told from.
+//! A pool of threads that run trials. Results do not depend on the number of threads.
 
 use std::cell::RefCell;
 use std::io;
@@ -20,18 +20,18 @@ use crate::run::catch_panic::catch_panic;
 use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinished, round};
 use crate::run::plan::Plan;
 
-/// An experiment made ready for every thread.
+/// An experiment prepared for each thread.
 pub(crate) struct Pool<'e> {
-    /// At least one.
+    /// At least one evaluator.
     evaluators: Vec<Box<dyn Evaluator>>,
     info: TaskInfo,
     genotype: Genotype,
     maker: Maker<'e>,
-    /// With whom the evaluations are shared.
+    /// The ranks that share the evaluations.
     exchange: Rc<Exchange<'e>>,
 }
 
-/// Makes an evaluator like the others: one in which a trial panicked is not used again.
+/// Prepares more evaluators. An evaluator is discarded after a panic.
 struct Maker<'e> {
     experiment: &'e dyn Experiment,
     condition: String,
@@ -50,10 +50,10 @@ impl Maker<'_> {
 }
 
 impl<'e> Pool<'e> {
-    /// A pool of at least one thread.
+    /// Prepares a pool of at least one thread.
     ///
     /// # Errors
-    /// [`Error::Usage`] for more lanes or other instructions than the machine or the experiment have.
+    /// [`Error::Usage`] for more lanes or other instructions than the machine or the experiment has.
     pub(crate) fn new(plan: &Plan<'e>, threads: usize, wanted: Wanted) -> Result<Self, Error> {
         let asked = wanted.on_this_machine()?;
         let mut first = plan.evaluator()?;
@@ -71,51 +71,51 @@ impl<'e> Pool<'e> {
         Ok(Self { evaluators, info, genotype, maker, exchange: Rc::default() })
     }
 
-    /// The same pool as one rank's part of several.
+    /// Makes the pool that of one rank of several.
     pub(crate) fn on(self, exchange: Rc<Exchange<'e>>) -> Self {
         Self { exchange, ..self }
     }
 
-    /// With whom the evaluations are shared.
+    /// Returns the ranks that share the evaluations.
     pub(crate) fn exchange(&self) -> Rc<Exchange<'e>> {
         self.exchange.clone()
     }
 
-    /// The pool until `stop` becomes true.
+    /// Makes the pool stop when `stop` becomes true.
     pub(crate) fn until<'p>(&'p mut self, stop: &'p AtomicBool) -> Stoppable<'p, 'e> {
         Stoppable { pool: self, stop }
     }
 
-    /// Number of threads.
+    /// Returns the number of threads.
     pub(crate) fn threads(&self) -> usize {
         self.evaluators.len()
     }
 
-    /// What every thread evaluates with.
+    /// Returns the lanes of each thread.
     pub(crate) fn lanes(&self) -> Lanes {
         self.maker.lanes
     }
 
-    /// How genes stand for the experiment's parameters.
+    /// Returns the genotype of the experiment's parameters.
     pub(crate) fn genotype(&self) -> &Genotype {
         &self.genotype
     }
 
-    /// The data of the task.
+    /// Returns the data of the task.
     pub(crate) fn info(&self) -> &TaskInfo {
         &self.info
     }
 
-    /// The experiment as the first thread has it.
+    /// Returns the evaluator of the first thread.
     pub(crate) fn evaluator(&self) -> &dyn Evaluator {
         self.evaluators[0].as_ref()
     }
 
-    /// Runs `count` evaluations, each on the thread that is free first, and returns the outcomes in their order. With several ranks
-    /// each does a part of them, and all return the same.
+    /// Runs `count` evaluations, each on the next free thread, and returns the outcomes in order. With several ranks each runs a
+    /// part of them, and all return the same.
     ///
-    /// `task` makes the evaluation of a number, or says that it is not needed any more; `done` hears of every number. A trial
-    /// that panics is a failed one.
+    /// `task` returns the evaluation of a number, or `None` if it is not needed. `done` is called for every number. A trial that
+    /// panics counts as failed.
     pub(crate) fn evaluate<'g>(
         &mut self,
         count: usize,
@@ -139,7 +139,7 @@ impl<'e> Pool<'e> {
         Ok(results.into_iter().map(|(_, result)| result).collect())
     }
 
-    /// Runs evaluations until none is left, here or for any rank.
+    /// Runs evaluations until none is left on any rank.
     fn evaluate_own<'g>(
         &mut self,
         count: usize,
@@ -166,7 +166,7 @@ impl<'e> Pool<'e> {
                     }
                 }
             }
-            // A thread ends when nothing is left to draw, or by a mistake: then nobody may wait for it.
+            // A thread ends when no number is left, or by an error. In both cases the ranks stop waiting for it.
             let ended = || {
                 let told = stop.load(Ordering::Relaxed) || work.ended.load(Ordering::Relaxed);
                 told || threads.iter().any(thread::ScopedJoinHandle::is_finished)
@@ -186,10 +186,10 @@ impl<'e> Pool<'e> {
         })
     }
 
-    /// Takes part in a round in which this rank evaluates nothing because of an error, so that all hear of it.
+    /// Takes part in a round without evaluations after an error, so that all ranks receive it.
     ///
     /// # Errors
-    /// Those of the ranks' messages.
+    /// The errors of the ranks' messages.
     pub(crate) fn withdraw(&self, status: &Status) -> Result<(), Error> {
         let ranks = self.exchange.ranks();
         if self.exchange.is_follower() {
@@ -201,13 +201,13 @@ impl<'e> Pool<'e> {
     }
 }
 
-/// A pool that evaluates until it is told to stop.
+/// A pool that stops on request.
 pub(crate) struct Stoppable<'p, 'e> {
     pool: &'p mut Pool<'e>,
     stop: &'p AtomicBool,
 }
 
-/// After so many generations ranks compare again what they evaluate.
+/// The interval, in generations, at which ranks compare their evaluations.
 const COMPARED: u32 = 10;
 
 impl EvaluationBackend for Stoppable<'_, '_> {
@@ -240,16 +240,16 @@ impl EvaluationBackend for Stoppable<'_, '_> {
     }
 }
 
-/// That the system refused a thread.
+/// Returns the error of a thread that the system refused.
 fn no_thread(number: usize, all: usize, source: &io::Error) -> Error {
     let least = number.saturating_sub(1).max(1);
     Error::Other(format!("cannot start thread {number} of {all}: {source}; --threads {least} or less may do"))
 }
 
-/// What the threads of a round share.
+/// The state shared by the threads of a round.
 struct Work<'w, T, D> {
     numbers: Numbers,
-    /// Whether a thread has found that the round cannot be finished.
+    /// True if a thread found that the round cannot be finished.
     ended: AtomicBool,
     stop: &'w AtomicBool,
     task: T,
@@ -262,7 +262,7 @@ where
     T: Fn(usize) -> Option<Evaluation<'g>> + Sync,
     D: Fn(usize, Option<&Outcome>) + Sync,
 {
-    /// What one thread does: it evaluates until nothing is left.
+    /// Evaluates on one thread until no number is left.
     fn busy(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<Vec<Numbered>, Error> {
         // Two closures of one evaluator write here in turn.
         let results = RefCell::new(Vec::new());
@@ -270,7 +270,7 @@ where
             (self.done)(number, outcome.as_ref());
             results.borrow_mut().push((number, outcome));
         };
-        // Evaluations that have begun and not ended: one, or as many as there are lanes.
+        // Started evaluations: one, or as many as there are lanes.
         let running: RefCell<Vec<Evaluation<'g>>> = RefCell::new(Vec::new());
         let mut next = || {
             while !self.stop.load(Ordering::Relaxed) && !self.ended.load(Ordering::Relaxed) {
@@ -298,7 +298,7 @@ where
                 }
                 continue;
             }
-            // One of those side by side has panicked: alone each comes to what it would have come to.
+            // One of the lanes has panicked. Evaluated alone, each of the others has its usual outcome.
             for evaluation in broken {
                 let outcome = catch_panic(|| evaluator.evaluate(evaluation, None));
                 if outcome.is_err() {
@@ -310,11 +310,11 @@ where
         Ok(results.into_inner())
     }
 
-    /// Puts a new evaluator in the place of one in which a trial panicked.
+    /// Replaces an evaluator after a panic.
     fn renew(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<(), Error> {
         let made = catch_panic(|| self.maker.make());
         let made = made.unwrap_or_else(|why| Err(Error::Other(format!("the experiment cannot be prepared: {why}"))));
-        // What is left of the old one may panic once more while it is dropped.
+        // The old evaluator may panic again when it is dropped.
         let old = std::mem::replace(evaluator, made.inspect_err(|_| self.ended.store(true, Ordering::Relaxed))?);
         let _ = catch_panic(|| drop(old));
         Ok(())

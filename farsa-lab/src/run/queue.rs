@@ -40,7 +40,7 @@ pub(crate) struct Queue<'q, 'e> {
 pub(crate) enum State {
     Finished {
         summary: Summary,
-        /// Whether all generations were finished before this process began.
+        /// True if all generations were finished before this process began.
         skipped: bool,
     },
     /// Another process has claimed the run.

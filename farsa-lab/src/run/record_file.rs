@@ -1,8 +1,7 @@
-//! `record.bin`: what the strategy was told in every generation, and what came of it. The file only grows.
+//! `record.bin`: the reported fitness of every generation. The file only grows.
 //!
-//! After a sealed head, which says whose it is, stands an entry for each generation, and behind each entry of a run that
-//! normalises observations what was observed by then. How much of the file counts, and its checksum,
-//! stands in the checkpoint, which is written after it.
+//! A checksummed head identifies the run. An entry for each generation follows, with the observation statistics where
+//! observations are normalized. The checkpoint has the valid length of the file and its checksum. It is written later.
 
 use std::path::{Path, PathBuf};
 
@@ -29,42 +28,42 @@ struct Entry<'e> {
     /// [`RecordEntry::state`].
     #[serde(borrow)]
     state: Option<&'e [u8]>,
-    /// Its line in the log.
+    /// The line of the log.
     line: Line,
-    /// What the strategy said of it.
+    /// The diagnostics of the strategy.
     diagnostics: Vec<f64>,
 }
 
-/// All finished generations of a run, as its record has them.
+/// All finished generations of a run.
 pub(crate) struct RunRecord {
     pub(crate) identity: Identity,
     pub(crate) record: Record,
     /// Their lines in the log.
     pub(crate) lines: Vec<Line>,
-    /// Whether the champion is the best of all generations instead of the last one's.
+    /// True if the champion is the best of all generations instead of the last one's.
     pub(crate) keeps_champion: bool,
-    /// What was observed until the end of each, where observations are normalised.
+    /// The observation statistics after each generation, where observations are normalized.
     pub(crate) observed: Vec<ObservationStatistics>,
-    /// What the strategy said of each, where it says something.
+    /// The diagnostics of each generation, for a strategy that has some.
     pub(crate) diagnostics: Vec<Vec<f64>>,
     /// Bytes of the longest entry.
     longest: usize,
-    /// The part of the file that this was read from.
+    /// The valid content of the file.
     content: Vec<u8>,
 }
 
 impl RunRecord {
-    /// Reads the record of the run that a plan describes, up to a checkpoint. Its sizes are those of the plan's strategy: nothing is
-    /// allocated because the file says so.
+    /// Reads the record of a planned run up to a checkpoint. Sizes come from the plan's strategy, so that a forged file cannot
+    /// cause large allocations.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
+    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
         evolved(directory)?;
         Self::from_content(plan, directory, checkpoint, Self::content(plan, directory, checkpoint)?)
     }
 
-    /// The same from what the file holds up to the checkpoint.
+    /// Decodes a record from the content of the file up to the checkpoint.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -127,7 +126,8 @@ impl RunRecord {
         Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, longest, content })
     }
 
-    /// The generation whose best is the run's champion, once one is finished; of equals the first.
+    /// Returns the generation of the run's champion, the first one of equal fitness. The result is `None` before the first
+    /// generation.
     pub(crate) fn champion(&self) -> Option<u32> {
         let last = self.record.generations().checked_sub(1)?;
         if !self.keeps_champion {
@@ -135,19 +135,19 @@ impl RunRecord {
         }
         let best =
             |generation: &u32| self.lines.get(*generation as usize).map(|line| Fitness::nan_as_failed(line.row[0]));
-        // The last of those that are largest is the first generation.
+        // The last of equal maxima in this order is the first generation.
         (0..=last).rev().max_by_key(best)
     }
 
-    /// What the file holds up to a checkpoint.
+    /// Reads the content of the file up to a checkpoint.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when it is not what the checkpoint speaks of.
+    /// [`Error::Io`], and [`Error::Damaged`] for content that does not match the checkpoint.
     pub(crate) fn content(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
         append_log::read(&directory.record(), checkpoint.record, plan.limits.record_bytes)
     }
 
-    /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
+    /// Opens the file at its end and removes the entries after the checkpoint.
     pub(crate) fn writer(&mut self, plan: &Plan<'_>, directory: &Directory) -> Result<RunRecordWriter, Error> {
         let content = std::mem::take(&mut self.content);
         let file = AppendLog::new(&directory.record(), &content)?;
@@ -155,7 +155,7 @@ impl RunRecord {
     }
 }
 
-/// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
+/// Returns the identity of a planned run, its generations or imported genotypes, and the path of their file.
 ///
 /// # Errors
 /// As [`RunRecord::read`].
@@ -185,13 +185,13 @@ pub(crate) struct RunRecordWriter {
 }
 
 impl RunRecordWriter {
-    /// Makes the file of a run without a generation, and says how far it has come.
+    /// Creates the file of a run without a generation and returns its mark.
     pub(crate) fn create(path: &Path, identity: &Identity, strategy: &str) -> Result<Mark, Error> {
         let head = RecordHead { identity: identity.clone(), strategy: strategy.into() };
         AppendLog::new(path, &checksummed::to_bytes(path, &head)?)?.sync()
     }
 
-    /// Appends the last generation of a run.
+    /// Appends the last generation.
     pub(crate) fn append(
         &mut self,
         record: &RecordWriter,
@@ -210,7 +210,7 @@ impl RunRecordWriter {
         self.file.append(&bytes)
     }
 
-    /// Whether there is room for a generation as long as any before; else what is finished is to be kept, and the run to end.
+    /// Checks that another entry as long as the longest fits. Otherwise the run has to end.
     ///
     /// # Errors
     /// [`Error::Other`].
@@ -218,10 +218,10 @@ impl RunRecordWriter {
         self.file.room_for(self.longest)
     }
 
-    /// Brings everything to the disk and says how far it has come.
+    /// Synchronizes the file with the disk and returns its mark.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.file.check()?;
         self.file.sync()

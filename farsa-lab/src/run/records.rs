@@ -1,4 +1,4 @@
-//! The sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere.
+//! The checksummed files of a run: checkpoint, champions and imported genotypes.
 
 use std::path::Path;
 
@@ -15,23 +15,23 @@ use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::strategy::search::{Genome, LARGEST_STATE};
 
-/// `checkpoint.bin`: where to go on; it does not grow.
+/// `checkpoint.bin`: the state from which a run continues. It does not grow.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) identity: Identity,
     /// Number of finished generations.
     pub(crate) generation: u32,
-    /// How far `record.bin` had come.
+    /// The mark of `record.bin`.
     pub(crate) record: Mark,
-    /// How far `lineage.csv` had come, where there is one.
+    /// The mark of `lineage.csv`, where there is one.
     pub(crate) lineage: Mark,
-    /// How far `failures.csv` had come, where there is one.
+    /// The mark of `failures.csv`, where there is one.
     pub(crate) failures: Mark,
-    /// The state of the strategy, if it can save it; else it is told everything again.
+    /// The state of the strategy, if it has one. Otherwise the whole record is replayed.
     pub(crate) state: Option<Vec<u8>>,
 }
 
-/// The head of `record.bin`: whose the generations are that follow.
+/// The head of `record.bin`, with the identity of the run.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RecordHead {
     pub(crate) identity: Identity,
@@ -39,15 +39,15 @@ pub(crate) struct RecordHead {
     pub(crate) strategy: String,
 }
 
-/// `champion.bin`: the best individual of the last generation, equals by index, in each population; or of all generations, the first
-/// of equals, by a strategy that [keeps it](farsa_evo::Strategy::champion_is_best_ever).
+/// `champion.bin`: the best individual of the last generation in each population, the first of equal fitness. For a strategy
+/// [with a best-ever champion](farsa_evo::Strategy::champion_is_best_ever), that of all generations.
 #[derive(Debug)]
 pub(crate) struct Champions {
     pub(crate) identity: Identity,
     pub(crate) generation: u32,
     /// At least one.
     pub(crate) best: Vec<Best>,
-    /// By what observations were normalised in the generation, where they were.
+    /// The normalization of observations in the generation, where there is one.
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct Best {
     pub(crate) genes: Genome,
 }
 
-/// The same with genes of one kind.
+/// The best individual with genes of one type.
 #[derive(Serialize, Deserialize)]
 struct BestOf<G> {
     individual: u32,
@@ -74,14 +74,14 @@ impl<G> BestOf<G> {
     }
 }
 
-/// `genotypes.bin`: genotypes that no evolution of ours has made.
+/// `genotypes.bin`: imported genotypes.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Imported {
     pub(crate) identity: Identity,
     pub(crate) genomes: Vec<Vec<u16>>,
 }
 
-/// The same of several populations, those of one after the other, as many of each.
+/// Imported genotypes of several populations, one population after the other, all of the same size.
 #[derive(Debug, Serialize, Deserialize)]
 struct ImportedSeveral {
     identity: Identity,
@@ -105,7 +105,7 @@ struct ChampionsOfSeveral {
     best: Vec<BestOf<u16>>,
 }
 
-/// Champions of one population or several, whose genes are reals.
+/// Champions with real genes.
 #[derive(Serialize, Deserialize)]
 struct ChampionsOfReals {
     identity: Identity,
@@ -113,7 +113,7 @@ struct ChampionsOfReals {
     best: Vec<BestOf<f64>>,
 }
 
-/// Champions whose observations were normalised, all with words or all with reals as genes.
+/// Champions with normalized observations, all with integer genes or all with real genes.
 #[derive(Serialize, Deserialize)]
 struct ChampionsNormalised {
     identity: Identity,
@@ -124,7 +124,7 @@ struct ChampionsNormalised {
     normalisation: Vec<u8>,
 }
 
-/// Gives records their first bytes, their names, their largest sizes and their owner.
+/// Implements the first bytes, the name, the largest size and the owner of records.
 macro_rules! sealed {
     ($($record:ty: $magic:literal, $kind:literal, $largest:expr;)*) => {$(
         impl Checksummed for $record {
@@ -152,22 +152,22 @@ sealed! {
     ImportedSeveral: b"farsagec", "set of genotypes of several populations", 1 << 30;
 }
 
-/// A record that says which run it belongs to.
+/// A record with the identity of its run.
 trait Owned: Checksummed {
     fn identity(&self) -> &Identity;
 }
 
-/// Reads a record of the run that a plan describes, as it lies in `directory`.
+/// Reads a record of a planned run in `directory`.
 fn read<T: Owned>(path: &Path, plan: &Plan<'_>, directory: &Directory) -> Result<T, Error> {
     let record: T = checksummed::read(path)?;
     plan.same_run(record.identity(), directory.path())?;
     Ok(record)
 }
 
-/// Refuses the directory of a run that cannot go on or be rebuilt here: of imported genotypes, or of an earlier version.
+/// Refuses a directory that cannot be continued or rebuilt: imported genotypes, or a run of an earlier version.
 ///
 /// # Errors
-/// [`Error::Usage`] that says what to do.
+/// [`Error::Usage`] with advice.
 pub(crate) fn evolved(directory: &Directory) -> Result<(), Error> {
     let path = directory.path().display();
     if directory.genotypes().is_file() && !directory.checkpoint().is_file() {
@@ -178,7 +178,7 @@ pub(crate) fn evolved(directory: &Directory) -> Result<(), Error> {
     earlier(directory)
 }
 
-/// Refuses the directory of a run of an earlier version, whose generations were rebuilt from a lineage.
+/// Refuses the run of an earlier version, whose generations were rebuilt from a lineage.
 fn earlier(directory: &Directory) -> Result<(), Error> {
     if directory.earlier_lineage().is_file() && !directory.record().is_file() {
         let (path, config) = (directory.path().display(), directory.config());
@@ -192,11 +192,11 @@ fn earlier(directory: &Directory) -> Result<(), Error> {
 }
 
 impl Checkpoint {
-    /// Reads the checkpoint of the run that a plan describes.
+    /// Reads the checkpoint of a planned run.
     ///
     /// # Errors
     /// [`Error::Usage`] in a directory of imported genotypes or of an earlier version, [`Error::Damaged`],
-    /// [`Error::OtherConfiguration`] or [`Error::OtherFile`] when the plan is another one than that of the record.
+    /// [`Error::OtherConfiguration`] or [`Error::OtherFile`] for the record of another run.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         evolved(directory)?;
         read(&directory.checkpoint(), plan, directory)
@@ -208,7 +208,7 @@ impl Checkpoint {
     }
 }
 
-/// The imported genotypes of a directory, those of one population after the other: whose they are, and of how many populations.
+/// Reads imported genotypes, one population after the other, with their identity and the number of populations.
 ///
 /// # Errors
 /// As [`Checkpoint::read`].
@@ -222,7 +222,7 @@ pub(crate) fn imported(plan: &Plan<'_>, directory: &Directory) -> Result<(Identi
     Ok((identity, genomes, 1))
 }
 
-/// Writes imported genotypes, those of one population after the other.
+/// Writes imported genotypes, one population after the other.
 ///
 /// # Errors
 /// [`Error::Io`].
@@ -240,7 +240,7 @@ pub(crate) fn write_imported(
 }
 
 impl Champions {
-    /// The fitness of the first population's.
+    /// Returns the fitness of the first population's champion.
     pub(crate) fn fitness(&self) -> Option<Fitness> {
         self.best.first().map(|best| best.fitness)
     }
@@ -249,7 +249,7 @@ impl Champions {
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
         let Self { identity, generation, best, normalisation } = self;
         let (identity, generation) = (identity.clone(), *generation);
-        // All of them are of one kind.
+        // All genes are of one type.
         let (mut words, mut reals) = (Vec::new(), Vec::new());
         for Best { individual, fitness, genes } in best {
             let (individual, fitness) = (*individual, *fitness);
@@ -275,7 +275,7 @@ impl Champions {
         checksummed::write(path, &ChampionsOfSeveral { identity, generation, best: words })
     }
 
-    /// Reads the champions of the run that a plan describes.
+    /// Reads the champions of a planned run.
     ///
     /// # Errors
     /// As [`Checkpoint::read`].
@@ -315,11 +315,11 @@ impl Champions {
         Ok(Self { identity, generation, best, normalisation })
     }
 
-    /// The same where a generation is finished, and this program would compute the champions' trials as they were.
+    /// Reads the champions of a run with a finished generation, whose trials this program computes in the same way.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read), [`Error::OtherConfiguration`] for other values, [`Error::Damaged`] for genomes that are none
-    /// of the experiment or when there is no champion yet.
+    /// The errors of [`read`](Self::read), [`Error::OtherVersion`] for other values, [`Error::Damaged`] for genomes of another
+    /// experiment or before the first generation.
     pub(crate) fn read_checked(
         plan: &Plan<'_>,
         directory: &Directory,

@@ -101,7 +101,7 @@ fn restore_champions(
     let places: Vec<(u32, usize)> = individuals.iter().map(|&individual| (generation, individual)).collect();
     let genomes = History::new(directory.record(), record.clone(), plan.fresh()).genomes(&places)?;
     let line = lines.get(generation as usize).ok_or_else(missing)?;
-    // A single population has no rows of its own.
+    // A single population has no separate rows.
     let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
     let best = individuals.into_iter().zip(genomes).zip(rows).map(|((individual, genes), [best, ..])| Best {
         individual: individual as u32,

@@ -1,4 +1,4 @@
-//! `farsa run --replications`: one plan under one seed after the other, each in a directory of its own.
+//! `farsa run --replications`: one plan under consecutive seeds, each in its own directory.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -16,23 +16,23 @@ use crate::run::queue::{Member, Queue, State};
 use crate::run::summary::Summary;
 use crate::run::text_table::text_table;
 
-/// Selection replications of a plan.
+/// The selected replications of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Selection {
-    /// How many there are, at least one; the first has the seed of the plan, and each one more than the one before.
+    /// The number of replications, at least one. The first has the seed of the plan, and each next one the next seed.
     pub(crate) count: u32,
-    /// The number of the only one that is wanted, from 1.
+    /// The number of a single selected replication, from 1.
     pub(crate) only: Option<u32>,
 }
 
-/// What came of the replications that this process found or made finished, in the order of their seeds.
+/// The results of the replications that this process found finished or has finished, in the order of their seeds.
 #[derive(Debug, Serialize)]
 pub(crate) struct Replications {
     #[serde(rename = "replications")]
     runs: Vec<Replication>,
-    /// Of the champions' fitness.
+    /// The median fitness of the champions.
     median: Option<f64>,
-    /// The directories that other processes are at.
+    /// The directories claimed by other processes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     elsewhere: Vec<String>,
 }
@@ -41,15 +41,15 @@ pub(crate) struct Replications {
 struct Replication {
     #[serde(flatten)]
     summary: Summary,
-    /// Whether all was done before.
+    /// True if all generations were finished before this process began.
     skipped: bool,
 }
 
 impl Selection {
-    /// The seeds that are wanted, each with the number of its replication.
+    /// Returns the seeds with the numbers of their replications.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a number beyond the last, and for seeds beyond the largest.
+    /// [`Error::Usage`] for a number above the count, and for seeds above the largest.
     pub(crate) fn seeds(self, first: u64) -> Result<Vec<(u32, u64)>, Error> {
         let Self { count, only } = self;
         if first.checked_add(u64::from(count) - 1).is_none_or(|last| last > MAX_SEED) {
@@ -66,13 +66,13 @@ impl Selection {
     }
 }
 
-/// Evolves replications of a plan in `root`/NAME each: those that nobody else is at, one after the other.
+/// Evolves the unclaimed replications of a plan one after the other, each in `root`/NAME.
 ///
-/// A run that is there and the same is gone on with, and skipped once it is finished; before anything is started it is
-/// made sure that every place has such a run or none.
+/// An existing directory of the same run is continued, or skipped if it is finished. All directories are checked before the first
+/// run starts.
 ///
 /// # Errors
-/// Those of [`Selection::seeds`], [`Queue::check`] and [`Queue::work`].
+/// The errors of [`Selection::seeds`], [`Queue::check`] and [`Queue::work`].
 pub(crate) fn run<'e>(
     plan: &Plan<'e>,
     which: Selection,
@@ -83,7 +83,7 @@ pub(crate) fn run<'e>(
     quiet: bool,
 ) -> Result<Replications, Error> {
     let seeds = which.seeds(plan.seed)?;
-    // What is refused leaves no directory behind.
+    // A refused run leaves no directory behind.
     drop(pool(plan)?);
     let member = |index: usize| {
         let (number, seed) = seeds[index];
@@ -108,7 +108,7 @@ pub(crate) fn run<'e>(
 }
 
 impl Replications {
-    /// A table with a line per replication, and what their champions say together.
+    /// Formats a table with a line for each replication and the statistics of their champions.
     pub(crate) fn text(&self) -> String {
         let mut rows = vec![["directory", "seed", "generations", "champion", "fitness"].map(str::to_owned).to_vec()];
         rows.extend(self.runs.iter().map(|Replication { summary, .. }| {
@@ -143,7 +143,7 @@ mod tests {
         }
         assert_eq!(seeds(4, Some(5), 7).unwrap_err().to_string(), "--replication 5: there are 4");
         assert_eq!(seeds(2, None, MAX_SEED - 1).unwrap().len(), 2);
-        // Also where the one that is asked for would still have a seed.
+        // The seeds are refused even if that of the selected replication exists.
         for first in [MAX_SEED, u64::MAX] {
             assert!(seeds(2, Some(1), first).unwrap_err().to_string().contains("the largest seed is"));
         }

@@ -1,4 +1,4 @@
-//! A search in progress: what proposes individuals, what it was told, and whom they meet. Every rank of a run holds the same.
+//! The state of a search: strategy, opponents and observations. It is equal on every rank of a run.
 
 use farsa_evo::{EvoError, Fitness, ObservationStatistics, Scores, Statistics};
 
@@ -11,48 +11,48 @@ use crate::store::failures::FailedEvaluation;
 use crate::strategy::opponents::{Hall, Meeting, chosen};
 use crate::strategy::search::Search;
 
-/// What a run evolves.
+/// The state of a search.
 pub(crate) struct SearchState {
     pub(crate) search: Search,
-    /// Whom several populations still have to meet.
+    /// The opponents from previous generations, for several populations.
     hall: Hall,
-    /// What was observed in all generations so far, where observations are normalised.
+    /// The observation statistics of all generations so far, where observations are normalized.
     pub(crate) observed: Option<ObservationStatistics>,
     seed: u64,
 }
 
-/// What came of a generation.
+/// The result of a generation.
 pub(crate) struct GenerationResult {
-    /// Of every individual, as the strategy was told.
+    /// The reported fitness of every individual.
     pub(crate) fitness: Vec<Fitness>,
     pub(crate) failed: Vec<FailedEvaluation>,
-    /// Of all individuals, and of each population where there are several.
+    /// The statistics of all individuals, and of each population where there are several.
     pub(crate) statistics: Statistics,
     pub(crate) each: Vec<Statistics>,
     /// The best of each population.
     pub(crate) best: Vec<Best>,
-    /// For each of these, of each trial, the parameters of those it met.
+    /// The parameters of the opponents of each of these in each trial.
     pub(crate) met: Vec<Vec<Vec<Vec<f32>>>>,
-    /// By what its observations were normalised, where they were.
+    /// The normalization of its observations, where there is one.
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
 impl SearchState {
-    /// A search in progress.
+    /// Creates the state of a search.
     pub(crate) fn new(search: Search, hall: Hall, observed: Option<ObservationStatistics>, seed: u64) -> Self {
         Self { search, hall, observed, seed }
     }
 
-    /// The champions that are still met.
+    /// Returns the champions that are still opponents.
     pub(crate) fn hall(&self) -> &Hall {
         &self.hall
     }
 
-    /// Evaluates all individuals of a generation and tells the strategy by `tell`, which makes the next. `advance` hears of every
-    /// individual that ends.
+    /// Evaluates a generation and reports its scores to the strategy by `tell`, which makes the next one. `advance` is called
+    /// after each individual.
     ///
     /// # Errors
-    /// [`Unfinished`]; the search is then as it was.
+    /// [`Unfinished`]. The search is then unchanged.
     pub(crate) fn generation(
         &mut self,
         by: &mut dyn EvaluationBackend,

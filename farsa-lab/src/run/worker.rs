@@ -1,4 +1,4 @@
-//! What a rank other than the first does in a run: it holds the same search, evaluates what rank 0 gives it, and writes nothing.
+//! Ranks except the first: they evaluate the same search and write no files.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -20,20 +20,20 @@ use crate::run::search_state::SearchState;
 use crate::store::checksummed;
 use crate::store::directory::Directory;
 
-/// How a rank prepares what rank 0 orders.
+/// The functions with which a worker prepares a run.
 pub(crate) struct Worker<'f, 'e> {
-    /// The plan of a configuration.
+    /// Returns the plan of a configuration.
     pub(crate) plan: &'f dyn Fn(&ConfigFile) -> Result<Plan<'e>, Error>,
-    /// This rank's threads.
+    /// Prepares the threads of this rank.
     pub(crate) pool: &'f dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
     pub(crate) stop: &'f AtomicBool,
 }
 
 impl Worker<'_, '_> {
-    /// Follows one run after the other until rank 0 says with which exit code to end. What goes wrong here is said by rank 0.
+    /// Runs the commands of rank 0 until one of them ends the program, and returns the exit code. Rank 0 reports errors.
     ///
     /// # Errors
-    /// When ranks are lost.
+    /// An error when ranks are lost.
     pub(crate) fn follow(&self, exchange: &Exchange<'_>) -> Result<u8, Error> {
         loop {
             match exchange.command(None)? {
@@ -53,7 +53,7 @@ impl Worker<'_, '_> {
         }
     }
 
-    /// A run where its checkpoint left it.
+    /// Restores a run from its checkpoint.
     fn prepare(
         &self,
         directory: &Path,
@@ -71,7 +71,7 @@ impl Worker<'_, '_> {
         Ok((plan, pool, search_state, run_record.record.writer()))
     }
 
-    /// Generation after generation, until rank 0 says that the run is over or somebody has an error.
+    /// Evaluates generations until rank 0 ends the run or a rank has an error.
     fn run(&self, mut pool: Pool<'_>, mut search_state: SearchState, mut record: RecordWriter) -> Result<(), Error> {
         let status = loop {
             let generation = search_state.search.generation();

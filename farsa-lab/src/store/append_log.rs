@@ -1,4 +1,4 @@
-//! Files that grow at their end as a run goes on.
+//! Append logs: files that grow at their end during a run.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::store::bounded::read_regular;
 use crate::store::replace::{replace_and_keep, sync_directory};
 
-/// How far a file had come when a checkpoint was written.
+/// The length and checksum of a file when a checkpoint was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Mark {
     bytes: u64,
@@ -19,27 +19,27 @@ pub(crate) struct Mark {
 }
 
 impl Mark {
-    /// The mark of a file with this content.
+    /// Returns the mark of a file with this content.
     pub(crate) fn of(content: &[u8]) -> Self {
         Self { bytes: content.len() as u64, crc: Crc32::new().with(content).finish() }
     }
 
-    /// Whether there was nothing in the file, or no file.
+    /// Returns whether the file was empty or missing.
     pub(crate) fn is_empty(self) -> bool {
         self.bytes == 0
     }
 
-    /// The part of a file's content up to this mark; none if it is not what was written.
+    /// Returns the content up to this mark, or `None` if it was changed.
     pub(crate) fn within(self, content: &[u8]) -> Option<&[u8]> {
         let kept = content.get(..usize::try_from(self.bytes).ok()?)?;
         (Self::of(kept) == self).then_some(kept)
     }
 }
 
-/// Reads what a file of a run held up to a mark, whether or not a process is adding to it.
+/// Reads a file of a run up to a mark, even while another process appends to it.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Damaged`] when that is not what was written.
+/// [`Error::Io`], and [`Error::Damaged`] for content that does not match the mark.
 pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error> {
     let mut content = read_regular(path, limit)?;
     let (found, expected) = (content.len() as u64, mark.bytes);
@@ -53,7 +53,7 @@ pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error
     Ok(content)
 }
 
-/// A file that this process adds to.
+/// A file to which this process appends.
 pub(crate) struct AppendLog {
     path: PathBuf,
     file: File,
@@ -63,19 +63,19 @@ pub(crate) struct AppendLog {
 }
 
 impl AppendLog {
-    /// Puts a file with this content in the place of what is there, which is never written to: it may be a link.
+    /// Replaces a file by one with this content. The old file is never written to, since it may be a link.
     pub(crate) fn new(path: &Path, content: &[u8]) -> Result<Self, Error> {
         let file = replace_and_keep(path, content)?;
         let (bytes, crc) = (content.len() as u64, Crc32::new().with(content));
         Ok(Self { path: path.into(), file, bytes, limit: u64::MAX, crc })
     }
 
-    /// The same with so many bytes at most, of a file that is read whole.
+    /// Sets the largest number of bytes.
     pub(crate) fn with_limit(self, limit: u64) -> Self {
         Self { limit, ..self }
     }
 
-    /// Whether there is room for so many bytes more.
+    /// Checks that more bytes fit.
     ///
     /// # Errors
     /// [`Error::Other`].
@@ -84,10 +84,10 @@ impl AppendLog {
         if bytes > self.limit { Err(Error::too_large(&self.path, bytes, self.limit)) } else { Ok(()) }
     }
 
-    /// Adds to the end.
+    /// Appends to the file.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Other`] beyond the most bytes; nothing is added then.
+    /// [`Error::Io`], and [`Error::Other`] above the limit. Nothing is appended then.
     pub(crate) fn append(&mut self, content: &[u8]) -> Result<(), Error> {
         self.room_for(content.len())?;
         self.file.write_all(content).map_err(Error::io("write", &self.path))?;
@@ -96,13 +96,13 @@ impl AppendLog {
         Ok(())
     }
 
-    /// Brings everything to the disk and says how far it has come.
+    /// Synchronizes the file with the disk and returns its mark.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.file.sync_data().map_err(Error::io("write", &self.path))?;
         Ok(Mark { bytes: self.bytes, crc: self.crc.finish() })
     }
 
-    /// Refuses to go on with a file that somebody has removed, replaced, cut or added to.
+    /// Refuses a file that another program has removed, replaced, cut or extended.
     ///
     /// # Errors
     /// [`Error::Damaged`].

@@ -85,7 +85,7 @@ fn open_without_waiting(path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Reads a file of a known size [bytes], or an open end with size 0.
+/// Reads a file of a given size [bytes], or a stream with size 0.
 fn read_limited(file: File, path: &Path, size: u64, limit: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     if size <= limit {

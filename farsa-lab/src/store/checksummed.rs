@@ -1,4 +1,4 @@
-//! Files that tell whether they are whole: a kind, a format version, a length, the content and a checksum.
+//! Checksummed files, with a kind, a format version and a length.
 //!
 //! Layout, little-endian: 8 bytes that name the kind, `u32` format version, `u64` length of the content, the content
 //! (postcard), `u32` CRC-32 of everything before it.
@@ -20,20 +20,20 @@ const FORMAT: u32 = 1;
 const HEAD: usize = 8 + 4 + 8;
 const CHECKSUM: usize = 4;
 
-/// What is kept in a file of its own kind.
+/// The content of a checksummed file.
 pub(crate) trait Checksummed: Serialize + DeserializeOwned {
-    /// The first bytes of such a file.
+    /// The first bytes of the file.
     const MAGIC: [u8; 8];
-    /// What it is called in an error.
+    /// The name of the kind in errors.
     const KIND: &'static str;
-    /// Bytes of the largest such file that is read.
+    /// Bytes of the largest file.
     const MAX_BYTES: u64;
 }
 
-/// Writes a sealed file in place of what was there; see [`replace`].
+/// Writes a checksummed file by [`replace`].
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Other`] for one that is too large to be read; nothing is replaced then.
+/// [`Error::Io`], and [`Error::Other`] for a file that is too large to be read back. Nothing is replaced then.
 pub(crate) fn write<T: Checksummed>(path: &Path, content: &T) -> Result<(), Error> {
     let bytes = to_bytes(path, content)?;
     let size = bytes.len() as u64;
@@ -43,7 +43,7 @@ pub(crate) fn write<T: Checksummed>(path: &Path, content: &T) -> Result<(), Erro
     replace(path, &bytes)
 }
 
-/// The bytes of a sealed file, which is to be written to `path`.
+/// Returns the bytes of a checksummed file. `path` is for errors.
 pub(crate) fn to_bytes<T: Checksummed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
     let head = [&T::MAGIC[..], &FORMAT.to_le_bytes(), &[0; 8]].concat();
     let mut bytes = postcard::to_extend(content, head).map_err(|error| Error::Io {
@@ -58,7 +58,7 @@ pub(crate) fn to_bytes<T: Checksummed>(path: &Path, content: &T) -> Result<Vec<u
     Ok(bytes)
 }
 
-/// The first bytes of a file, which say of what kind it is; none if it is too short.
+/// Returns the first bytes of a file, which identify its kind. The result is `None` for a shorter file.
 pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
     let regular = fs::metadata(path).map_err(Error::io("read", path))?.is_file();
     if !regular {
@@ -70,19 +70,19 @@ pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
     Ok(magic.try_into().ok())
 }
 
-/// Reads a sealed file.
+/// Reads a checksummed file.
 ///
 /// # Errors
-/// [`Error::Damaged`] when it is not the file that was written, [`Error::Io`].
+/// [`Error::Io`], and [`Error::Damaged`] for a changed file.
 pub(crate) fn read<T: Checksummed>(path: &Path) -> Result<T, Error> {
     let bytes = read_regular(path, T::MAX_BYTES)?;
     open(&bytes).map_err(|why| Error::damaged(path, why))
 }
 
-/// What a sealed file holds, and the bytes after it.
+/// Returns the content of a checksummed part, and the bytes after it.
 ///
 /// # Errors
-/// Why it is not what was written.
+/// The reason why the part is invalid.
 pub(crate) fn open_first<T: Checksummed>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
     let length =
         bytes.get(12..HEAD).and_then(|length| length.first_chunk::<8>()).map(|length| u64::from_le_bytes(*length));
@@ -91,10 +91,10 @@ pub(crate) fn open_first<T: Checksummed>(bytes: &[u8]) -> Result<(T, &[u8]), Str
     Ok((open(first)?, rest))
 }
 
-/// What a sealed file holds.
+/// Returns the content of a checksummed file.
 ///
 /// # Errors
-/// Why it is not what was written.
+/// The reason why the file is invalid.
 pub(crate) fn open<T: Checksummed>(bytes: &[u8]) -> Result<T, String> {
     let truncated = |expected: u64| format!("truncated: {} bytes of {expected}", bytes.len());
     let Some((magic, rest)) = bytes.split_first_chunk::<8>() else {
@@ -167,7 +167,7 @@ mod tests {
     fn what_would_not_be_read_replaces_nothing() {
         let directory = tempfile();
         let path = directory.join("thing.bin");
-        // Of postcard a length has two bytes here, and each of these numbers three.
+        // In postcard the length has two bytes here, and each of these numbers three.
         let largest = |count: usize| Thing(vec![u16::MAX; count]);
         let most = (Thing::MAX_BYTES as usize - HEAD - CHECKSUM - 2) / 3;
         write(&path, &largest(most)).unwrap();

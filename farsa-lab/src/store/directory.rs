@@ -1,4 +1,4 @@
-//! The files of a run.
+//! The directory of a run and the names of its files.
 
 use std::fs;
 use std::io;
@@ -13,27 +13,27 @@ use crate::store::temporary_file;
 #[derive(Debug, Clone)]
 pub(crate) struct Directory {
     path: PathBuf,
-    /// What the names of a test's files end with: nothing, or a hyphen and another world than the run's.
+    /// The end of the names of a test's files: empty, or a hyphen and another world than the run's.
     tests: String,
 }
 
 impl Directory {
-    /// A directory that need not be here, for messages about its files.
+    /// Names a directory that may not exist.
     pub(crate) fn at(path: PathBuf) -> Self {
         Self { path, tests: String::new() }
     }
 
-    /// Tests in another world than the run's have files of their own.
+    /// Gives the tests in another world than the run's their own names.
     pub(crate) fn tests_in(&mut self, world: &str) {
         self.tests = format!("-{world}");
     }
 
-    /// Makes a new directory out of its first files, all of them or none.
+    /// Creates a directory with its first files. After an error nothing is left.
     ///
-    /// They are written beside the place and moved there at once, so that nothing that is there is ever touched.
+    /// The files are written to a temporary directory, which is then renamed. Existing files are never touched.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when there is something at the place already, [`Error::Io`].
+    /// [`Error::Occupied`] for an existing file or a directory that is not empty, and [`Error::Io`].
     pub(crate) fn create(path: &Path, fill: impl FnOnce(&Self) -> Result<(), Error>) -> Result<Self, Error> {
         vacant(path)?;
         if path.file_name().is_none() {
@@ -44,26 +44,26 @@ impl Directory {
         temporary_file::sweep_of(path);
         let (draft, _lock) = temporary_file::directory(path).map_err(Error::io("make", path))?;
         fill(&Self::at(draft.path().into()))?;
-        // Windows moves nothing onto a directory, even an empty one; a full one is in nobody's way by now.
+        // Windows cannot rename to an existing directory, even an empty one. A directory with content is kept by this call.
         if fs::remove_dir(path).is_err() {
             vacant(path)?;
         }
         if let Err(source) = fs::rename(draft.path(), path) {
-            // Another process may have been faster.
+            // Another process may have created the directory first.
             vacant(path)?;
             return Err(Error::io("make", path)(source));
         }
-        // It has another name now, under which nobody removes it.
+        // The directory has its final name, so it is not removed.
         let _ = draft.keep();
         sync_directory(parent)?;
         Ok(Self::at(path.into()))
     }
 
-    /// Moves the run that is at a place out of the way, where there is one, to the same name with `.old-` and the first number that
-    /// is free, and returns that. Nothing but a run is moved.
+    /// Renames an existing run to the same name with `.old-` and the first free number, and returns the new path. Other
+    /// directories are not moved.
     ///
     /// # Errors
-    /// [`Error::Occupied`] for a run that another process is at, [`Error::Io`].
+    /// [`Error::Occupied`] for a run claimed by another process, and [`Error::Io`].
     pub(crate) fn move_aside(path: &Path) -> Result<Option<PathBuf>, Error> {
         let Some(name) = path.file_name().filter(|_| path.join("config.toml").is_file()) else { return Ok(None) };
         let _lock = Lock::of_run(path)?;
@@ -71,8 +71,8 @@ impl Directory {
             let mut other = name.to_os_string();
             other.push(format!(".old-{number}"));
             let other = path.with_file_name(other);
-            // An empty directory, which nothing of a run can be in, is made exclusively and then replaced: so two processes
-            // never take the same number.
+            // The new name is claimed by an empty directory, which the rename replaces. Two processes cannot claim the same
+            // number.
             match fs::create_dir(&other) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 made => made.map_err(Error::io("make", &other))?,
@@ -87,7 +87,7 @@ impl Directory {
         Ok(None)
     }
 
-    /// The directory of a run that exists.
+    /// Opens the directory of an existing run.
     ///
     /// # Errors
     /// [`Error::NoRun`].
@@ -110,7 +110,7 @@ impl Directory {
     pub(crate) fn config(&self) -> PathBuf {
         self.path.join("config.toml")
     }
-    /// What made the run: versions, machine, timings.
+    /// Program versions, machine and timings.
     pub(crate) fn manifest(&self) -> PathBuf {
         self.path.join("manifest.json")
     }
@@ -126,19 +126,19 @@ impl Directory {
     pub(crate) fn champion(&self) -> PathBuf {
         self.path.join("champion.bin")
     }
-    /// Where to go on.
+    /// The state from which a run continues.
     pub(crate) fn checkpoint(&self) -> PathBuf {
         self.path.join("checkpoint.bin")
     }
-    /// What the strategy was told in every generation.
+    /// The reported fitness of every generation.
     pub(crate) fn record(&self) -> PathBuf {
         self.path.join("record.bin")
     }
-    /// What earlier versions rebuilt generations from.
+    /// The file from which earlier versions rebuilt generations.
     pub(crate) fn earlier_lineage(&self) -> PathBuf {
         self.path.join("lineage.bin")
     }
-    /// The evaluations that failed, once there is one.
+    /// The failed evaluations, if there are any.
     pub(crate) fn failures(&self) -> PathBuf {
         self.path.join("failures.csv")
     }
@@ -146,23 +146,23 @@ impl Directory {
     pub(crate) fn lineage(&self) -> PathBuf {
         self.path.join("lineage.csv")
     }
-    /// What a strategy says of each generation, in a file whose name without `.csv` it gives, and the picture of it.
+    /// The diagnostics of a strategy, in a file with the given name, and their picture.
     pub(crate) fn diagnostics(&self, file: &str) -> [PathBuf; 2] {
         ["csv", "svg"].map(|end| self.path.join(format!("{file}.{end}")))
     }
-    /// Genotypes that were imported, in the place of checkpoint and record.
+    /// Imported genotypes, instead of checkpoint and record.
     pub(crate) fn genotypes(&self) -> PathBuf {
         self.path.join("genotypes.bin")
     }
-    /// The champion's trials on fresh starts.
+    /// The champion's trials on new starts.
     pub(crate) fn test(&self) -> PathBuf {
         self.path.join(format!("test{}.csv", self.tests))
     }
-    /// Which test that was.
+    /// The description of the test.
     pub(crate) fn test_record(&self) -> PathBuf {
         self.path.join(format!("test{}.json", self.tests))
     }
-    /// Where the tests by protocols are.
+    /// The directory of tests by protocols.
     pub(crate) fn protocols(&self) -> PathBuf {
         self.path.join(format!("protocols{}", self.tests))
     }
@@ -172,7 +172,7 @@ fn occupied(path: &Path, why: &str) -> Error {
     Error::Occupied { directory: path.into(), why: why.into() }
 }
 
-/// Whether a run can be put at a place: there is nothing, or an empty directory.
+/// Checks that a run can be created: there is no file, or an empty directory.
 ///
 /// # Errors
 /// [`Error::Occupied`], [`Error::Io`].
@@ -242,7 +242,7 @@ mod tests {
             assert_eq!(fs::read_to_string(kept.join("config.toml")).unwrap(), text);
         }
         assert_eq!(fs::read_dir(folder.path().join("a.run.old-2")).unwrap().count(), 0);
-        // What is no run stays where it is.
+        // A directory without a run is not moved.
         fs::create_dir(&run).unwrap();
         fs::write(run.join("letter.txt"), "dear").unwrap();
         assert_eq!(Directory::move_aside(&run).unwrap(), None);

@@ -1,4 +1,4 @@
-//! `failures.csv`: the evaluations that failed, each with its first trial that did, why, and how to see it again.
+//! `failures.csv`: the failed evaluations, each with its first failed trial, the reason, and a command that repeats it.
 
 use std::path::{Path, PathBuf};
 
@@ -7,27 +7,27 @@ use crate::store::append_log::{AppendLog, Mark};
 use crate::store::bounded::read_regular_if_present;
 
 const HEADER: &str = "generation,individual,trial,why,command\n";
-/// Bytes of the largest file that is read.
+/// Bytes of the largest file.
 const MAX_BYTES: u64 = 1 << 32;
 
-/// An evaluation that failed.
+/// A failed evaluation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FailedEvaluation {
     pub(crate) generation: u32,
-    /// Counted through all populations.
+    /// The number of the individual, counted through all populations.
     pub(crate) individual: u32,
-    /// The first trial that failed; none when the trials were well and their fitness was not.
+    /// The first failed trial. `None` when only the fitness failed.
     pub(crate) trial: Option<u32>,
     pub(crate) why: String,
 }
 
 impl FailedEvaluation {
-    /// What the user types to see it again, from a directory in which `directory` is the run's.
+    /// Returns a command that repeats the trial. `directory` is the path of the run.
     pub(crate) fn command(&self, program: &str, directory: &str) -> String {
         let Self { generation, individual, trial, .. } = self;
         let which = format!("--generation {generation} --individual {individual}");
         let trial = trial.map_or_else(String::new, |trial| format!(" --trial {trial}"));
-        // A trial is replayed by one process, so the command for several says the same.
+        // A trial is replayed by one process, so the command for several ranks is replaced.
         let program = program.strip_suffix("-mpi").unwrap_or(program);
         format!("{program} replay {directory} {which}{trial}")
     }
@@ -43,21 +43,21 @@ impl FailedEvaluation {
     }
 }
 
-/// The file, with so much in it, which stays one that is read.
+/// Creates the file with its content and the limit on its bytes.
 fn growing(path: &Path, content: &[u8]) -> Result<AppendLog, Error> {
     AppendLog::new(path, content).map(|file| file.with_limit(MAX_BYTES))
 }
 
-/// The failures of a run in progress; there is no file before the first.
+/// The failures of a run in progress. The file is created by the first failure.
 pub(crate) struct Failures {
     path: PathBuf,
     file: Option<AppendLog>,
 }
 
 impl Failures {
-    /// The failures of a run that goes on, up to a mark.
+    /// Opens the failures of a resumed run, up to a mark.
     ///
-    /// Nothing else says what they were: a file that somebody has changed stays as it is, and grows.
+    /// No other file has the failures, so a file changed by another program is kept as it is.
     pub(crate) fn resume(path: &Path, mark: Mark) -> Result<Self, Error> {
         let content = read_regular_if_present(path, MAX_BYTES)?.unwrap_or_default();
         let file = match mark.within(&content) {
@@ -72,7 +72,7 @@ impl Failures {
         Ok(Self { path: path.into(), file })
     }
 
-    /// Appends what failed in a generation.
+    /// Appends the failures of a generation.
     pub(crate) fn append(&mut self, failed: &[FailedEvaluation], program: &str) -> Result<(), Error> {
         if failed.is_empty() {
             return Ok(());
@@ -85,7 +85,7 @@ impl Failures {
         Ok(())
     }
 
-    /// Brings everything to the disk and says how far it has come.
+    /// Synchronizes the file with the disk and returns its mark.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.file.as_mut().map_or(Ok(Mark::default()), AppendLog::sync)
     }
@@ -124,10 +124,10 @@ mod tests {
         let mut failures = Failures::resume(&path, mark).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
         assert_eq!(failures.sync().unwrap(), mark);
-        // Of a run that was killed before its first save with a failure.
+        // The run was killed before its first save with a failure.
         Failures::resume(&path, Mark::default()).unwrap();
         assert!(!path.exists());
-        // Somebody's remarks stay; a file that is gone begins anew.
+        // Remarks by the user are kept, and a missing file is created again.
         fs::write(&path, "mine\n").unwrap();
         Failures::resume(&path, mark).unwrap().append(&[failed(3, None)], "farsa").unwrap();
         assert!(fs::read_to_string(&path).unwrap().starts_with("mine\n3,3,,"));

@@ -1,4 +1,4 @@
-//! What a run is: all that its results depend on.
+//! The identity of a run: everything that its results depend on.
 
 use std::path::Path;
 
@@ -7,14 +7,15 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::experiment::settings::Value;
 
-/// Grows by one whenever the same configuration, seed and genes come to other trials through a change in the crates that
-/// experiments are built of; see [`Experiment::values_version`](crate::Experiment::values_version) for changes in an experiment itself.
+/// The version of the values of this library. It grows whenever a change in the crates below experiments changes trials for the
+/// same configuration, seed and genes. [`Experiment::values_version`](crate::Experiment::values_version) counts the changes in an
+/// experiment.
 pub const VALUES_VERSION: u32 = 3;
 
-/// What the checksums of files begin with among the settings of an [`Identity`]; no setting's key has a blank in it.
+/// The start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.
 pub(crate) const FILE: &str = "CRC-32 of ";
 
-/// All that the results of a run depend on; it stands in every file whose content means nothing without it.
+/// Everything that the results of a run depend on. It is part of every file that is only valid for one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Identity {
     pub(crate) experiment: String,
@@ -22,15 +23,14 @@ pub(crate) struct Identity {
     pub(crate) seed: u64,
     pub(crate) values_version: u32,
     pub(crate) experiment_version: u32,
-    /// Every setting but the number of generations, which a run does not depend on up to the last of them; then the
-    /// checksums of files.
+    /// Every setting except the number of generations, followed by the checksums of files.
     pub(crate) settings: Vec<(String, Value)>,
 }
 
 impl Identity {
-    /// Whether `asked` means the same run as this one, which was read from a file of `directory`.
+    /// Checks that `asked` is the same run as this one, read from a file of `directory`.
     ///
-    /// Settings that only one of them knows belong to another version with equal values.
+    /// Settings that only one of them has belong to another version with equal values.
     pub(crate) fn same_run(&self, asked: &Self, directory: &Path) -> Result<(), Error> {
         let pairs = [
             ("experiment", &self.experiment, &asked.experiment),
@@ -55,12 +55,12 @@ impl Identity {
         }
     }
 
-    /// The files that the results depend on, each with the checksum of its content.
+    /// Returns the files that the results depend on, with the checksums of their content.
     pub(crate) fn files(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.settings.iter().filter_map(|(key, value)| Some((key.strip_prefix(FILE)?, value)))
     }
 
-    /// Whether this program computes the trials that the file `path` speaks of.
+    /// Checks that this program computes the trials of the file `path` in the same way.
     pub(crate) fn same_values(&self, program: &Self, path: &Path) -> Result<(), Error> {
         let versions = [
             ("FARSA's values".to_owned(), self.values_version, program.values_version),

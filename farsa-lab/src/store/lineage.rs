@@ -8,16 +8,16 @@ use crate::store::append_log::{AppendLog, Mark};
 use crate::store::bounded::read_regular;
 use crate::strategy::search::Search;
 
-/// The first line. Individuals are counted through all populations; parents are of the generation before, with blanks
-/// between them.
+/// The first line. Individuals are counted through all populations. Parents are individuals of the previous generation, separated
+/// by blanks.
 pub(crate) const HEADER: &str = "generation,individual,parents\n";
-/// Bytes of the largest lineage that is read.
+/// Bytes of the largest lineage.
 const MAX_BYTES: u64 = 1 << 32;
 
 /// The lineage of a run in progress.
 pub(crate) struct Lineage(AppendLog);
 
-/// The lines of the generation that waits for its fitness; none for one without parents.
+/// Returns the lines of the current generation, which are empty for individuals without parents.
 pub(crate) fn rows(strategy: &Search) -> String {
     let mut text = String::new();
     let Some(genealogy) = strategy.genealogy() else { return text };
@@ -32,9 +32,9 @@ pub(crate) fn rows(strategy: &Search) -> String {
 }
 
 impl Lineage {
-    /// Opens the file for a run that goes on, and forgets what came after a mark.
+    /// Opens the file of a resumed run at a mark.
     ///
-    /// A file that is gone, or not what was written, is written again: `rebuild` takes a function that appends lines.
+    /// A missing or changed file is written again. `rebuild` receives a function that appends lines.
     pub(crate) fn resume(
         path: &Path,
         mark: Mark,
@@ -55,10 +55,10 @@ impl Lineage {
         self.0.append(rows.as_bytes())
     }
 
-    /// Brings everything to the disk and says how far it has come.
+    /// Synchronizes the file with the disk and returns its mark.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.0.check()?;
         self.0.sync()

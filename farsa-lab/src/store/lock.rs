@@ -1,4 +1,4 @@
-//! Locks that keep processes out of each other's files, and that end with the process that holds them.
+//! Locks between processes. They end with the process that holds them.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use crate::error::Error;
 
-/// The file whose lock is held as long as a process goes on with a run.
+/// The file that a process locks while it continues a run.
 pub(crate) const RUN_LOCK: &str = ".run.lock";
-/// The file whose lock is held while the files of a test are written, which belong together.
+/// The file that a process locks while it writes the files of a test.
 const TEST_LOCK: &str = ".test.lock";
-/// How often, and with which pauses, the lock of a test is asked for: it is held for as long as two small files take.
+/// The number of tries for the lock of a test, and the pause between them. Two small files are written under it.
 const ATTEMPTS: usize = 200;
 const PAUSE: Duration = Duration::from_millis(50);
 
@@ -23,10 +23,10 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Takes possession of a run.
+    /// Locks a run.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when another process has it, [`Error::Io`].
+    /// [`Error::Occupied`] when another process has locked it, and [`Error::Io`].
     pub(crate) fn of_run(directory: &Path) -> Result<Self, Error> {
         Self::of_free_run(directory)?.ok_or_else(|| {
             let why = "another process is at this run right now".into();
@@ -34,7 +34,7 @@ impl Lock {
         })
     }
 
-    /// Takes possession of a run, unless another process has it.
+    /// Locks a run, or returns `None` when another process has locked it.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -48,10 +48,10 @@ impl Lock {
         }
     }
 
-    /// Waits for the files of a run's tests.
+    /// Waits for the lock of a run's tests.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when another process has them for more than ten seconds, [`Error::Io`].
+    /// [`Error::Occupied`] when another process holds it for more than ten seconds, and [`Error::Io`].
     pub(crate) fn of_tests(directory: &Path) -> Result<Self, Error> {
         let path = directory.join(TEST_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
@@ -67,7 +67,7 @@ impl Lock {
     }
 }
 
-/// Opens a file to be locked, or makes it; nothing is written, and no link or pipe is opened.
+/// Opens or creates a file for a lock. Nothing is written, and links and pipes are refused.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {

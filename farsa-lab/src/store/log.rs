@@ -1,4 +1,4 @@
-//! `fitness.csv`: one line per finished generation, as the record of the run has them.
+//! `fitness.csv`: one line for each finished generation.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,12 +11,12 @@ use crate::error::Error;
 use crate::store::append_log::AppendLog;
 use crate::store::bounded::read_regular_if_present;
 
-/// The first line where there is one population.
+/// The first line for one population.
 const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
-/// Bytes of the largest log that is compared with what is written anew: no record that is read has as long a log.
+/// Bytes of the largest log that is compared with the record.
 const MAX_BYTES: u64 = 1 << 32;
 
-/// The first line: with several populations three more columns for each of them.
+/// Returns the first line, with three more columns for each of several populations.
 pub(crate) fn header(populations: usize) -> String {
     let mut text = HEADER.trim_end().to_owned();
     for population in (0..populations).filter(|_| populations > 1) {
@@ -29,25 +29,25 @@ pub(crate) fn header(populations: usize) -> String {
 /// One generation's best, mean and worst fitness.
 pub(crate) type Row = [f64; 3];
 
-/// What a line says about a generation.
+/// The content of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Line {
     pub(crate) row: Row,
-    /// The same of each population where there are several.
+    /// The row of each population, where there are several.
     pub(crate) each: Vec<Row>,
     pub(crate) evaluations: u64,
     pub(crate) failed: u64,
 }
 
 impl Line {
-    /// What the fitness of a generation comes to; `each` has the statistics of every population where there are several.
+    /// Returns the line of a generation. `each` has the statistics of every population, where there are several.
     pub(crate) fn new(statistics: &Statistics, evaluations: usize, each: &[Statistics]) -> Self {
         let row = |&Statistics { best, mean, worst, .. }: &Statistics| [best, mean, worst];
         let (evaluations, failed) = (evaluations as u64, statistics.failed as u64);
         Self { row: row(statistics), each: each.iter().map(row).collect(), evaluations, failed }
     }
 
-    /// The line of the generation with this number.
+    /// Formats the line of a generation.
     fn text(&self, generation: usize) -> String {
         let Self { row: [best, mean, worst], each, evaluations, failed } = self;
         // The debug form is the shortest that reads back as the same number.
@@ -61,17 +61,17 @@ impl Line {
     }
 }
 
-/// The log of a running run. Its lines are in the file alone: a run may have any number of them.
+/// The log of a run in progress. Its lines are not kept in memory.
 pub(crate) struct Log {
     file: AppendLog,
     generations: usize,
 }
 
 impl Log {
-    /// Writes the log of a run that goes on anew, from the lines so far.
+    /// Writes the log of a resumed run again from its record.
     ///
-    /// A file that says something else than these lines, and lines after them, is kept under another name, which is returned. Other
-    /// ends of lines, as programs for tables write them, are nothing else.
+    /// A file with other content is kept under another name, which is returned. Lines of later generations and other line
+    /// endings, as spreadsheets write them, are not other content.
     pub(crate) fn resume(path: &Path, lines: &[Line], populations: usize) -> Result<(Self, Option<PathBuf>), Error> {
         let mut text = header(populations);
         lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
@@ -83,7 +83,7 @@ impl Log {
     /// Appends a generation.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
     pub(crate) fn append(&mut self, line: &Line) -> Result<(), Error> {
         self.file.check()?;
         self.file.append(line.text(self.generations).as_bytes())?;
@@ -91,7 +91,7 @@ impl Log {
         Ok(())
     }
 
-    /// Brings everything to the disk.
+    /// Synchronizes the file with the disk.
     ///
     /// # Errors
     /// As [`append`](Self::append).
@@ -101,14 +101,13 @@ impl Log {
     }
 }
 
-/// Whether a file holds this text, or a part of it, or the lines of later generations after it: what a process that was killed
-/// leaves.
+/// Returns whether a file has this text, a part of it, or lines of later generations after it, as a killed process leaves it.
 ///
 /// # Errors
 /// [`Error::Io`].
 fn says_the_same(path: &Path, text: &str) -> Result<bool, Error> {
     let Some(bytes) = read_regular_if_present(path, MAX_BYTES)? else { return Ok(false) };
-    // A cut may fall into the middle of anything; from there on it is none of ours.
+    // A cut may split a character. The rest is then compared as replaced characters.
     let found = String::from_utf8_lossy(&bytes);
     let found = found.strip_prefix('\u{feff}').unwrap_or(&found).replace("\r\n", "\n").replace('\r', "\n");
     let Some(more) = found.strip_prefix(text) else { return Ok(text.starts_with(&found)) };
@@ -119,7 +118,7 @@ fn says_the_same(path: &Path, text: &str) -> Result<bool, Error> {
     }))
 }
 
-/// Gives a file another name, one that nothing has.
+/// Renames a file to an unused name.
 fn keep(path: &Path) -> Result<PathBuf, Error> {
     let (stem, end) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
     let name = |number: u32| format!("{}-changed-{number}.{}", stem.to_string_lossy(), end.to_string_lossy());
@@ -167,14 +166,14 @@ mod tests {
             assert_eq!(fs::read_to_string(&path).unwrap(), format!("{text}{}", line(3.5).text(2)));
             kept
         };
-        // Removed, cut, with what a killed process wrote after its checkpoint, and as programs for tables save it.
+        // Removed, cut, extended by a killed process, and saved by a spreadsheet.
         assert_eq!(resumed(None), None);
         assert_eq!(resumed(Some(&text.as_bytes()[..60])), None);
         assert_eq!(resumed(Some(format!("{text}2,3.5,-0.2").as_bytes())), None);
         assert_eq!(resumed(Some(text.replace('\n', "\r\n").as_bytes())), None);
         assert_eq!(resumed(Some(format!("\u{feff}{}", text.trim_end()).as_bytes())), None);
         assert_eq!(resumed(Some(&[text.as_bytes(), b"2,", &[0xff, 0xfe]].concat())), None);
-        // Anything else is somebody's.
+        // Any other change is the user's.
         let changed = text.replace("1.5", "1,5");
         for (number, content) in (1..).zip([changed, format!("{text}the best so far\n"), "dear diary".into()]) {
             let kept = resumed(Some(content.as_bytes())).unwrap();

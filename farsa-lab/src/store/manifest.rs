@@ -1,4 +1,4 @@
-//! `manifest.json`: what made a run, when and how fast; nothing in it changes a result.
+//! `manifest.json`: program version, machine and timings. No result depends on it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,13 +17,13 @@ use crate::store::replace::replace;
 
 /// The version of the format.
 const FORMAT: u32 = 1;
-/// Bytes of the largest file that is read: a session takes some five hundred.
+/// Bytes of the largest manifest. A session takes about five hundred.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// The whole file.
+/// The manifest of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Manifest {
-    /// Version of this file's format.
+    /// The version of the format.
     pub(crate) format: u32,
     pub(crate) experiment: String,
     pub(crate) condition: String,
@@ -35,32 +35,32 @@ pub(crate) struct Manifest {
     /// The files that trials depend on, with the CRC-32 of their content.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) files: BTreeMap<String, String>,
-    /// The files that genotypes were imported from.
+    /// The files of imported genotypes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) imported: Vec<String>,
-    /// One for the start and one for every time the run was resumed.
+    /// One session for the start and one for each resumption.
     pub(crate) sessions: Vec<Session>,
 }
 
-/// What one process did.
+/// The work of one process.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Session {
     pub(crate) farsa: String,
     pub(crate) machine: Machine,
     pub(crate) threads: usize,
-    /// Trials side by side in each thread, and by which instructions.
+    /// The number of lanes in each thread, and their instructions.
     #[serde(flatten)]
     pub(crate) lanes: LanesInfo,
-    /// Seconds since 1970 began, UTC.
+    /// Start time in seconds since 1970, UTC.
     pub(crate) started_unix: u64,
     pub(crate) seconds: f64,
     pub(crate) first_generation: u32,
-    /// Generations finished.
+    /// Finished generations.
     pub(crate) generations: u32,
     pub(crate) evaluations: u64,
 }
 
-/// Where it ran.
+/// The machine of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Machine {
     os: String,
@@ -70,7 +70,7 @@ pub(crate) struct Machine {
 }
 
 impl Manifest {
-    /// The manifest of a run that has not begun.
+    /// Creates the manifest of a new run.
     pub(crate) fn new(identity: &Identity) -> Self {
         Self {
             format: FORMAT,
@@ -88,12 +88,12 @@ impl Manifest {
     /// Reads the file.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Damaged`] for another format or none.
+    /// [`Error::Io`], and [`Error::Damaged`] for another format.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         Self::from_text(path, &read_regular_text(path, MAX_BYTES)?)
     }
 
-    /// The manifest in the text of a file.
+    /// Parses the text of a manifest.
     pub(crate) fn from_text(path: &Path, text: &str) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct Format {
@@ -107,10 +107,10 @@ impl Manifest {
         serde_json::from_str(text).map_err(damaged)
     }
 
-    /// The file of a run, or a new one where it is lost: no result depends on it.
+    /// Reads the manifest of a run, or creates one if the file is missing.
     ///
     /// # Errors
-    /// As [`read`](Self::read): what cannot be read may still be of use to somebody.
+    /// As [`read`](Self::read). An unreadable file may still be useful to the user.
     pub(crate) fn read_or_new(path: &Path, identity: &Identity) -> Result<Self, Error> {
         match fs::symlink_metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::new(identity)),
@@ -123,7 +123,7 @@ impl Manifest {
         replace(path, self.text(path)?.as_bytes())
     }
 
-    /// The text of the file.
+    /// Formats the manifest.
     pub(crate) fn text(&self, path: &Path) -> Result<String, Error> {
         let mut text = serde_json::to_string_pretty(self).map_err(|error| Error::Io {
             doing: "write",
@@ -136,7 +136,7 @@ impl Manifest {
 }
 
 impl Session {
-    /// A session that begins now.
+    /// Starts a session.
     pub(crate) fn new(threads: usize, lanes: LanesInfo, first_generation: u32) -> Self {
         Self {
             farsa: env!("CARGO_PKG_VERSION").into(),
@@ -153,21 +153,21 @@ impl Session {
 }
 
 impl Machine {
-    /// Processors that a process may use.
+    /// Returns the number of processors that a process may use.
     pub(crate) fn cores(&self) -> usize {
         self.logical_processors
     }
 
-    /// The machine in a few words.
+    /// Describes the machine in a few words.
     pub(crate) fn describe(&self) -> String {
         let Self { os, architecture, processor, logical_processors } = self;
         let processor = if processor.is_empty() { "unknown processor" } else { processor };
         format!("{processor}, {logical_processors} logical processors, {os} {architecture}")
     }
 
-    /// The machine that this process runs on.
+    /// Returns the machine of this process.
     pub(crate) fn here() -> Self {
-        // Linux alone tells the processor's name in a file; elsewhere it is left out.
+        // Only Linux has a file with the processor's name.
         let processor = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
             let line = text.lines().find(|line| line.starts_with("model name"))?;
             Some(line.split_once(':')?.1.trim().to_owned())

@@ -1,4 +1,4 @@
-//! How files are written without ever being half written.
+//! Atomic replacement of files.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read as _, Write as _};
@@ -9,20 +9,20 @@ use farsa_view::Page;
 use crate::error::Error;
 use crate::store::temporary_file;
 
-/// Puts new content in place of a file's: written beside it, brought to the disk, then renamed.
+/// Replaces a file: the new content is written to a temporary file, synchronized with the disk, then renamed.
 ///
-/// A reader, a crash or a full disk meets the old content or the new one, never a part. A link is replaced, not followed.
+/// A reader finds the old or the new content, even after a crash or on a full disk. A link is replaced and not followed.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     replace_and_keep(path, bytes).map(drop)
 }
 
-/// The same, and keeps the file open at its end.
+/// Replaces a file and keeps it open at its end.
 pub(crate) fn replace_and_keep(path: &Path, bytes: &[u8]) -> Result<File, Error> {
     let written = temporary_file::file(path).and_then(|mut draft| {
         draft.as_file_mut().write_all(bytes)?;
         draft.as_file().sync_all()?;
         let file = draft.persist(path).map_err(|error| error.error)?;
-        // It has its name, and is no draft any more. Where there are no locks there is nothing to release.
+        // The file has its final name, so the lock is released. File systems without locks have none to release.
         let _ = file.unlock();
         Ok(file)
     });
@@ -31,7 +31,7 @@ pub(crate) fn replace_and_keep(path: &Path, bytes: &[u8]) -> Result<File, Error>
     Ok(file)
 }
 
-/// Brings a rename to the disk, where directories can be opened at all.
+/// Synchronizes a rename with the disk, where directories can be opened.
 pub(crate) fn sync_directory(path: &Path) -> Result<(), Error> {
     if cfg!(unix) {
         File::open(path).and_then(|directory| directory.sync_all()).map_err(Error::io("write", path))?;
@@ -39,7 +39,7 @@ pub(crate) fn sync_directory(path: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses a name for a result under which there is a file, before what goes into it takes time; it is looked at again when the
+/// Refuses the name of an existing file for a result, before the result takes time to compute. The name is checked again when the
 /// result is written.
 ///
 /// # Errors
@@ -51,10 +51,10 @@ pub(crate) fn refuse_existing(path: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Opens a file to write a result to: a new file, or a pipe or device that is there.
+/// Opens a file for a result: a new file, or an existing pipe or device.
 ///
 /// # Errors
-/// [`Error::Usage`] when there is a file already, [`Error::Io`].
+/// [`Error::Usage`] for an existing file, and [`Error::Io`].
 pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
     match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -65,16 +65,16 @@ pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
     }
 }
 
-/// Writes results to new files, all of them or none; a file has its name only once it is whole.
+/// Writes results to new files, all of them or none. A file has its final name only when it is complete.
 ///
 /// # Errors
-/// As [`create_result`]; no file is then left behind.
+/// As [`create_result`]. No file is left then.
 pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<(), Error> {
     let mut made: Vec<&Path> = Vec::new();
     let written = results.iter().try_for_each(|(path, content)| {
         let content = content.as_ref();
         if fs::symlink_metadata(path).is_ok() {
-            // A pipe, a device, or something in the way.
+            // A pipe, a device, or an existing file.
             return create_result(path)?.write_all(content).map_err(Error::io("write", path));
         }
         temporary_file::sweep_of(path);
@@ -93,14 +93,14 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
     });
     if written.is_err() {
         for path in made {
-            // Our own file; that it may stay is no reason to hide the first error.
+            // The first error is more important than a file that cannot be removed.
             let _ = fs::remove_file(path);
         }
     }
     written
 }
 
-/// Writes a page: over an older page of ours, else to a new file.
+/// Writes a page to a new file, or over an older page of FARSA.
 ///
 /// # Errors
 /// As [`create_results`].
@@ -112,7 +112,7 @@ pub(crate) fn write_page(path: &Path, html: &str) -> Result<(), Error> {
     replace(path, html.as_bytes())
 }
 
-/// Whether a file is a page that a command of ours has made.
+/// Returns whether a file is a page of FARSA.
 fn is_page(path: &Path) -> bool {
     if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
         return false;
@@ -134,7 +134,7 @@ mod tests {
         write_page(&path("page.html"), &page("first")).unwrap();
         write_page(&path("page.html"), &page("second")).unwrap();
         assert_eq!(fs::read_to_string(path("page.html")).unwrap(), page("second"));
-        // What a process left that was killed meanwhile.
+        // The file of a process that was killed while writing.
         fs::write(path(".page.html.0123456789ab.new"), "<p>").unwrap();
         write_page(&path("page.html"), &page("third")).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -153,7 +153,7 @@ mod tests {
         replace(&path, b"old").unwrap();
         replace(&path, b"new").unwrap();
         assert_eq!(fs::read_dir(root).unwrap().count(), 1);
-        // A directory in the place of the file.
+        // A directory instead of the file.
         fs::create_dir(root.join("folder")).unwrap();
         let error = replace(&root.join("folder"), b"newer").unwrap_err();
         assert!(error.to_string().starts_with("cannot write "), "{error}");

@@ -124,7 +124,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = (PathBuf, String)> {
     entries.filter_map(|entry| Some((entry.path(), entry.file_name().into_string().ok()?)))
 }
 
-/// Whether a name has the form that [`create`] gives: the prefix, the rest of a final name, and random letters.
+/// Returns whether a name has the form that [`create`] gives: the prefix, the rest of a final name, and random letters.
 fn is_temporary(name: &str, prefix: &str) -> bool {
     let Some((start, random)) = name.strip_suffix(SUFFIX).and_then(|rest| rest.rsplit_once('.')) else { return false };
     let complete = start.len() + 1 >= prefix.len() && name.starts_with(prefix) && start.len() > 1;

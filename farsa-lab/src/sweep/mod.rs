@@ -1,11 +1,10 @@
-//! Many settings by one file: `farsa sweep`.
-//!
-//! - `points`: the points of a sweep: what varies from one to the next, and their names
-//! - `sweep_file`: what the file of a sweep says
-//! - `work`: `farsa sweep`: the runs of all points, by any number of processes
+//! Sweeps: one file with many settings, `farsa sweep`.
 
+/// The points of a sweep and their names.
 mod points;
+/// The file of a sweep.
 mod sweep_file;
+/// `farsa sweep`: the runs of all points.
 pub(crate) mod work;
 
 pub(crate) use sweep_file::SweepFile;

@@ -1,4 +1,4 @@
-//! The points of a sweep: what varies from one to the next, and their names.
+//! The points of a sweep: the settings that vary, and the names of the points.
 
 use std::collections::BTreeMap;
 
@@ -12,13 +12,13 @@ use crate::run::plan::Plan;
 use crate::strategy::settings::STRATEGY;
 use crate::sweep::sweep_file::{Axis, SweepFile};
 
-/// The most points, and runs of all points.
+/// The largest numbers of points, and of runs of all points.
 const MAX_POINTS: usize = 10_000;
 const MAX_RUNS: usize = 100_000;
-/// Bytes of the longest name that is not cut: 255 are allowed, and drafts add some.
+/// Bytes of the longest name that is not cut. File systems allow 255, and temporary names are longer.
 const MAX_NAME_BYTES: usize = 160;
 
-/// The points of a file, each with a name of its own and settings that are allowed.
+/// The points of a sweep file, with distinct names and valid settings.
 pub(crate) struct Points<'f, 'e> {
     file: &'f SweepFile,
     laboratory: &'f Laboratory<'e>,
@@ -29,7 +29,7 @@ impl<'f, 'e> Points<'f, 'e> {
     /// Checks every value of every point.
     ///
     /// # Errors
-    /// [`Error::Usage`] for too many points, and for two that are the same; those of [`Plan::from_file`], with the line.
+    /// [`Error::Usage`] for too many points and for two equal ones, and the errors of [`Plan::from_file`], with the line.
     pub(crate) fn new(file: &'f SweepFile, laboratory: &'f Laboratory<'e>) -> Result<Self, Error> {
         let rows = file.axes.iter().map(|axis| axis.rows.len());
         let count = rows.clone().try_fold(1_usize, usize::checked_mul).filter(|count| *count <= MAX_POINTS);
@@ -60,12 +60,12 @@ impl<'f, 'e> Points<'f, 'e> {
         self.names.len()
     }
 
-    /// The name of a point, counted from 0: what varies, with its values.
+    /// Returns the name of a point, counted from 0, made of the values that vary.
     pub(crate) fn name(&self, point: usize) -> &str {
         self.names.get(point).map_or("", String::as_str)
     }
 
-    /// What is run at a point, with the first seed.
+    /// Returns the plan of a point, with the first seed.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -79,7 +79,7 @@ impl<'f, 'e> Points<'f, 'e> {
         Ok(plan)
     }
 
-    /// An error about a whole point, with the place of the value that it speaks of.
+    /// Returns an error about a point, with the place of its value.
     pub(crate) fn located(&self, point: usize, error: Error) -> Error {
         let whole = format!("{}: point {} ({})", self.file.base.name, point + 1, self.name(point));
         match error {
@@ -93,7 +93,7 @@ impl<'f, 'e> Points<'f, 'e> {
         }
     }
 
-    /// The keys that vary with their values at a point; the last key varies first.
+    /// Returns the keys that vary with their values at a point. The last key varies first.
     fn values(&self, point: usize) -> impl Iterator<Item = (&'f Entry<String>, &'f Entry<Value>)> {
         let mut rest = point;
         let mut rows: Vec<(&Axis, usize)> = Vec::new();
@@ -104,7 +104,7 @@ impl<'f, 'e> Points<'f, 'e> {
         rows.into_iter().rev().flat_map(|(axis, row)| axis.keys.iter().zip(&axis.rows[row]))
     }
 
-    /// What varies, as the name of a folder.
+    /// Formats the values that vary as the name of a folder.
     fn name_of(&self, point: usize) -> Result<String, Error> {
         let plan = self.plan(point)?;
         let keys: Vec<&str> = self.file.axes.iter().flat_map(|axis| &axis.keys).map(|key| key.value.as_str()).collect();
@@ -115,14 +115,14 @@ impl<'f, 'e> Points<'f, 'e> {
         let parts = self.values(point).map(|(Entry { value: key, .. }, entry)| {
             let short = last(key);
             let short = if keys.iter().filter(|other| last(other) == short).count() > 1 { key.clone() } else { short };
-            // As the run has it: 1 and 1.0 are the same number.
+            // The run has the same number for 1 and 1.0.
             format!("{short}={}", plain(plan.settings.get(key).unwrap_or(&entry.value)))
         });
         Ok(folder(&parts.collect::<Vec<_>>().join(",")))
     }
 }
 
-/// A value without quotes.
+/// Formats a value without quotes.
 fn plain(value: &Value) -> String {
     match value {
         Value::Word(word) => word.clone(),
@@ -131,14 +131,14 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// A name that every file system takes and no shell changes; one that it had to change ends with its checksum.
+/// Returns a name that is valid on every file system and in shells. A changed name ends with its checksum.
 fn folder(name: &str) -> String {
     let kept: String = name
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || "._,=+-".contains(letter) { letter } else { '_' })
         .take(MAX_NAME_BYTES)
         .collect();
-    // A list of numbers is joined by the letter that stands for others.
+    // The numbers of a list are joined by the replacement letter.
     if kept == name { kept } else { format!("{kept}-{:08x}", crc32(name.as_bytes())) }
 }
 

@@ -1,4 +1,4 @@
-//! What the file of a sweep says.
+//! The file of a sweep.
 
 use std::path::Path;
 
@@ -9,31 +9,31 @@ use crate::run::plan::MAX_SEED;
 use crate::store::bounded;
 use crate::strategy::settings::STRATEGY;
 
-/// The most replications of a point; a list is not longer either.
+/// The largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
-/// The most settings that vary.
+/// The largest number of settings that vary.
 const MAX_VARYING: usize = 64;
 
-/// A configuration, in which some settings have many values.
+/// A configuration in which some settings have several values.
 #[derive(Debug)]
 pub(crate) struct SweepFile {
-    /// What all points share.
+    /// The settings common to all points.
     pub(crate) base: ConfigFile,
-    /// What varies; every row of one goes with every row of the others.
+    /// The settings that vary. Each row of one axis is combined with each row of the others.
     pub(crate) axes: Vec<Axis>,
-    /// The seeds of every point, at least one, each once.
+    /// The distinct seeds of every point, at least one.
     pub(crate) seeds: Vec<u64>,
 }
 
-/// Keys whose values change together.
+/// Keys with values that change together.
 #[derive(Debug)]
 pub(crate) struct Axis {
     pub(crate) keys: Vec<Entry<String>>,
-    /// A value for each key; at least one row.
+    /// A value for each key, in at least one row.
     pub(crate) rows: Vec<Vec<Entry<Value>>>,
 }
 
-/// What a sweep adds to a configuration, as it is read.
+/// The parts of a sweep file that are not a configuration.
 #[derive(Default)]
 struct Added {
     grid: Vec<Column>,
@@ -45,7 +45,7 @@ struct Added {
 type Column = (Entry<String>, Vec<Entry<Value>>);
 
 impl SweepFile {
-    /// Reads a file that the user names.
+    /// Reads a file named by the user.
     ///
     /// # Errors
     /// As [`ConfigFile::read`], with the line.
@@ -57,7 +57,7 @@ impl SweepFile {
         Self::parse(&path.display().to_string(), &text)
     }
 
-    /// Reads a text; errors name it.
+    /// Parses a text, named in errors.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let mut added = Added::default();
         let base = ConfigFile::parse_beside(name, text, &mut |found| added.take(found))?;
@@ -89,12 +89,12 @@ impl SweepFile {
 }
 
 impl Added {
-    /// Takes what a configuration does not have.
+    /// Handles a key that is not part of a configuration.
     fn take(&mut self, found: &FileKey<'_>) -> Result<bool, Error> {
         let key = |key: &str| Entry { value: key.to_owned(), place: found.place.to_owned() };
         match found.key.split_once('.') {
             None if ["grid", "list"].contains(&found.key) => {
-                // An empty table varies nothing.
+                // An empty table has no values.
                 if found.value.is_some() { Err(wrong(&key(found.key), "is a table of lists")) } else { Ok(true) }
             }
             None if found.key == "replications" => {
@@ -140,7 +140,7 @@ impl Added {
 }
 
 impl Axis {
-    /// Columns as one axis; none of none.
+    /// Combines columns into one axis, or none.
     fn side_by_side(columns: Vec<Column>) -> Result<Option<Self>, Error> {
         let Some((first, values)) = columns.first() else { return Ok(None) };
         let rows = values.len();
@@ -162,7 +162,7 @@ fn wrong(key: &Entry<String>, why: &str) -> Error {
     Error::Setting { place: key.place.clone(), key: key.value.clone(), why: why.into() }
 }
 
-/// Seeds that are named one by one.
+/// Returns the seeds of a list.
 fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
     let mut seeds: Vec<u64> = Vec::new();
     for Entry { value, place } in found.list()? {
@@ -183,7 +183,7 @@ fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
     Ok(seeds)
 }
 
-/// The seeds of every point: those that are named, or as many as there are replications.
+/// Returns the seeds of every point: the listed ones, or one for each replication.
 fn seeds_of(
     base: &ConfigFile,
     replications: Option<Entry<u32>>,

@@ -18,23 +18,23 @@ use crate::run::text_table::text_table;
 use crate::sweep::points::Points;
 use crate::sweep::sweep_file::SweepFile;
 
-/// A sweep over laboratory, and where its runs lie.
+/// A sweep over a laboratory, with the folder of its runs.
 pub(crate) struct Sweep<'s, 'e> {
     points: Points<'s, 'e>,
     seeds: &'s [u64],
     root: &'s Path,
-    /// The point that was asked for last: its runs follow each other.
+    /// The last requested point. Its runs follow each other.
     latest: RefCell<Option<(usize, Plan<'e>)>>,
 }
 
-/// Which of the runs, counted from 0; all where none is named.
+/// The selected runs, counted from 0. All runs are selected by default.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
     pub(crate) point: Option<usize>,
     pub(crate) replication: Option<usize>,
 }
 
-/// What came of the points.
+/// The results of the points.
 #[derive(Debug, Serialize)]
 pub(crate) struct Found {
     points: Vec<Point>,
@@ -42,17 +42,17 @@ pub(crate) struct Found {
 
 #[derive(Debug, Serialize)]
 struct Point {
-    /// From 1, as `--point` has it.
+    /// The number of the point, from 1, as in `--point`.
     #[serde(rename = "point")]
     number: usize,
     directory: String,
-    /// How many runs it has.
+    /// Number of runs of the point.
     replications: usize,
-    /// Those that are finished.
+    /// Number of finished runs.
     runs: Vec<Summary>,
-    /// Of the champions' fitness.
+    /// The median fitness of the champions.
     median: Option<f64>,
-    /// The directories that other processes are at.
+    /// The directories claimed by other processes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     elsewhere: Vec<String>,
 }
@@ -61,16 +61,16 @@ impl<'s, 'e> Sweep<'s, 'e> {
     /// Checks every value of every point.
     ///
     /// # Errors
-    /// Those of [`Points::new`].
+    /// The errors of [`Points::new`].
     pub(crate) fn new(file: &'s SweepFile, laboratory: &'s Laboratory<'e>, root: &'s Path) -> Result<Self, Error> {
         let points = Points::new(file, laboratory)?;
         Ok(Self { points, seeds: &file.seeds, root, latest: RefCell::new(None) })
     }
 
-    /// The runs that are wanted, point by point: which point and which seed.
+    /// Returns the point and the seed of each selected run, point by point.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a number beyond the last.
+    /// [`Error::Usage`] for a number above the last.
     fn wanted(&self, which: Which) -> Result<Vec<(usize, usize)>, Error> {
         let range = |option: &str, only: Option<usize>, count: usize| match only {
             None => Ok(0..count),
@@ -101,7 +101,7 @@ impl<'s, 'e> Sweep<'s, 'e> {
         Ok(Member { plan, path, name })
     }
 
-    /// Makes sure that every point that is wanted can be begun.
+    /// Checks that every selected point can begin.
     fn check(&self, runs: &[(usize, usize)], pool: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<(), Error> {
         let mut points: Vec<usize> = runs.iter().map(|(point, _)| *point).collect();
         points.dedup();
@@ -112,13 +112,13 @@ impl<'s, 'e> Sweep<'s, 'e> {
         })
     }
 
-    /// Evolves the runs that are wanted and that nobody else is at, one after the other.
+    /// Evolves the selected and unclaimed runs one after the other.
     ///
-    /// A run that is there and the same is gone on with, and skipped once it is finished; before anything is started it is
-    /// made sure that every point can be begun, and that every place has its run or none.
+    /// An existing directory of the same run is continued, or skipped if it is finished. All points and directories are checked
+    /// before the first run starts.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a number beyond the last, those of a point that cannot be begun, [`Queue::check`] and
+    /// [`Error::Usage`] for a number above the last, the errors of a point that cannot begin, and those of [`Queue::check`] and
     /// [`Queue::work`].
     pub(crate) fn work(
         &self,
@@ -138,10 +138,10 @@ impl<'s, 'e> Sweep<'s, 'e> {
         Ok(self.found(&runs, states.into_iter().map(Some)))
     }
 
-    /// What there is of the runs that are wanted; nothing is begun.
+    /// Returns the existing results of the selected runs.
     ///
     /// # Errors
-    /// Those of [`work`](Self::work) before its first evaluation.
+    /// The errors of [`work`](Self::work) before its first evaluation.
     pub(crate) fn list(&self, which: Which, ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<Found, Error> {
         let runs = self.wanted(which)?;
         self.check(&runs, ready)?;
@@ -188,7 +188,7 @@ impl Point {
 }
 
 impl Found {
-    /// A table with a line per point.
+    /// Formats a table with a line for each point.
     pub(crate) fn text(&self) -> String {
         let mut rows = vec![["point", "finished", "median", "quartiles", "directory"].map(str::to_owned).to_vec()];
         rows.extend(self.points.iter().map(|point| {

@@ -35,7 +35,7 @@ fn plan<'n>(numbers: &'n Numbers, strategy: &'static dyn StrategyDefinition, gen
     plan.seed = 5;
     plan.settings.set("", GENERATIONS_KEY, Value::Whole(generations)).unwrap();
     if numbers.populations > 1 {
-        // What the experiment counts by.
+        // The size that the experiment uses.
         let size = i64::try_from(super::SIZE).unwrap();
         plan.settings.set("", POPULATION, Value::Whole(size)).unwrap();
         if ["truncation", "novelty-search"].contains(&strategy.name()) {
@@ -63,7 +63,7 @@ fn best_of_all(rows: &[Vec<f64>]) -> usize {
     (0..rows.len()).fold(0, |found, generation| if rows[generation][1] > rows[found][1] { generation } else { found })
 }
 
-/// A whole run, and one of other threads that was stopped twice.
+/// A complete run, and one with other numbers of threads that was stopped twice.
 fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let name = strategy.name();
     let root = scratch(&format!("{name}-{}", numbers.populations));
@@ -80,28 +80,28 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
         let read = |run: &str| fs::read(root.join(run).join(&file)).ok();
         assert!(read("whole") == read("parts"), "{name}: {}", file.display());
     }
-    // Champions of generations that were not saved are forgotten.
+    // Champions of unsaved generations are discarded.
     let early = create(&plan(numbers, strategy, 3), &root.join("early")).unwrap();
     run(&plan(numbers, strategy, 3), &early, 1);
     let champions = fs::read(early.champion()).unwrap();
     fs::copy(whole.champion(), early.champion()).unwrap();
     run(&plan(numbers, strategy, 3), &early, 1);
     assert!(fs::read(early.champion()).unwrap() == champions, "{name}");
-    // Champions that are gone are made again.
+    // Missing champions are rebuilt.
     let champions = fs::read(parts.champion()).unwrap();
     fs::remove_file(parts.champion()).unwrap();
     run(&plan(numbers, strategy, GENERATIONS), &parts, 1);
     assert!(fs::read(parts.champion()).unwrap() == champions, "{name}");
-    // The configuration alone says all.
+    // The configuration alone is complete.
     let file = ConfigFile::read(&whole.config()).unwrap();
     let again = Plan::from_file(&Laboratory::new(&[numbers]), &file).unwrap();
     assert_eq!((again.definition().name(), again.identity().unwrap()), (name, all.identity().unwrap()));
-    // Any generation is replayed from what was told, with the fitness that it had.
+    // Any generation is replayed from its reported fitness, with the same fitness.
     let rows = rows(&whole);
     for generation in [0, 3, 6] {
         let which = Which { generation: Some(generation), ..Which::default() };
         let replayed = replay(&again, &whole, which, None, || Ok(Vec::new())).unwrap();
-        // One plus one remembers means.
+        // The strategy one plus one stores means.
         if numbers.populations == 1 && name != "one-plus-one" {
             assert_eq!(replayed.replay.fitness, rows[generation as usize][1], "{name}: {}", replayed.summary);
         }
@@ -198,7 +198,7 @@ fn an_archive_names_individuals_that_the_record_finds() {
                 assert!((number(4) - found[0]).abs() < 1e-9 && (number(5) - found[1]).abs() < 1e-9, "{line:?}");
             }
         }
-        // It is written anew when it was lost.
+        // A missing file is written again.
         let before = fs::read(root.join("archive.csv")).unwrap();
         fs::remove_file(root.join("archive.csv")).unwrap();
         run(&plan, &directory, 1);
@@ -207,7 +207,7 @@ fn an_archive_names_individuals_that_the_record_finds() {
     }
 }
 
-/// An experiment whose description is another than it should be.
+/// An experiment with an invalid description.
 #[derive(Clone, Copy)]
 struct Described(&'static [f64]);
 

@@ -1,4 +1,4 @@
-//! Evaluations that panic, that are no number and that do not end.
+//! Evaluations that panic, return NaN or do not end.
 
 use std::fs;
 
@@ -29,7 +29,7 @@ const SIZE: usize = 20;
 const TRIALS: u32 = 2;
 const STEPS: u32 = 50;
 
-/// What is wrong with a trial.
+/// The fault of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
@@ -40,7 +40,7 @@ enum Fault {
 }
 
 impl Fault {
-    /// Of one trial in twenty: so of about one evaluation in ten.
+    /// The fault of one trial in twenty.
     fn of(id: EpisodeId) -> Self {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         if stream.uniform_f64() >= 0.05 {
@@ -50,13 +50,13 @@ impl Fault {
     }
 }
 
-/// Earns its gene in ten steps, unless something is wrong.
+/// Its fitness is its gene, in ten steps, unless a fault occurs.
 #[derive(Clone)]
 struct Faulty {
     id: EpisodeId,
     steps: u32,
     earned: f64,
-    /// Whether a step is half done: what panicked must not be used again.
+    /// True if a step is half done: what panicked must not be used again.
     within: bool,
 }
 
@@ -131,7 +131,7 @@ fn plan(experiment: &Faulty, generations: i64) -> Plan<'_> {
     plan
 }
 
-/// The first trial of an evaluation that fails, and what is wrong with it.
+/// The first failed trial of an evaluation, and its fault.
 fn expected(generation: u32, individual: u32) -> Option<(u32, Fault)> {
     let of = |trial| Fault::of(EpisodeId { seed: 1, generation, individual, trial });
     (0..TRIALS).map(|trial| (trial, of(trial))).find(|(_, fault)| *fault != Fault::None)
@@ -151,7 +151,7 @@ fn a_thousand_generations_with_a_tenth_of_all_evaluations_failing() {
     let mut all = Vec::new();
     for threads in [1, 2, 8] {
         let directory = create(&plan(&experiment, 1), &root.join(threads.to_string())).unwrap();
-        // In two parts, so that failures are gone on with.
+        // The run is interrupted, so that the log of failures is continued.
         run(generations / 3, threads, &directory);
         run(generations, threads, &directory);
         let files =

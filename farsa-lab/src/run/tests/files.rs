@@ -1,4 +1,4 @@
-//! What is refused, and what is mended.
+//! Refused files, and repaired ones.
 
 use std::fs;
 use std::sync::atomic::AtomicBool;
@@ -63,7 +63,7 @@ fn a_lineage_that_was_cut_is_written_again() {
             .unwrap();
         assert_eq!(fs::read_to_string(directory.lineage()).unwrap(), whole);
     }
-    // What a killed process has written beyond its checkpoint goes.
+    // Entries after the checkpoint, written by a killed process, are removed.
     fs::write(directory.lineage(), format!("{whole}6,0,1\n")).unwrap();
     run(&plan(&STEADY, 6), &directory, 1);
     let longer = fs::read_to_string(directory.lineage()).unwrap();
@@ -124,7 +124,7 @@ fn the_strategy_of_a_run_stays_what_it_was() {
     fs::remove_dir_all(root).unwrap();
 }
 
-/// The files of a run and what is in them, but for what depends on the clock.
+/// The files of a run with their content, except for times.
 fn contents(directory: &Directory) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap());
     let named = entries.map(|entry| (entry.file_name().into_string().unwrap(), entry.path()));
@@ -143,7 +143,7 @@ fn what_is_lost_is_written_again() {
     for lost in [other.log(), other.manifest(), other.plot(), other.lineage()] {
         fs::remove_file(lost).unwrap();
     }
-    // Going on with a run that has nothing to do brings back all.
+    // Continuing a finished run restores all files.
     run(&plan(&STEADY, 5), &other, 1);
     assert_eq!(contents(&other).len(), contents(&whole).len());
     let text = fs::read_to_string(other.log()).unwrap();
@@ -165,7 +165,7 @@ fn champions_of_a_generation_that_was_not_saved_are_forgotten() {
         });
         let whole = fs::read(five.champion()).unwrap();
         assert_ne!(fs::read(eight.champion()).unwrap(), whole, "{name}");
-        // What a process leaves that is killed between the two files: the champions of generation 7, and a checkpoint at 5.
+        // The state after a kill between the two files.
         fs::copy(eight.champion(), five.champion()).unwrap();
         let said = run(&plan(&numbers, 5), &five, 1);
         assert!(said.contains("all 5 generations are finished already"), "{name}: {said}");
@@ -211,7 +211,7 @@ fn a_log_that_disappears_is_noticed_at_once() {
         continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     removed.join().unwrap();
     assert!(error.to_string().contains("fitness.csv: was removed while the run went on"), "{error}");
-    // What was saved before goes on.
+    // The saved generations are continued.
     let error =
         continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
     assert!(error.to_string().contains("interrupted") && directory.log().is_file(), "{error}");
@@ -261,7 +261,7 @@ fn links_in_a_strangers_run_are_not_followed() {
     for name in names.into_iter().chain(["lineage.csv", "test.csv", "test.json"]) {
         let _ = symlink(&victim, directory.path().join(format!(".{name}.new")));
     }
-    // These are not read, or read and found to be something else.
+    // These are not read, or refused after reading.
     for name in ["fitness.csv", "fitness.svg", "lineage.csv", "failures.csv", "test.csv", "test.json"] {
         let _ = fs::remove_file(directory.path().join(name));
         symlink(&victim, directory.path().join(name)).unwrap();
@@ -269,7 +269,7 @@ fn links_in_a_strangers_run_are_not_followed() {
     run(&plan(&STEADY, 5), &directory, 1);
     test::test(&plan(&STEADY, 5), &directory, None, 2, 1, 1, Wanted::ONE, true).unwrap();
     assert_eq!(fs::read_to_string(&victim).unwrap(), precious);
-    // A lock that is a link would be a file that is made elsewhere.
+    // A lock that is a link would create a file in another place.
     fs::remove_file(directory.path().join(".run.lock")).unwrap();
     symlink(root.join("made"), directory.path().join(".run.lock")).unwrap();
     let plan = plan(&STEADY, 6);

@@ -1,4 +1,4 @@
-//! A run in which the strategy says who meets whom: it is told what was earned against each, and a replay meets the same.
+//! A run in which the strategy chooses opponents.
 
 use std::fs;
 
@@ -73,7 +73,7 @@ fn everyone_meets_whom_the_strategy_chose_in_the_run_and_in_its_replay() {
                 }
                 met_by_population.push(others);
             }
-            // What the run saw is what the record says: everyone of a population meets the same.
+            // The run and its record have the same opponents.
             assert!(met_by_population.chunks(SIZE).all(|own| own.iter().all(|met| *met == own[0])));
             let rounds = if place < encounters { f64::from(place + 1) } else { 1.0 };
             for (population, own) in sums.chunks(SIZE).enumerate() {

@@ -31,7 +31,7 @@ fn a_run_ends_before_its_record_is_too_large_to_be_read() {
     let go = || continue_run(&plan, &directory, pool(&plan, 2), &never, "farsa", true).unwrap_err().to_string();
     let said = go();
     let expected = "record.bin: would have ";
-    // All that was finished is kept, and can be looked at.
+    // All finished generations are saved and can be read.
     let found = content(directory.path());
     let generations = fs::read_to_string(directory.log()).unwrap().lines().count() - 1;
     assert!((3..20).contains(&generations), "{generations}");
@@ -41,7 +41,7 @@ fn a_run_ends_before_its_record_is_too_large_to_be_read() {
     assert!(said.contains(expected) && said.ends_with(&end), "{said}");
     let last = Which { generation: Some(generations as u32 - 1), ..Which::default() };
     replay(&plan, &directory, last, None, || Ok(Vec::new())).unwrap();
-    // To go on is to end at once, and changes nothing.
+    // Continuing ends at once and changes nothing.
     assert_eq!(go(), said);
     assert!(content(directory.path()) == found);
     // Other ranks do not wait for one that has ended.

@@ -1,15 +1,4 @@
-//! Tests of whole runs with every strategy: what is selected, written, resumed and replayed.
-//!
-//! - `reference`: our strategies, against what is computed by hand
-//! - `pool`: a pool's threads: outcomes in their order, stops, and panics alone and in lanes
-//! - `ranks`: runs on ranks that are threads
-//! - `own_strategy`: a strategy of a user's own
-//! - `generalist`: whom everyone meets, where the strategy says so
-//! - `normalised`: normalised observations
-//! - `files`: what is refused, and what is mended
-//! - `protocols`: tests of champions by protocols
-//! - `large`: searches and records that are too large to be read
-//! - `faults`: evaluations that panic, that are no number and that do not end
+//! Tests of complete runs with every strategy.
 
 mod every_strategy;
 mod faults;
@@ -57,7 +46,7 @@ use crate::strategy::{Learning, OnePlusOne, Truncation};
 const TRIALS: u32 = 3;
 const SIZE: usize = 10;
 
-/// Genes are to match numbers, alone and with noise, or those of others: population 0 seeks, the others flee.
+/// Genes have to match numbers, alone and with noise, or the genes of others: population 0 seeks, the others flee.
 #[derive(Clone, Copy)]
 struct Numbers {
     strategy: &'static dyn StrategyDefinition,
@@ -138,13 +127,13 @@ impl Task for Numbers {
     }
 }
 
-/// The second gene is to match another number too; an individual is what its genes are.
+/// The second gene has to match another number, too. The genes are the behavior.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("to 200", -1.0)],
     descriptors: &[("first", [0.0, 255.0]), ("second", [0.0, 255.0])],
 };
 
-/// Words half way from where they are to 100 and 7, and a little beside it.
+/// Moves integer genes half way to 100 and 7, with a small difference.
 impl Learner for Numbers {
     fn initial_state(&self, _: u64) -> Vec<f64> {
         vec![0.0; 2]
@@ -206,7 +195,7 @@ fn run(plan: &Plan<'_>, directory: &Directory, threads: usize) -> String {
     continue_run(plan, directory, pool(plan, threads), &AtomicBool::new(false), "farsa", true).unwrap().text()
 }
 
-/// A whole run, and one of other threads that was stopped twice, which must have the same files; returns the first.
+/// Makes a complete run, and one with other numbers of threads that is stopped twice. Both must have the same files. Returns the first.
 fn twice(numbers: &Numbers, root: &std::path::Path, generations: i64) -> Directory {
     let whole = plan(numbers, generations);
     let directory = create(&whole, &root.join("whole")).unwrap();

@@ -40,19 +40,19 @@ const SIZE: u32 = 8;
 const TRIALS: u32 = 3;
 const STEPS: usize = 10;
 
-/// A perceptron is to tell which of two quantities of very different size is above its middle.
+/// A perceptron has to detect which of two quantities of very different size is above its middle.
 #[derive(Clone, Copy)]
 struct Scales {
     strategy: &'static str,
     normalise: bool,
     populations: usize,
-    /// Whether outcomes say what was observed.
+    /// True if outcomes have the observations.
     says: bool,
 }
 
 const SCALES: Scales = Scales { strategy: "open-ai-es", normalise: true, populations: 1, says: true };
 
-/// What is observed in a trial: around 200 and around 0.001.
+/// The observations of a trial.
 fn observed(id: EpisodeId) -> [[f32; 2]; STEPS] {
     let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
     std::array::from_fn(|_| [stream.range(150.0, 250.0), stream.range(0.0, 0.002)])
@@ -129,7 +129,7 @@ fn plan(scales: &Scales, generations: i64) -> Plan<'_> {
     plan
 }
 
-/// Means and sums of squares of all that was observed before a generation, in two passes.
+/// Means and sums of squares of all observations before a generation, in two passes.
 fn by_hand(generation: u32) -> (u64, [f64; 2], [f64; 2]) {
     let mut all = Vec::new();
     for generation in 0..generation {
@@ -176,7 +176,7 @@ fn a_generation_is_normalised_by_all_before_it() {
             run(&plan(&scales, generations), &parts, threads);
         }
         same(parts.path(), whole.path());
-        // Champions that are gone are made again, with what normalised their generation; those of the first, too.
+        // Missing champions are rebuilt with the normalization of their generation, even that of the first.
         let first = create(&plan(&scales, 1), &root.join(strategy).join("first")).unwrap();
         run(&plan(&scales, 1), &first, 1);
         for (generations, directory) in [(GENERATIONS, &whole), (1, &first)] {
@@ -237,7 +237,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     // Genes alone are not the champion.
     let error = genotype(&plan, &directory, None).unwrap_err();
     assert!(error.to_string().contains("`strategy.normalise_observations`") && error.exit_code() == 2, "{error}");
-    // A record that lacks what was observed, or has it of other channels.
+    // A record without observations, or with those of other channels.
     let checkpoint = crate::run::records::Checkpoint::read(&plan, &directory).unwrap();
     let content = RunRecord::content(&plan, &directory, &checkpoint).unwrap();
     for short in [1, 24, 40] {
@@ -276,7 +276,7 @@ fn what_cannot_be_normalised_is_refused_before_there_is_a_folder() {
         assert_eq!((error.to_string().as_str(), error.exit_code()), (why, 2));
         assert!(!root.exists());
     }
-    // One whose outcomes forget it is told of it.
+    // An experiment whose outcomes have no observations is refused.
     let forgets = Scales { says: false, ..SCALES };
     let plan = plan(&forgets, 2);
     let directory = create(&plan, &root).unwrap();

@@ -1,4 +1,4 @@
-//! A strategy of a user's own.
+//! A custom strategy.
 
 use std::fs;
 

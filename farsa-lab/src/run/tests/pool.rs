@@ -17,7 +17,7 @@ use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
-/// Earns its individual's number and panics from the fifth on, if asked to by its parameter.
+/// Its fitness is the individual's number. It panics from the fifth on if its parameter is set.
 struct Nothing;
 
 impl Experiment for Nothing {
@@ -96,7 +96,7 @@ fn a_panic_is_an_outcome_and_the_others_are_what_they_are() {
     }
 }
 
-/// Every tenth individual panics, and takes all with it that are evaluated beside it.
+/// Every tenth individual panics, together with those in the same lanes.
 struct InGroups(usize);
 
 impl Experiment for InGroups {

@@ -11,11 +11,11 @@ use crate::experiment::intervention::Intervention;
 use crate::experiment::protocol::{Case, CaseId, Protocol};
 use crate::experiment::{Anatomy, Rescored};
 
-/// Says in its terms which case it was told and what its random numbers were; `MOVE red` always fails, as does all of `none`.
+/// Returns its case and its random numbers as terms. `MOVE red` always fails, as do all cases of `none`.
 #[derive(Clone, Copy)]
 struct Words {
     populations: usize,
-    /// What is wrong with its protocols.
+    /// The fault of its protocols.
     wrong: bool,
 }
 
@@ -134,7 +134,7 @@ fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
         lesions(&words_plan(&WORDS), &directory, name, &lists, effort)
     };
     let text = found(None, &["neuron:inner 1", "sensor:ear=0.25,noise:0.5"], effort).unwrap().text();
-    // The toy says what is done to it: 100, 10 for each neuron that is held, 1 for each input.
+    // The toy reports its interventions.
     let rows = text.lines().skip(3).map(|line| line.split_whitespace().rev().nth(3).unwrap_or_default());
     assert_eq!(rows.collect::<Vec<_>>(), ["case", "100.0", "110.0", "101.0"], "{text}");
     assert!(text.starts_with("lesion: with these parts of the controller changed\n"), "{text}");
@@ -152,7 +152,7 @@ fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
     let many = found(None, &["noise:1"], Effort { trials: Some(50_000_001), ..EFFORT }).unwrap_err().to_string();
     assert!(many.contains("50000001 trials of each of 2 cases are more than 100000000 trials"), "{many}");
 
-    // What has no controller says so.
+    // An experiment without a controller is refused.
     let plan = plan(&STEADY, 2);
     let directory = create(&plan, &scratch("lesions-of-none")).unwrap();
     run(&plan, &directory, 1);
@@ -209,7 +209,7 @@ fn champions_of_several_populations_meet_in_every_case() {
     assert!(csv.lines().next().unwrap().ends_with(",fitness of population 1,success of population 1"), "{csv}");
     for line in csv.lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
-        // Both were told the same case and the same start.
+        // Both have the same case and the same start.
         assert_eq!((fields[8], fields[12]), (fields[13], "0"), "{line}");
     }
     fs::remove_dir_all(root).unwrap();
@@ -231,7 +231,7 @@ fn what_cannot_be_tested_is_refused() {
     let many = test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(25_000_001), ..EFFORT });
     let error = refused(many);
     assert!(error.contains("25000001 trials of each of 4 cases are more than 100000000"), "{error}");
-    // Somebody else's file, or a link that leads elsewhere, is in the way.
+    // An untrusted file, or a link to another folder.
     fs::write(root.join("protocols"), "x").unwrap();
     let error = refused(tested(&WORDS, &directory, "words", 1));
     assert!(error.contains("protocols: is not a directory"), "{error}");
@@ -242,7 +242,7 @@ fn what_cannot_be_tested_is_refused() {
         assert!(refused(tested(&WORDS, &directory, "words", 1)).contains("is not a directory"));
     }
     fs::remove_file(root.join("protocols")).unwrap();
-    // What breaks down is counted, and the first of it explained.
+    // Failed trials are counted, and the first is explained.
     let text = tested(&WORDS, &directory, "none", 1).unwrap().text();
     assert!(text.contains("always       2        0  0.0 %") && text.contains("line 0 of the test failed"), "{text}");
     fs::remove_dir_all(root).unwrap();
@@ -259,7 +259,7 @@ fn damaged_results_are_refused_and_those_without_a_record_are_read() {
     assert_eq!((table.cases.len(), record.trials, record.seed, record.generation), (4, 4, 3, 1));
     let [csv, json] = ["csv", "json"].map(|end| root.join(format!("protocols/words.{end}")));
     let (good, said) = (fs::read_to_string(&csv).unwrap(), fs::read_to_string(&json).unwrap());
-    // Of another table.
+    // The record of another table.
     fs::write(&csv, good.replace("7,true", "8,true")).unwrap();
     assert!(files::read(&directory, "words").unwrap().unwrap().1.is_none());
     fs::write(&csv, &good[..good.len() / 2]).unwrap();
@@ -271,7 +271,7 @@ fn damaged_results_are_refused_and_those_without_a_record_are_read() {
     }
     fs::remove_file(&json).unwrap();
     assert!(files::read(&directory, "words").unwrap().unwrap().1.is_none());
-    // It is made again over what is there.
+    // The table replaces the old one.
     tested(&WORDS, &directory, "words", 2).unwrap();
     assert_eq!((fs::read_to_string(&csv).unwrap(), fs::read_to_string(&json).unwrap()), (good, said));
     fs::remove_dir_all(root).unwrap();
@@ -293,7 +293,7 @@ fn the_states_of_the_first_trials_are_recorded_case_by_case() {
     }
     let (_, of_table) = files::read(&directory, "words").unwrap().unwrap();
     assert!(record.unwrap().same_test(&of_table.unwrap()));
-    // A test of other trials leaves no states of this one, and a protocol that asks for none has none.
+    // A test of other trials has no states of this one, and neither has a protocol without states.
     test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(1), seed: 4, ..EFFORT }).unwrap();
     assert_eq!(States::read(&directory, "words").unwrap().unwrap().0.trials.len(), 4);
     tested(&WORDS, &directory, "times", 1).unwrap();
@@ -341,7 +341,7 @@ fn a_report_shows_what_protocols_found() {
         assert!(one.contains(piece), "no {piece}");
     }
     assert!(!one.contains("<words>"));
-    // The protocols are in Markdown too, with their pictures beside it.
+    // The protocols are in Markdown, too, with their pictures.
     assert!(fs::read_to_string(root.join("one-protocol-1.svg")).unwrap().contains("words: success"));
     assert!(fs::read_to_string(root.join("one-protocol-2.svg")).unwrap().contains("none: success"));
     // States on their components, and shares over a number: of 4, 2 and 0 successes 2 are half.
@@ -353,7 +353,7 @@ fn a_report_shows_what_protocols_found() {
     let two = report(&[&directories[0], &directories[1]], "two.html");
     assert!(two.contains("words, 2 runs: the share falls to half") && two.matches("internal states").count() == 2);
     assert!(two.contains("Each of the 2 runs") && two.contains("TOUCH green, held out") && two.contains("100 to 100"));
-    // What was not run is named with its command.
+    // Protocols that were not run are listed with their commands.
     assert!(!one.contains("that were not run"));
     assert!(two.contains("Test protocols that were not run") && two.contains("1 of 2 runs"), "{two}");
     assert!(two.contains("12 --protocol none"));

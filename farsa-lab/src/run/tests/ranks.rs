@@ -19,7 +19,7 @@ use crate::store::directory::Directory;
 
 const GENERATIONS: i64 = 12;
 
-/// One rank's part of a run that goes on, and the exit code on the others.
+/// Runs one rank of a continued run, and returns the exit code of workers.
 pub(super) fn part(
     ranks: &dyn Ranks,
     plan: &Plan<'_>,
@@ -53,7 +53,7 @@ fn all_well(results: Vec<Result<String, Error>>) {
     }
 }
 
-/// A run on so many ranks, of different numbers of threads.
+/// Runs on the given number of ranks, with different numbers of threads.
 fn on(size: usize, numbers: &Numbers, generations: i64, directory: &Path) -> Vec<Result<String, Error>> {
     on_ranks(size, |ranks| {
         let plan = plan(numbers, generations);
@@ -61,7 +61,7 @@ fn on(size: usize, numbers: &Numbers, generations: i64, directory: &Path) -> Vec
     })
 }
 
-/// What a run holds, but for the manifest, which has the times of its sessions.
+/// The content of a run, except for the manifest with its times.
 pub(super) fn content(run: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = fs::read_dir(run).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let names = names.filter(|name| name != "manifest.json");

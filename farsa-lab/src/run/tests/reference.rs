@@ -1,4 +1,4 @@
-//! Our strategies, against what is computed by hand.
+//! Our strategies, compared with results computed by hand.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -103,7 +103,7 @@ fn a_learner_is_evaluated_and_trained() {
         writeln!(curve, "{generation},{before:?},{after:?},1.0").unwrap();
     }
     assert_eq!(read("whole"), curve);
-    // The champion is who was evaluated last.
+    // The champion is the last evaluated individual.
     assert!(history.genomes(&[(12, 0)]).is_err() && history.genomes(&[(3, 1)]).is_err());
     assert!(history.champion(0, 12).is_none());
     let Champions { generation, best, .. } = Champions::read(&plan, &directory).unwrap();
@@ -123,7 +123,7 @@ fn populations_meet_each_others_champions() {
     let plan = plan(&CHASE, GENERATIONS);
     let (_, history, _) = history(&plan, &directory).unwrap();
     let rows = rows(&directory);
-    // Of three trials two are against the last two champions, one against that in the middle of all before.
+    // Two of three trials are against the last two champions, one is against the middle of the earlier ones.
     let rule = |generation: u32, trial: u32| match trial {
         0 | 1 => generation.checked_sub(1 + trial),
         _ => (generation > 2).then(|| (generation - 2) / 2),
