@@ -136,7 +136,7 @@ fn killed_interrupted_and_repeated() {
     let said = cut_short(&here, &line, "-INT");
     assert_eq!(said.code, Some(130), "{said:?}");
     assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {line}`")), "{said:?}");
-    assert!(said.err.contains("replication 2 of 3: runs/cart-rough-3: goes on\n"), "{said:?}");
+    assert!(said.err.contains("replication 2 of 3: runs/cart-rough-3: continues\n"), "{said:?}");
     assert!(generations(&here.join("runs/cart-rough-3")) < 600 && !here.join("runs/cart-rough-4").exists());
 
     let said = say(own(), &here, &line);
@@ -249,7 +249,7 @@ fn a_run_that_another_process_has_is_left_to_it() {
     assert!(said.err.contains(others) && only.err.contains(others), "{said:?} {only:?}");
     assert_eq!([1, 2, 3].map(|seed| generations(&here.join(format!("runs/cart-rough-{seed}")))), [4, 2, 4]);
     let said = say(own(), &here, run);
-    assert!(said.code == Some(0) && said.err.contains("runs/cart-rough-2: goes on"), "{said:?}");
+    assert!(said.code == Some(0) && said.err.contains("runs/cart-rough-2: continues"), "{said:?}");
     assert_eq!(generations(&here.join("runs/cart-rough-2")), 4);
 }
 

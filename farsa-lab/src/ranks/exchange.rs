@@ -179,12 +179,12 @@ impl<'r> Exchange<'r> {
         self.next.set(SyncPoint::WorkerCommand);
         let all = self.gather(own)?;
         first_failed(&all)?;
-        let said = |status: Status| all.contains(&status).then_some(status);
-        let found = said(Status::Over).or_else(|| said(Status::Stop)).unwrap_or(Status::GoOn);
-        if found == Status::GoOn {
+        let reported = |status: Status| all.contains(&status).then_some(status);
+        let status = reported(Status::Over).or_else(|| reported(Status::Stop)).unwrap_or(Status::GoOn);
+        if status == Status::GoOn {
             self.next.set(SyncPoint::Outcomes);
         }
-        Ok(found)
+        Ok(status)
     }
 
     /// Sets a fingerprint to compare at the next exchange of outcomes, in the first generation of a run and in every `each`th.

@@ -168,8 +168,8 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        let of = Generation { parameters, opponents, normalisation: None, id };
-        match run_generation(&mut pool.until(&stop), of, done) {
+        let batch = Generation { parameters, opponents, normalisation: None, id };
+        match run_generation(&mut pool.until(&stop), batch, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
             Err(Unfinished::Error(error)) => return Err(error),

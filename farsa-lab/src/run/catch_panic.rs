@@ -53,8 +53,8 @@ pub(crate) fn catch_printed_panic<T>(work: impl FnOnce() -> T) -> Result<T, ()> 
 /// Returns the message of a panic on one line, with its place.
 fn message(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
-    let said = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
-    let words = said.unwrap_or("no words").split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let words = text.unwrap_or("no words").split_whitespace().collect::<Vec<_>>().join(" ");
     let mut text: String = words.chars().take(MAX_MESSAGE_CHARS).collect();
     if let Some(place) = info.location() {
         // Writing into a string cannot fail.

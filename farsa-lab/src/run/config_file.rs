@@ -125,7 +125,7 @@ impl ConfigFile {
             let wrong = |why: &str| Error::Setting { place: at.clone(), key: key.clone(), why: why.into() };
             let value = plain(value).map_err(&wrong)?;
             if !key.ends_with(CUT) && !seen.insert(key.clone()) {
-                return Err(wrong("stands twice"));
+                return Err(wrong("is set twice"));
             }
             file.put(&key, value, &at)?;
         }

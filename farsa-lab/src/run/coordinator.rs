@@ -73,8 +73,8 @@ pub(crate) fn barrier(pool: &Pool<'_>, stop: &AtomicBool) -> Result<(), Unfinish
     if exchange.is_alone() {
         return Ok(());
     }
-    let own = if stop.load(Ordering::Relaxed) { Status::Stop } else { Status::GoOn };
-    match exchange.status(&own)? {
+    let status = if stop.load(Ordering::Relaxed) { Status::Stop } else { Status::GoOn };
+    match exchange.status(&status)? {
         Status::GoOn => Ok(()),
         _ => Err(Unfinished::Stopped),
     }

@@ -78,8 +78,10 @@ pub(crate) fn continue_locked(
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.files.changed_log {
         let (log, kept) = (directory.log(), kept.display());
-        progress
-            .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
+        progress.note(&format!(
+            "{}: had been changed: the changed file is now {kept}, and the log is written again",
+            log.display()
+        ));
     }
     coordinate(&mut pool, command, facts, |pool| {
         let ended = run.evolve(last, pool, stop, &progress);
@@ -387,15 +389,15 @@ mod tests {
         let (old, new) = (Toy { version: 1, panics: false }, Toy { version: 2, panics: false });
         let directory = create(&Plan::new(&old, None, "").unwrap(), &root).unwrap();
         finish(old, &directory).unwrap();
-        let said = |error: Error| {
+        let message = |error: Error| {
             assert_eq!(error.exit_code(), 1);
             error.to_string()
         };
         let words = "made with version 1 of the values of toy, this program has version 2";
-        let resumed = said(finish(new, &directory).unwrap_err());
+        let resumed = message(finish(new, &directory).unwrap_err());
         assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
         let plan = Plan::new(&new, None, "").unwrap();
-        let replayed = said(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
+        let replayed = message(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are valid, but its behavior may differ, so there is a warning.
         let tested = test::test(&plan, &directory, None, 3, 1, 1, Wanted::ONE, true).unwrap().text();

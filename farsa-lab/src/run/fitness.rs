@@ -72,7 +72,7 @@ impl<'g> Opponents<'g> {
 /// A failed trial makes its individual the worst, whatever its other trials return.
 pub(crate) fn judgements_of_all(
     by: &mut dyn EvaluationBackend,
-    of: Generation<'_>,
+    batch: Generation<'_>,
     shape: ScoreShape,
     advance: &(dyn Fn() + Sync),
 ) -> Result<Judged, Unfinished> {
@@ -83,11 +83,11 @@ pub(crate) fn judgements_of_all(
             advance();
         }
     };
-    let individuals = individuals(by, of, shape, done)?;
+    let individuals = individuals(by, batch, shape, done)?;
     let (mut all, mut failed) = (Vec::with_capacity(individuals.len() * shape.width()), Vec::new());
     let empty = |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(other);
-    let mut observed = of.normalisation.map(empty).transpose()?;
-    for (individual, found) in (of.id.individual..).zip(individuals) {
+    let mut observed = batch.normalisation.map(empty).transpose()?;
+    for (individual, found) in (batch.id.individual..).zip(individuals) {
         match found {
             Ok((mut row, outcomes)) => {
                 all.append(&mut row);
@@ -97,7 +97,7 @@ pub(crate) fn judgements_of_all(
             }
             Err((trial, why)) => {
                 all.extend((0..shape.width()).map(|_| f64::NAN));
-                failed.push(FailedEvaluation { generation: of.id.generation, individual, trial, why });
+                failed.push(FailedEvaluation { generation: batch.id.generation, individual, trial, why });
             }
         }
     }
@@ -109,16 +109,17 @@ pub(crate) fn judgements_of_all(
 /// `done` is called after each trial.
 pub(crate) fn individuals(
     by: &mut dyn EvaluationBackend,
-    of: Generation<'_>,
+    batch: Generation<'_>,
     shape: ScoreShape,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
-    let count = of.parameters.len();
-    let mut outcomes = run_generation(by, of, done)?;
+    let count = batch.parameters.len();
+    let mut outcomes = run_generation(by, batch, done)?;
     let (evaluator, names) = (by.evaluator(), &by.info().terms);
-    let row = |outcomes: &[Outcome]| row(evaluator, shape, of.opponents.told_apart, outcomes);
-    let one = |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), names, &row);
-    Ok((0..count).map(one).collect())
+    let row = |outcomes: &[Outcome]| row(evaluator, shape, batch.opponents.told_apart, outcomes);
+    let scores =
+        |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), names, &row);
+    Ok((0..count).map(scores).collect())
 }
 
 /// Converts an error of farsa-evo.
@@ -164,8 +165,11 @@ fn row(
             row.push(fitness);
         }
     } else if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != ScoreShape::FITNESS) {
-        let names: Vec<String> =
-            behaviour.objectives().into_iter().chain(behaviour.descriptors().into_iter().map(|one| one.name)).collect();
+        let names: Vec<String> = behaviour
+            .objectives()
+            .into_iter()
+            .chain(behaviour.descriptors().into_iter().map(|measure| measure.name))
+            .collect();
         let described = behaviour.describe(trials);
         let (expected, found) = (names.len(), described.len());
         if expected != found {
@@ -221,12 +225,12 @@ fn judged(
 /// number of threads.
 pub(crate) fn run_generation(
     by: &mut dyn EvaluationBackend,
-    of: Generation<'_>,
+    batch: Generation<'_>,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-    let Generation { parameters, opponents, normalisation, id } = of;
+    let Generation { parameters, opponents, normalisation, id } = batch;
     let (count, trials) = (parameters.len(), by.info().trials);
-    by.compare(id.generation, &|| of.fingerprint());
+    by.compare(id.generation, &|| batch.fingerprint());
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);

@@ -42,8 +42,8 @@ impl fmt::Display for LeftOut {
             Some(line) => write!(f, "line {line}: ")?,
             None => write!(f, "by default: ")?,
         }
-        let said = if value.is_empty() { key.clone() } else { format!("{key} = {value}") };
-        write!(f, "{}: {}", Quoted(&said), OneLine(why))
+        let setting = if value.is_empty() { key.clone() } else { format!("{key} = {value}") };
+        write!(f, "{}: {}", Quoted(&setting), OneLine(why))
     }
 }
 

@@ -399,7 +399,7 @@ mod tests {
                 "world = 1\nworld.step = 2",
                 "my.toml line 3: cannot extend value of type integer with a dotted key `world`",
             ),
-            ("world.step = 0.1\n\"world.step\" = 0.1", "my.toml line 3: `world.step`: stands twice"),
+            ("world.step = 0.1\n\"world.step\" = 0.1", "my.toml line 3: `world.step`: is set twice"),
             ("[world]\nstpe = 1", "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`"),
             ("[wrold]\n\nstep = 1", "my.toml line 4: unknown key `wrold.step`; the nearest is `world.step`"),
             ("world.step = nan", "my.toml line 2: `world.step`: NaN is not a number"),
@@ -481,14 +481,14 @@ mod tests {
         run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap();
         fs::write(&path, "here be none").unwrap();
         let error = run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap_err();
-        let (name, said) = (path.display().to_string(), error.to_string());
-        assert!(said.starts_with(&format!("{name}: is another file than the run in d was made with")), "{said}");
+        let (name, message) = (path.display().to_string(), error.to_string());
+        assert!(message.starts_with(&format!("{name}: is another file than the run in d was made with")), "{message}");
         fs::remove_file(&path).unwrap();
-        let said = plan.identity().unwrap_err().to_string();
-        assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
+        let message = plan.identity().unwrap_err().to_string();
+        assert!(message.starts_with(&format!("cannot read {name}: ")), "{message}");
         fs::File::create(&path).unwrap().set_len(MAX_BYTES + 1).unwrap();
-        let said = plan.identity().unwrap_err().to_string();
-        assert_eq!(said, format!("{name}: has more than 1000000000 bytes, the most that is read of it"));
+        let message = plan.identity().unwrap_err().to_string();
+        assert_eq!(message, format!("{name}: has more than 1000000000 bytes, the most that is read of it"));
         fs::remove_file(&path).unwrap();
         fs::create_dir(&path).unwrap();
         assert_eq!(plan.identity().unwrap_err().to_string(), format!("{name}: is not a regular file"));

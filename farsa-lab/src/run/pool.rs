@@ -126,9 +126,9 @@ impl<'e> Pool<'e> {
         let exchange = self.exchange.clone();
         let mut results = self.evaluate_own(count, stop, task, &done);
         if !exchange.is_alone() {
-            let own = results.as_ref().map_or(0, Vec::len);
+            let evaluated_here = results.as_ref().map_or(0, Vec::len);
             let all = exchange.outcomes(results, stop.load(Ordering::Relaxed))?.ok_or(Unfinished::Stopped)?;
-            all.iter().skip(own).for_each(|(number, outcome)| done(*number, outcome.as_ref()));
+            all.iter().skip(evaluated_here).for_each(|(number, outcome)| done(*number, outcome.as_ref()));
             results = Ok(all);
         }
         let mut results = results?;
@@ -157,7 +157,7 @@ impl<'e> Pool<'e> {
             let mut begun = Ok(());
             for evaluator in &mut self.evaluators {
                 let name = "trials".to_owned();
-                match thread::Builder::new().name(name).spawn_scoped(scope, move || work.busy(evaluator)) {
+                match thread::Builder::new().name(name).spawn_scoped(scope, move || work.run(evaluator)) {
                     Ok(thread) => threads.push(thread),
                     Err(source) => {
                         work.ended.store(true, Ordering::Relaxed);
@@ -168,8 +168,8 @@ impl<'e> Pool<'e> {
             }
             // A thread ends when no number is left, or by an error. In both cases the ranks stop waiting for it.
             let ended = || {
-                let told = stop.load(Ordering::Relaxed) || work.ended.load(Ordering::Relaxed);
-                told || threads.iter().any(thread::ScopedJoinHandle::is_finished)
+                let stopping = stop.load(Ordering::Relaxed) || work.ended.load(Ordering::Relaxed);
+                stopping || threads.iter().any(thread::ScopedJoinHandle::is_finished)
             };
             let shared = match &work.numbers {
                 Numbers::Assigned(given) => take(exchange.ranks(), given, at_once, &ended),
@@ -263,7 +263,7 @@ where
     D: Fn(usize, Option<&Outcome>) + Sync,
 {
     /// Evaluates on one thread until no number is left.
-    fn busy(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<Vec<Numbered>, Error> {
+    fn run(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<Vec<Numbered>, Error> {
         // Two closures of one evaluator write here in turn.
         let results = RefCell::new(Vec::new());
         let put = |number: usize, outcome: Option<Outcome>| {

@@ -74,7 +74,7 @@ impl Progress {
 
 /// The best, the mean and, if it fits, the worst of each population, and the number of failures.
 fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
-    let one = |(name, statistics): &(&str, &Statistics)| {
+    let format_population = |(name, statistics): &(&str, &Statistics)| {
         let Statistics { best, mean, worst, failed, .. } = statistics;
         let name = if all.len() > 1 { format!("{name} ") } else { String::new() };
         let [best, mean, worst] = [best, mean, worst].map(|x| significant(*x));
@@ -82,7 +82,7 @@ fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
         let lost = if whole && *failed > 0 { format!(", {failed} failed") } else { String::new() };
         format!("{name}best {best}, mean {mean}{rest}{lost}")
     };
-    all.iter().map(one).collect::<Vec<_>>().join("; ")
+    all.iter().map(format_population).collect::<Vec<_>>().join("; ")
 }
 
 fn note(text: &str) {

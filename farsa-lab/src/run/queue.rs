@@ -105,7 +105,7 @@ impl Queue<'_, '_> {
         if let Some(summary) = finished(&plan, &path)? {
             return skip(summary);
         }
-        self.tell(&format!("{name}: {place}{}", if new { "" } else { ": goes on" }));
+        self.tell(&format!("{name}: {place}{}", if new { "" } else { ": continues" }));
         let pool = (self.pool)(&plan)?;
         let summary = evolve::continue_locked(&lock, &plan, &directory, pool, stop, self.program, self.quiet);
         let summary = summary.map_err(|error| match error {

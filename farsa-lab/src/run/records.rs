@@ -143,7 +143,7 @@ macro_rules! sealed {
 
 sealed! {
     Checkpoint: b"farsackp", "checkpoint", LARGEST_STATE + (1 << 20);
-    RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
+    RecordHead: b"farsatld", "run record", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
     ChampionsOfReals: b"farsacmr", "set of champions with real genes", 256 << 20;
@@ -329,18 +329,18 @@ impl Champions {
         if !path.is_file() {
             return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
         }
-        let found = Self::read(plan, directory)?;
-        found.identity.same_values(&plan.identity()?, &path)?;
+        let champions = Self::read(plan, directory)?;
+        champions.identity.same_values(&plan.identity()?, &path)?;
         let genes = evaluator.info().parameters.len();
-        if found.best.len() != evaluator.info().populations.len()
-            || found.best.iter().any(|best| best.genes.len() != genes)
+        if champions.best.len() != evaluator.info().populations.len()
+            || champions.best.iter().any(|best| best.genes.len() != genes)
         {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         }
         let channels = |statistics: &ObservationStatistics| statistics.channels() != evaluator.info().observations;
-        if found.normalisation.as_ref().is_some_and(channels) {
+        if champions.normalisation.as_ref().is_some_and(channels) {
             return Err(Error::damaged(&path, "its observations are not those of the experiment"));
         }
-        Ok(found)
+        Ok(champions)
     }
 }

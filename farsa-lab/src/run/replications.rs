@@ -119,7 +119,7 @@ impl Replications {
             vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual, fitness]
         }));
         let mut text = text_table(&rows, 1..4);
-        let fitness = self.runs.iter().filter_map(|one| Some(one.summary.champion.as_ref()?.fitness));
+        let fitness = self.runs.iter().filter_map(|replication| Some(replication.summary.champion.as_ref()?.fitness));
         if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness.collect::<Vec<_>>()) {
             // Writing into a string cannot fail.
             let [lower, median, upper] = [lower, median, upper].map(significant);

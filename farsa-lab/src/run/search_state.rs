@@ -77,8 +77,8 @@ impl SearchState {
         let opponents = Opponents { parameters: &opponents, each: populations - 1, told_apart };
         let shape = self.search.score_shape();
         let normalisation = self.observed.clone();
-        let of = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
-        let Judged { judgements, failed, observed } = judgements_of_all(by, of, shape, advance)?;
+        let batch = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
+        let Judged { judgements, failed, observed } = judgements_of_all(by, batch, shape, advance)?;
         let fitness = judgements.fitness();
         let ranked_by = self.search.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;

@@ -31,8 +31,8 @@ impl Mark {
 
     /// Returns the content up to this mark, or `None` if it was changed.
     pub(crate) fn within(self, content: &[u8]) -> Option<&[u8]> {
-        let kept = content.get(..usize::try_from(self.bytes).ok()?)?;
-        (Self::of(kept) == self).then_some(kept)
+        let prefix = content.get(..usize::try_from(self.bytes).ok()?)?;
+        (Self::of(prefix) == self).then_some(prefix)
     }
 }
 
@@ -46,10 +46,10 @@ pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error
     if found < expected {
         return Err(Error::damaged(path, format!("truncated: {found} bytes of {expected}")));
     }
-    let Some(kept) = mark.within(&content).map(<[u8]>::len) else {
+    let Some(prefix) = mark.within(&content).map(<[u8]>::len) else {
         return Err(Error::damaged(path, "altered: its checksum is not the one in the checkpoint"));
     };
-    content.truncate(kept);
+    content.truncate(prefix);
     Ok(content)
 }
 
@@ -108,15 +108,15 @@ impl AppendLog {
     /// [`Error::Damaged`].
     pub(crate) fn check(&self) -> Result<(), Error> {
         let changed = |what: &str| {
-            let why = format!("was {what} while the run went on; what was saved before goes on with `run --resume`");
+            let why = format!("was {what} during the run; `run --resume` continues from what was saved");
             Err(Error::damaged(&self.path, why))
         };
         let Ok(found) = fs::symlink_metadata(&self.path) else { return changed("removed") };
         #[cfg(unix)]
         {
             use std::os::unix::fs::MetadataExt as _;
-            let own = self.file.metadata().map_err(Error::io("read", &self.path))?;
-            if (found.dev(), found.ino()) != (own.dev(), own.ino()) {
+            let opened = self.file.metadata().map_err(Error::io("read", &self.path))?;
+            if (found.dev(), found.ino()) != (opened.dev(), opened.ino()) {
                 return changed("replaced");
             }
         }
@@ -163,8 +163,8 @@ mod tests {
         log.append(b"one\n").unwrap();
         let mark = log.sync().unwrap();
         assert!(log.room_for(0).is_ok() && log.room_for(1).is_err() && log.room_for(usize::MAX).is_err());
-        let said = log.append(b"2").unwrap_err().to_string();
-        assert_eq!(said, format!("{}: would have 10 bytes, more than the 9 that are read of it", path.display()));
+        let message = log.append(b"2").unwrap_err().to_string();
+        assert_eq!(message, format!("{}: would have 10 bytes, more than the 9 that are read of it", path.display()));
         assert_eq!(log.sync().unwrap(), mark);
         assert_eq!(read(&path, mark, 9).unwrap(), b"head\none\n");
     }
@@ -173,20 +173,20 @@ mod tests {
     fn a_file_that_somebody_touched_is_noticed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log");
-        let said = |change: &dyn Fn()| {
+        let message = |change: &dyn Fn()| {
             let mut log = AppendLog::new(&path, b"head\n").unwrap();
             log.append(b"one\n").unwrap();
             log.check().unwrap();
             change();
             log.check().unwrap_err().to_string()
         };
-        assert!(said(&|| fs::remove_file(&path).unwrap()).contains("was removed while"));
-        assert!(said(&|| fs::write(&path, "").unwrap()).contains("was changed by another program"));
-        let replaced = said(&|| {
+        assert!(message(&|| fs::remove_file(&path).unwrap()).contains("was removed during"));
+        assert!(message(&|| fs::write(&path, "").unwrap()).contains("was changed by another program"));
+        let replaced = message(&|| {
             fs::copy(&path, folder.path().join("copy")).unwrap();
             fs::rename(folder.path().join("copy"), &path).unwrap();
         });
-        assert!(replaced.contains("was replaced while") || !cfg!(unix), "{replaced}");
+        assert!(replaced.contains("was replaced during") || !cfg!(unix), "{replaced}");
     }
 
     #[cfg(unix)]

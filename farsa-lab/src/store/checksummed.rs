@@ -171,8 +171,8 @@ mod tests {
         let largest = |count: usize| Thing(vec![u16::MAX; count]);
         let most = (Thing::MAX_BYTES as usize - HEAD - CHECKSUM - 2) / 3;
         write(&path, &largest(most)).unwrap();
-        let said = write(&path, &largest(most + 1)).unwrap_err().to_string();
-        assert!(said.ends_with("bytes, more than the 1000 that are read of it"), "{said}");
+        let message = write(&path, &largest(most + 1)).unwrap_err().to_string();
+        assert!(message.ends_with("bytes, more than the 1000 that are read of it"), "{message}");
         assert_eq!(read::<Thing>(&path).unwrap(), largest(most));
         fs::remove_dir_all(directory).unwrap();
     }

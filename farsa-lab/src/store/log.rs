@@ -108,9 +108,9 @@ impl Log {
 fn says_the_same(path: &Path, text: &str) -> Result<bool, Error> {
     let Some(bytes) = read_regular_if_present(path, MAX_BYTES)? else { return Ok(false) };
     // A cut may split a character. The rest is then compared as replaced characters.
-    let found = String::from_utf8_lossy(&bytes);
-    let found = found.strip_prefix('\u{feff}').unwrap_or(&found).replace("\r\n", "\n").replace('\r', "\n");
-    let Some(more) = found.strip_prefix(text) else { return Ok(text.starts_with(&found)) };
+    let content = String::from_utf8_lossy(&bytes);
+    let content = content.strip_prefix('\u{feff}').unwrap_or(&content).replace("\r\n", "\n").replace('\r', "\n");
+    let Some(more) = content.strip_prefix(text) else { return Ok(text.starts_with(&content)) };
     let later = more.lines().zip(text.lines().count().saturating_sub(1)..);
     Ok(later.into_iter().all(|(line, generation)| {
         let start = format!("{generation},");

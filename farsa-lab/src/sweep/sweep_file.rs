@@ -115,10 +115,10 @@ impl Added {
                 let key = key(name);
                 match name {
                     "seed" | "replications" => {
-                        let why = "stands outside of [grid] and [list]: every point has all seeds";
+                        let why = "belongs outside [grid] and [list]: every point has all seeds";
                         return Err(wrong(&key, why));
                     }
-                    "experiment" => return Err(wrong(&key, "stands outside of [grid] and [list]: a sweep has one")),
+                    "experiment" => return Err(wrong(&key, "belongs outside [grid] and [list]: a sweep has one")),
                     _ => {}
                 }
                 let values = found.list().map_err(|error| match error {
@@ -173,7 +173,7 @@ fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
         };
         let seed = seed.ok_or_else(|| wrong(&key, "is not a whole number from 0 to 9223372036854775807"))?;
         if seeds.contains(&seed) {
-            return Err(wrong(&key, &format!("{seed} stands twice")));
+            return Err(wrong(&key, &format!("{seed} is listed twice")));
         }
         seeds.push(seed);
     }
@@ -193,7 +193,7 @@ fn seeds_of(
         return match replications {
             Some(Entry { place, .. }) => {
                 let key = Entry { value: "replications".to_owned(), place };
-                Err(wrong(&key, &format!("beside a list of {} seeds", seeds.value.len())))
+                Err(wrong(&key, &format!("cannot be combined with a list of {} seeds", seeds.value.len())))
             }
             None => Ok(seeds.value),
         };
@@ -252,11 +252,11 @@ mod tests {
             ),
             (
                 "[grid]\nseed = [1, 2]\n".into(),
-                "my.toml line 2: `seed`: stands outside of [grid] and [list]: every point has all seeds",
+                "my.toml line 2: `seed`: belongs outside [grid] and [list]: every point has all seeds",
             ),
             (
                 "[list]\nexperiment = [\"a\"]\n".into(),
-                "my.toml line 2: `experiment`: stands outside of [grid] and [list]: a sweep has one",
+                "my.toml line 2: `experiment`: belongs outside [grid] and [list]: a sweep has one",
             ),
             (
                 "[list]\na.b = [1, 2]\na.c = [1]\n".into(),
@@ -270,7 +270,7 @@ mod tests {
                 format!("replications = 10001\n{grid}"),
                 "my.toml line 1: `replications`: is not a whole number from 1 to 10000",
             ),
-            (format!("seed = [1, 2, 1]\n{grid}"), "my.toml line 1: `seed`: 1 stands twice"),
+            (format!("seed = [1, 2, 1]\n{grid}"), "my.toml line 1: `seed`: 1 is listed twice"),
             (format!("seed = []\n{grid}"), "my.toml line 1: `seed`: has no value"),
             (
                 format!("seed = [1,\n-1]\n{grid}"),
@@ -278,7 +278,7 @@ mod tests {
             ),
             (
                 format!("seed = [1, 3]\nreplications = 2\n{grid}"),
-                "my.toml line 2: `replications`: beside a list of 2 seeds",
+                "my.toml line 2: `replications`: cannot be combined with a list of 2 seeds",
             ),
             (
                 format!("seed = 9223372036854775807\nreplications = 2\n{grid}"),

@@ -210,7 +210,7 @@ fn a_log_that_disappears_is_noticed_at_once() {
     let error =
         continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
     removed.join().unwrap();
-    assert!(error.to_string().contains("fitness.csv: was removed while the run went on"), "{error}");
+    assert!(error.to_string().contains("fitness.csv: was removed during the run"), "{error}");
     // The saved generations are continued.
     let error =
         continue_run(&endless, &directory, pool(&endless, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
