@@ -396,7 +396,7 @@ mod tests {
         assert_eq!(said("hidden", &["kind"]), "unknown key `hidden`; the only one is `kind`");
         assert_eq!(said("hidden", &[]), "unknown key `hidden`; there is none");
         assert_eq!(said("neuron", &keys), "unknown key `neuron`; the nearest is `neurons`");
-        // What begins or ends as a name does is near it.
+        // A name that contains the other, or is contained, is near.
         assert_eq!(said("neu", &keys), "unknown key `neu`; the nearest is `neurons`");
         assert_eq!(said("network.kind", &keys), "unknown key `network.kind`; the nearest is `kind`");
         let letters: Vec<String> = ('a'..='z').map(|letter| letter.to_string()).collect();

@@ -1,7 +1,7 @@
-//! Text of strangers on a terminal: what would move its cursor or turn its letters round is written as an escape.
+//! Untrusted text on a terminal: control characters and direction marks are written as escapes.
 //!
-//! Errors and summaries hold keys, values, lines and names of files that come from elsewhere. [`escaped`] is for whole texts,
-//! which have lines; [`OneLine`] and [`Quoted`] are for what stands within a line and must not begin another.
+//! Errors and summaries repeat keys, values, lines and file names of untrusted files. [`escaped`] is for text of
+//! several lines. [`OneLine`] and [`Quoted`] are for parts of a line.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -9,7 +9,7 @@ use std::fmt;
 /// The most characters of a name or a value that a message repeats.
 pub(crate) const MAX_SHOWN: usize = 200;
 
-/// How a text ends that was shortened.
+/// End of a shortened text.
 pub(crate) const CUT: &str = "...";
 
 /// The text with every control character but the line's end and the tab as `\u{..}`, and so the characters that turn the
@@ -18,7 +18,7 @@ pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     with_escapes(text, acts)
 }
 
-/// What a terminal does not print but obeys.
+/// Returns whether a terminal interprets the character instead of printing it.
 fn acts(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     (c.is_control() && c != '\n' && c != '\t') || turns || matches!(c, '\u{2028}' | '\u{2029}')

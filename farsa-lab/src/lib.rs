@@ -1,4 +1,5 @@
 #![doc = include_str!("../README.md")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 // What runs, tests and reports is private: its user is the command.
 #![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]

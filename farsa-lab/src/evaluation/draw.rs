@@ -21,7 +21,7 @@ const REPORT_SIZE: [u32; 2] = [600, 400];
 /// Largest width and height.
 const LARGEST: u32 = 8192;
 
-/// What a picture is a file of.
+/// Format of a picture file.
 #[derive(Clone, Copy)]
 enum Format {
     Png,
@@ -39,13 +39,13 @@ impl Format {
     }
 }
 
-/// What was drawn.
+/// A drawn picture.
 #[derive(Debug, Serialize)]
 pub(crate) struct Drawn {
     /// The whole trial, of which the picture is a moment.
     #[serde(flatten)]
     replay: ReplaySummary,
-    /// The moment [s]; of several pictures the first.
+    /// Time of the picture [s], the first of several.
     time: f64,
     frames: usize,
     camera: &'static str,
@@ -56,13 +56,13 @@ pub(crate) struct Drawn {
     pub(crate) summary: String,
 }
 
-/// What a picture is to show, and how.
+/// Contents and form of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wish<'w> {
     pub(crate) which: Which,
     /// The moment \[s\], by default the last.
     pub(crate) time: Option<f64>,
-    /// So many moments from the first to the last in its place, one after the other.
+    /// Number of moments from the first to the last, instead of one moment.
     pub(crate) frames: Option<u32>,
     pub(crate) camera: Option<&'w str>,
     /// Width and height \[pixels\].
@@ -71,7 +71,7 @@ pub(crate) struct Wish<'w> {
 
 /// Draws a moment of a trial, or several as an animation, and writes it to a new file.
 ///
-/// Of the trials the first is drawn if none is named.
+/// Without a trial number the first trial is drawn.
 ///
 /// # Errors
 /// [`Error::Usage`] for what cannot be drawn, those of [`Replayable::find`], [`Error::Io`].
@@ -91,7 +91,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     let mut kept = Kept::new();
     let mut recording = kept.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
-    // Of a trial that does not fit there are moments before its end.
+    // A trial that does not fit in memory still has moments before its end.
     if wish.frames.is_some() || !has_moment(&recording, wish.time) {
         kept.add(&recording)?;
     }
@@ -135,7 +135,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     })
 }
 
-/// So many ticks from the first to the last, as evenly as can be; fewer where there are fewer.
+/// Returns at most `count` ticks from the first to the last, evenly spaced.
 fn ticks_of(last: usize, count: usize) -> Vec<usize> {
     let count = count.clamp(1, last + 1);
     (0..count).map(|frame| frame * last / (count - 1).max(1)).collect()
@@ -149,9 +149,9 @@ pub(crate) struct Portrait {
     pub(crate) cut: Option<f64>,
 }
 
-/// The end of the best trial of a run's champion, as an SVG to stand in a page; `None` if it has no bodies.
+/// Draws the end of the champion's best trial as an SVG for a page. Returns `None` without bodies.
 ///
-/// `prefix` begins every id in it, so that several can stand in one page.
+/// `prefix` begins every id, so that one page can hold several pictures.
 pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> Result<Option<Portrait>, Error> {
     let mut replayable = Replayable::find(plan, directory, Which::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
@@ -172,12 +172,12 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     Ok(Some(Portrait { picture, cut: recording.is_cut().then_some(time) }))
 }
 
-/// Whether what was recorded of a trial reaches a time; its end may not have been.
+/// Returns whether the recording reaches a time, even if it was cut.
 fn has_moment(recording: &Recording, time: Option<f64>) -> bool {
     time.is_some_and(|time| recording.times().last().is_some_and(|last| time <= *last))
 }
 
-/// The tick that is nearest to a time; the last if none is named.
+/// Returns the tick nearest to a time, or the last one.
 fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
     let times = recording.times();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {

@@ -22,20 +22,20 @@ pub(crate) struct GivenGenes {
     pub(crate) lists: Vec<String>,
     /// Files of genotypes, likewise.
     pub(crate) files: Vec<PathBuf>,
-    /// Which genotype of each file; none for its only one.
+    /// Number of the genotype in each file. None for the only one.
     pub(crate) numbers: Vec<usize>,
 }
 
-/// What an evaluation found.
+/// The result of an evaluation.
 #[derive(Debug, Serialize)]
 pub(crate) struct Evaluation {
     experiment: String,
     condition: String,
     trials: usize,
     seed: u64,
-    /// Trials whose numbers were not finite; they count in nothing else.
+    /// Trials with numbers that are not finite. They are excluded from all means.
     broken_down: usize,
-    /// Of a single population; none of several, which have a place of their own.
+    /// Present for a single population only.
     #[serde(skip_serializing_if = "Option::is_none")]
     mean_fitness: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -45,26 +45,26 @@ pub(crate) struct Evaluation {
     per_trial: serde_json::Map<String, serde_json::Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     success_rate: Option<f64>,
-    /// What each of several populations earned, in their order.
+    /// Results of several populations, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     populations: Vec<Earned>,
-    /// What stands in each line, in the order of the lines.
+    /// Name and value of each line of text.
     #[serde(skip)]
     lines: Vec<(String, String)>,
 }
 
-/// What the genotype of a population earned.
+/// Result of one population.
 #[derive(Debug, Serialize)]
 struct Earned {
     population: String,
     mean_fitness: f64,
-    /// Of the mean fitness; not a number for a single trial.
+    /// Standard error of the mean fitness. NaN for a single trial.
     standard_error: f64,
     success_rate: f64,
 }
 
 impl Earned {
-    /// What population number `own` earned, of trials that did not break down, and of all.
+    /// Summarizes population number `own` over the finished trials. The success rate is relative to all trials.
     fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize) -> Self {
         let of = |results: &TrialResult| match own.checked_sub(1) {
             None => Some((results.fitness, results.outcome.success)),
@@ -79,7 +79,7 @@ impl Earned {
 }
 
 impl Evaluation {
-    /// What `results` says together; `names` are those of the populations.
+    /// Summarizes `results`. `names` holds the names of the populations.
     fn new(plan: &Plan<'_>, seed: u64, names: &[String], results: &[TrialResult]) -> Self {
         let finite =
             |results: &&TrialResult| results.fitness.is_finite() && results.others.iter().all(|(x, _)| x.is_finite());
@@ -157,10 +157,10 @@ fn word(name: &str) -> String {
     name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
 }
 
-/// Runs random trials of the genes that were given; those of several populations meet each other.
+/// Runs random trials of the given genes. Several populations compete in each trial.
 ///
 /// # Errors
-/// [`Error::Usage`] for genes that are none of the experiment's, and for a population without genes or with genes twice.
+/// [`Error::Usage`] for genes that do not fit the experiment, and for a population with no genes or with two genotypes.
 pub(crate) fn evaluate(
     plan: &Plan<'_>,
     mut pool: Pool,

@@ -1,4 +1,4 @@
-//! Genotypes from elsewhere: the original's `.gen` files, and plain lists of genes.
+//! External genotypes: `.gen` files of the 2013 program, and plain lists of genes.
 
 use std::fmt;
 use std::path::Path;
@@ -12,16 +12,16 @@ use crate::strategy::search::Genome;
 /// The most bytes that are read of a file of genotypes.
 const MOST_BYTES: u64 = 256_000_000;
 
-/// What a genotype of an experiment looks like.
+/// Number and range of the genes of a genotype.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     /// Number of genes.
     genes: usize,
-    /// The largest gene; the smallest is 0.
+    /// Largest gene. The smallest is 0.
     largest: u16,
 }
 
-/// What is wrong with a genotype.
+/// A fault of a genotype.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum GenotypeError {
     /// A word that is no gene of the experiment.
@@ -104,7 +104,7 @@ impl Shape {
     pub(crate) fn original(self, text: &str) -> Result<Vec<Vec<u16>>, GenotypeError> {
         let mut all = Vec::new();
         let mut genes: Vec<u16> = Vec::new();
-        // The first line of the genotype under way; none between two of them.
+        // First line of the current genotype.
         let mut begun = None;
         let mut last = 0;
         for (line, text) in (1..).zip(text.lines()) {
@@ -180,13 +180,13 @@ impl Shape {
     }
 }
 
-/// Whether a list of genes is one of reals: its first has a point or an exponent.
+/// Returns whether a list holds real genes: its first gene has a point or an exponent.
 fn are_reals(text: &str) -> bool {
     let first = text.split([',', ' ', '\t', '\n', '\r']).find(|word| !word.is_empty()).unwrap_or_default();
     first.contains(['.', 'e']) && first.starts_with(|c: char| c == '-' || c.is_ascii_digit())
 }
 
-/// Whether a line before the first gene names the genotype: `**NET : ...`, `DYNAMICAL NN`.
+/// Returns whether a line before the first gene is a title: `**NET : ...`, `DYNAMICAL NN`.
 fn is_title(line: &str) -> bool {
     line.starts_with(|c: char| c == '*' || c.is_ascii_alphabetic())
 }
@@ -198,13 +198,13 @@ fn is_title(line: &str) -> bool {
 /// line and the line `END`.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Damaged`] with the line when a genotype is truncated, does not have `genes` genes, or has one
-/// that is not a whole number below 2^`gene_bits`.
+/// [`Error::Io`], and [`Error::Damaged`] with the line if a genotype is truncated, does not have `genes` genes, or has
+/// a gene that is not a whole number below 2^`gene_bits`.
 pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<Vec<u16>>, Error> {
     Shape::new(genes, gene_bits).read(path)
 }
 
-/// A genotype as a `.gen` file, which [`read_genotypes`] and the original read; its name is one line.
+/// Writes a genotype as a `.gen` file with a name of one line. [`read_genotypes`] and the 2013 program read it.
 pub(crate) fn written(name: &str, genes: &[u16]) -> String {
     let genes: Vec<String> = genes.iter().map(u16::to_string).collect();
     format!("**NET : {name}\nDYNAMICAL NN\n{}\nEND\n", genes.join("\n"))
@@ -308,7 +308,7 @@ mod tests {
 
     #[test]
     fn the_originals_own_files() {
-        // They are not ours to keep. In CI they must be there; elsewhere the test says that it is skipped.
+        // The files are not ours to distribute. CI requires them, and other machines skip the test.
         let named = std::env::var_os("FARSA_FIXTURES").map(std::path::PathBuf::from);
         let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
         let root = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"));

@@ -18,13 +18,13 @@ use crate::store::replace::replace;
 use crate::strategy::search::Genome;
 use crate::strategy::settings::POPULATION;
 
-/// What was imported.
+/// Summary of an import.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     directory: String,
     experiment: String,
     condition: String,
-    /// Of each population.
+    /// Number of genotypes per population.
     genotypes: usize,
     genes: usize,
     /// Names, if there are several.
@@ -56,9 +56,9 @@ impl Summary {
 /// is the champion. `asked` is the size of a population that the settings were to have, if any.
 ///
 /// # Errors
-/// [`Error::Damaged`] with the line for a file that is none of the original's or of another experiment, [`Error::Usage`] for
-/// populations that are left without or have fewer genotypes than others; nothing is then written. [`Error::Occupied`] when
-/// there is something at the place already.
+/// [`Error::Damaged`] with the line for a file that is not a genotype file of this experiment, and for an existing
+/// directory. [`Error::Usage`] for populations without genotypes or with fewer than others. Nothing is written on an
+/// error.
 pub(crate) fn import(
     mut plan: Plan<'_>,
     paths: &[PathBuf],

@@ -1,4 +1,4 @@
-//! How much of the memory the recordings of a page or a picture take.
+//! Memory use of the recordings of a page or a picture.
 
 use farsa_view::{Recording, Schema};
 
@@ -73,7 +73,7 @@ mod tests {
         let steps = long.times().len();
         assert!(said.starts_with("the trial has more steps"), "{said}");
         assert!(said.contains(&format!("; {steps} do, until {}.00 s: ", steps - 1)), "{said}");
-        // What did not fit has taken nothing.
+        // A recording that did not fit uses nothing.
         assert_eq!(kept.left, 10_000 - first.bytes());
     }
 }

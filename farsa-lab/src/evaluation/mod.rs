@@ -1,45 +1,44 @@
-//! Trials after a run: tests, replays, pictures, genotypes from elsewhere.
-//!
-//! - `draw`: `farsa draw`: a moment of a trial as a picture, and a champion's for the report
-//! - `evaluate`: `farsa evaluate`: a genotype from any source on random trials
-//! - `genotypes`: Genotypes from elsewhere: the original's `.gen` files, and plain lists of genes
-//! - `import`: `farsa import`: genotypes of the original FARSA as a directory that can be tested, replayed and drawn
-//! - `kept`: how much of the memory recordings take
-//! - `lines`: `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimisers in any language
-//! - `populations`: For which of several populations something on the command line is
-//! - `protocols`: `farsa test --protocol`: the champion in every case of a table
-//! - `recorded`: the table of a test and its record, two files that belong together
-//! - `replay`: `farsa replay`: a trial of the run again, step by step
-//! - `replayed`: what a replay came to, and its page: of one run, or of two beside each other
-//! - `test`: `farsa test`: the champion on starts that it has never met
-//! - `trials`: what a trial of a test is, and what came of one, in numbers and in words
-//! - `test_table`: `test.csv`: a line per trial of a test, and what they say together
+//! Trials after a run: tests, replays, pictures, external genotypes.
 
+/// `farsa draw`: a moment of a trial as a picture, and the champion's picture for the report.
 #[cfg(feature = "command")]
 pub(crate) mod draw;
+/// `farsa evaluate`: a genotype from any source on random trials.
 #[cfg(feature = "command")]
 pub(crate) mod evaluate;
+/// External genotypes: `.gen` files of the 2013 program, and plain lists of genes.
 pub(crate) mod genotypes;
+/// `farsa import`: genotypes of the 2013 program as a directory for tests, replays and pictures.
 #[cfg(feature = "command")]
 pub(crate) mod import;
+/// Memory use of recordings.
 #[cfg(feature = "command")]
 mod kept;
+/// `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimizers in any language.
 #[cfg(feature = "command")]
 pub(crate) mod lines;
+/// The population that a part of the command line refers to.
 #[cfg(feature = "command")]
 pub(crate) mod populations;
+/// `farsa test --protocol`: the champion in every case of a table.
 #[cfg(feature = "command")]
 pub(crate) mod protocols;
+/// The table of a test and its record, two files that belong together.
 #[cfg(feature = "command")]
 mod recorded;
+/// `farsa replay`: a trial of the run again, step by step.
 #[cfg(feature = "command")]
 pub(crate) mod replay;
+/// The result of a replay, and its page.
 #[cfg(feature = "command")]
 pub(crate) mod replayed;
+/// `farsa test`: the champion on fresh starts.
 #[cfg(feature = "command")]
 pub(crate) mod test;
+/// `test.csv`: one line per trial of a test, and its summary.
 #[cfg(feature = "command")]
 pub(crate) mod test_table;
+/// The trials of a test, and their outcomes in numbers and words.
 pub(crate) mod trials;
 
 pub use genotypes::read_genotypes;

@@ -14,7 +14,7 @@ pub(crate) struct Populations<'n> {
 pub(crate) type Given<T> = (Option<usize>, T);
 
 impl Populations<'_> {
-    /// Divides `NAME=REST`, where there are several populations; without a name all of it is the rest.
+    /// Divides `NAME=REST` if there are several populations. Without a name everything is the rest.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest population.
@@ -25,10 +25,10 @@ impl Populations<'_> {
         self.one(option, Some(name)).map(|found| (Some(found), rest))
     }
 
-    /// The same of a file's name; one that is not Unicode names no population.
+    /// Divides the name of a file. A name that is not Unicode names no population.
     ///
     /// # Errors
-    /// Those of [`split`](Self::split).
+    /// As for [`split`](Self::split).
     pub(crate) fn file(&self, option: &str, path: &Path) -> Result<Given<PathBuf>, Error> {
         let Some(text) = path.to_str() else { return Ok((None, path.into())) };
         self.split(option, text).map(|(population, rest)| (population, rest.into()))
@@ -37,7 +37,7 @@ impl Populations<'_> {
     /// The population of this name, or the only one.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest population; [`Error::Usage`] for none of several.
+    /// [`Error::Setting`] with the nearest population, [`Error::Usage`] if none of several is named.
     pub(crate) fn one(&self, option: &str, name: Option<&str>) -> Result<usize, Error> {
         match name {
             Some(name) => {
@@ -54,7 +54,7 @@ impl Populations<'_> {
         format!("{} has {} populations, {}", self.experiment, self.names.len(), self.names.join(" and "))
     }
 
-    /// What is given for each population: by its name, or one for each in their order.
+    /// Groups values by population: by name, or one for each in order.
     ///
     /// # Errors
     /// [`Error::Usage`] for a population that is left without, and for names here and none there.

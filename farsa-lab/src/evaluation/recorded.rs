@@ -1,4 +1,4 @@
-//! The table of a test and the record that says which test it is: two files that belong together.
+//! The table of a test and its record, two files that belong together.
 
 use std::path::Path;
 use std::thread;
@@ -16,18 +16,18 @@ use crate::store::temporary_file;
 
 /// Bytes of the largest table and of the largest record that are read.
 const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
-/// How often, and with which pauses, the two files are read again while another process writes them.
+/// Number of attempts and the pause between them, while another process writes the two files.
 const ATTEMPTS: usize = 20;
 const PAUSE: Duration = Duration::from_millis(25);
 
-/// What says which test a table is of.
+/// The record of a test.
 pub(crate) trait TableRecord: Serialize + DeserializeOwned {
     /// CRC-32 of the table: a process that was killed between the two files leaves another.
     fn table_crc(&self) -> u32;
 }
 
-/// The text of a table, with its record; none of both where there is no table, and no record of a table that was made before
-/// there were records, or by a process that was killed before it wrote one.
+/// Reads the text of a table with its record. Returns none without a table. The record is missing if the table is older
+/// than records, or if its process was killed.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Damaged`].
@@ -53,8 +53,7 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
     Ok(None)
 }
 
-/// Writes both files of a test of the run in `directory`, which no other process does meanwhile; `make` is told the CRC-32 of
-/// the table.
+/// Writes both files of a test under the lock of the directory. `make` receives the CRC-32 of the table.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Occupied`] while another process writes a test.

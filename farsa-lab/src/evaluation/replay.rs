@@ -39,12 +39,12 @@ pub(crate) enum WhichTrial {
     Best,
 }
 
-/// Which trials to replay; individuals are counted through all populations.
+/// Selection of trials. Individuals are numbered through all populations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
-    /// The generation; if none is named that of the champion, with an individual the last finished one.
+    /// Generation. By default the champion's, or with an individual the last finished one.
     pub(crate) generation: Option<u32>,
-    /// The individual; the best of the generation, in the first population, if none is named.
+    /// Individual. By default the best of the first population.
     pub(crate) individual: Option<u32>,
     /// Which of its trials.
     pub(crate) trial: WhichTrial,
@@ -102,7 +102,7 @@ pub(crate) struct Replayable {
     /// For every trial that was asked for.
     pub(crate) opponents: Vec<Vec<Vec<f32>>>,
     pub(crate) normalisation: Option<ObservationStatistics>,
-    /// What is done to the controller.
+    /// Change of the controller.
     intervention: Option<Intervention>,
     seed: u64,
     pub(crate) generation: u32,
@@ -124,7 +124,7 @@ impl Replayable {
     /// The champions of a run, one of each population.
     ///
     /// # Errors
-    /// Those of [`find`](Self::find).
+    /// As for [`find`](Self::find).
     pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Self>, Error> {
         let mut found = Found::new(plan, directory, Which::default())?;
         let populations = 0..found.history.populations();
@@ -198,7 +198,7 @@ impl Replayable {
     /// Changes the controller in all that is replayed from now on, by a list such as `neuron:3`.
     ///
     /// # Errors
-    /// Those of [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention).
+    /// As for [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention).
     fn change(&mut self, plan: &Plan<'_>, list: &str) -> Result<(), Error> {
         self.intervention = Some(parts(self.evaluator.as_ref(), plan)?.intervention(list)?);
         Ok(())
@@ -213,7 +213,7 @@ impl Replayable {
     /// Replays one of the trials that were asked for.
     ///
     /// # Errors
-    /// [`Error::TrialPanicked`]; the panic is printed as any other, with a backtrace if the user wants one.
+    /// [`Error::Other`] if the trial panics. The panic is printed with the user's backtrace setting.
     pub(crate) fn run(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Result<Outcome, Error> {
         self.evaluate(trial, Some(recorder))
     }
@@ -252,7 +252,7 @@ impl Replayable {
         }
     }
 
-    /// What came of each of the trials that were asked for.
+    /// Summarizes each selected trial.
     fn replayed(&self, outcomes: &[Outcome]) -> Vec<ReplayedTrial> {
         let terms = self.evaluator.info().terms;
         let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
@@ -265,7 +265,7 @@ impl Replayable {
         trials.collect()
     }
 
-    /// What came of them with these changes.
+    /// Summarizes the trials with these changes.
     fn lesioned(&self, list: &str, outcomes: &[Outcome]) -> Lesioned {
         let success = outcomes.iter().all(|outcome| outcome.success);
         Lesioned { list: list.into(), trials: self.replayed(outcomes), fitness: self.fitness(outcomes), success }
@@ -293,11 +293,11 @@ pub(crate) struct ReplaySummary {
     generation: u32,
     individual: u32,
     trials: Vec<ReplayedTrial>,
-    /// Of all trials.
+    /// Steps of all trials.
     steps: u32,
-    /// Of all trials: that of the individual if no trial was left out.
+    /// Fitness of the selected trials: that of the individual if all are selected.
     pub(crate) fitness: f64,
-    /// Whether every trial succeeded.
+    /// True if all trials succeeded.
     success: bool,
     /// The same trials with parts of the controller changed, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -317,7 +317,7 @@ struct Lesioned {
 struct ReplayedTrial {
     trial: u32,
     steps: u32,
-    /// Of the trial alone.
+    /// Fitness of this trial alone.
     fitness: f64,
     success: bool,
     /// Why it failed, if it did.
@@ -350,8 +350,8 @@ impl InWords for ReplaySummary {
     }
 }
 
-/// Writes the trials as CSV, a line per step, to what `out` opens once it is known that there are such trials; with a `lesion`, a
-/// list of changes, those with the changes, and the summary says what came of both.
+/// Writes the trials as CSV, one line per step. `out` opens the output after the trials were found. With a `lesion`, a
+/// list of changes, the changed trials are written and both are summarized.
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -394,8 +394,8 @@ pub(crate) fn replay<W: Write>(
     Ok(Replayed::new(replay, None))
 }
 
-/// Writes the trials, and those of the same choice in another run or with a `lesion`, a list of changes, as a page for a browser: of
-/// each the best trial first, and the best of both beside each other.
+/// Writes a page for a browser with the trials, and the same selection of another run or with a `lesion`, a list of
+/// changes. The best trial of each comes first, and the best of both are side by side.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -416,7 +416,7 @@ pub(crate) fn page(
         if let Some(list) = lesion {
             replayable.change(plan, list)?;
             let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"), &mut kept)?;
-            // As they stand intact.
+            // The intact trials.
             changed.sort_by_key(|film| order.iter().position(|trial| *trial == film.trial));
             page.open_beside(page.episodes());
             add(page, changed);
@@ -435,7 +435,7 @@ struct FilmedTrial {
     recording: Recording,
 }
 
-/// Runs the trials that were asked for and records them; `whose` ends their names.
+/// Runs and records the selected trials. `whose` ends their names.
 fn films(replayable: &mut Replayable, whose: &str, kept: &mut Kept) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
     let (mut outcomes, mut films) = (Vec::new(), Vec::new());
     for trial in replayable.trials.clone() {
@@ -443,7 +443,7 @@ fn films(replayable: &mut Replayable, whose: &str, kept: &mut Kept) -> Result<(V
         let outcome = replayable.run(trial, &mut recording)?;
         kept.add(&recording)?;
         let Replayable { generation, individual, .. } = *replayable;
-        // What distinguishes trials comes first: a narrow screen cuts the rest.
+        // The differences come first, because a narrow screen cuts the rest.
         let came = came_to(replayable.evaluator.as_ref(), &outcome);
         let name = format!("trial {trial}: {came}; {whose}, generation {generation}, individual {individual}");
         let facts = facts(replayable.evaluator.as_ref(), &outcome);
@@ -460,7 +460,7 @@ fn add(page: &mut Page, films: Vec<FilmedTrial>) {
     }
 }
 
-/// Whether the reader of the output has gone, as after `| head`.
+/// Returns whether the reader closed the output, as in `| head`.
 pub(crate) fn reader_left(error: &Error) -> bool {
     matches!(error, Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
 }

@@ -1,4 +1,4 @@
-//! What a replay came to, and its page: of one run, or of two beside each other.
+//! The result of a replay, and its page: of one run, or of two side by side.
 
 use std::path::Path;
 
@@ -10,14 +10,14 @@ use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::write_page;
 
-/// What a replay came to, with a summary of each run.
+/// The result of a replay, with a summary of each run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Replayed<S> {
     #[serde(flatten)]
     pub(crate) replay: S,
     /// The same choice in another run, if there is one.
     compared: Option<S>,
-    /// Where the recordings went, as the caller knows; none for the standard output.
+    /// File of the recordings. None for the standard output.
     pub(crate) file: Option<String>,
     /// The same in words.
     pub(crate) summary: String,
@@ -41,11 +41,10 @@ pub(crate) fn run_in_words(plan: &Plan<'_>) -> String {
     format!("{condition} {}", plan.seed)
 }
 
-/// Writes what `add` adds of a run, and of another one whose first trial is then shown beside it, as a page for a browser;
-/// `what` ends its title.
+/// Writes a page for a browser from what `add` adds of a run, and of a second run to compare. `what` ends its title.
 ///
 /// # Errors
-/// Those of `add`, and of [`write_page`].
+/// As for `add` and [`write_page`].
 pub(crate) fn page<S: InWords>(
     (plan, directory): (&Plan<'_>, &Directory),
     compare: Option<(&Plan<'_>, &Directory)>,

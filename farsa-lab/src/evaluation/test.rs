@@ -42,7 +42,7 @@ impl TableRecord for Record {
     }
 }
 
-/// The test that a directory holds, with its record; see [`recorded::read`].
+/// Reads the test of a directory with its record, see [`recorded::read`].
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Damaged`].
@@ -55,7 +55,7 @@ pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record
 /// Trials of a test where no number is asked for.
 pub(crate) const TRIALS: usize = 100;
 
-/// What a test found.
+/// The result of a test.
 #[derive(Debug, Serialize)]
 pub(crate) struct TestRun {
     directory: String,
@@ -77,7 +77,7 @@ pub(crate) struct TestRun {
 }
 
 impl TestRun {
-    /// A table for reading, and what it says together.
+    /// Returns the table and its summary as text.
     pub(crate) fn text(&self) -> String {
         let Self { generation, individual, seed, .. } = self;
         let mut text = self.table.aligned();
@@ -94,11 +94,11 @@ impl TestRun {
     }
 }
 
-/// Runs `trials` fresh trials of the champion and writes `test.csv`; or of another individual, such as one of an archive, and
-/// writes no file, since those that there are speak of the champion.
+/// Runs `trials` fresh trials of the champion and writes `test.csv`. Writes no file for another individual, such as one
+/// of an archive.
 ///
-/// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own. The champions
-/// of several populations meet each other: each trial is run once for each of them, with the same numbers.
+/// Trial i of the test is trial i modulo the experiment's number of trials, with its own random numbers. The champions
+/// of several populations compete: each trial runs once for each of them, with the same numbers.
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -115,7 +115,7 @@ pub(crate) fn test(
         None => Subject::read(plan, directory, &pool)?,
     };
     if other.is_none() {
-        // Where nothing can be written, that is said before anything is computed.
+        // An occupied directory is reported before the computation.
         drop(Lock::of_tests(directory.path())?);
     }
     let progress = Progress::new(0, trials as u64, quiet);
@@ -159,7 +159,7 @@ pub(crate) fn failure(results: &[TrialResult], terms: &[String]) -> Option<Strin
 pub(crate) struct Subject {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
-    /// Those of all populations, if there are several.
+    /// Individuals of all populations, if there are several.
     pub(crate) individuals: Vec<u32>,
     /// That the champion may behave otherwise than in its run.
     pub(crate) warning: Option<String>,
@@ -172,7 +172,7 @@ impl Subject {
     /// Reads the champions of a run.
     ///
     /// # Errors
-    /// [`Error::Damaged`] where there are none yet, or not of this experiment; [`Error::Io`].
+    /// [`Error::Damaged`] for a run without champions or of another experiment, [`Error::Io`].
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>) -> Result<Self, Error> {
         let path = directory.champion();
         if !path.is_file() && directory.checkpoint().is_file() {
@@ -193,10 +193,11 @@ impl Subject {
         Ok(Self { generation, individual, individuals, warning, parameters, size, normalisation })
     }
 
-    /// Finds an individual of a finished generation, by default its best; it meets the best of the other populations.
+    /// Finds an individual of a finished generation, by default its best. Its opponents are the best of the other
+    /// populations.
     ///
     /// # Errors
-    /// Those of [`Found::new`], and [`Error::Damaged`].
+    /// As for [`Found::new`], and [`Error::Damaged`].
     fn find(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>, which: Which) -> Result<Self, Error> {
         let Found { history, path, generation, individual } = Found::new(plan, directory, which)?;
         let (size, own) = (history.size(), individual as usize / history.size().max(1));
@@ -221,7 +222,7 @@ impl Subject {
         })
     }
 
-    /// What is evaluated.
+    /// Returns the evaluated parameters.
     pub(crate) fn tested(&self) -> Tested<'_> {
         Tested { parameters: &self.parameters, size: self.size, normalisation: self.normalisation.as_ref() }
     }
@@ -242,7 +243,7 @@ pub(crate) struct Tested<'t> {
     pub(crate) normalisation: Option<&'t ObservationStatistics>,
 }
 
-/// What is asked in a trial: a case of a protocol, a change of the controller, both, or nothing.
+/// Condition of a trial: a case of a protocol, a change of the controller, both, or neither.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Asked<'t> {
     pub(crate) case: Option<CaseId>,
@@ -252,7 +253,7 @@ pub(crate) struct Asked<'t> {
 /// Fresh trials, the same for every case.
 #[derive(Clone, Copy)]
 pub(crate) struct Trials<'t> {
-    /// How many of each case.
+    /// Trials per case.
     pub(crate) count: usize,
     pub(crate) seed: u64,
     /// At least one.

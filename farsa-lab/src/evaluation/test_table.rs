@@ -1,4 +1,4 @@
-//! `test.csv`: a line per trial of a test, and what they say together.
+//! `test.csv`: one line per trial of a test, and its summary.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::experiment::outcome::{Note, Outcome};
 use crate::figures::significant::significant;
 
-/// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
+/// Columns of every test. Several fitness terms and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
 
 /// One trial.
@@ -18,9 +18,9 @@ const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
 pub(crate) struct TrialResult {
     /// Which of the experiment's trials it was.
     pub(crate) trial: u32,
-    /// What came of it.
+    /// Outcome of the trial.
     pub(crate) outcome: Outcome,
-    /// Its fitness; NaN if it broke down.
+    /// Fitness of the trial. NaN if it failed.
     pub(crate) fitness: f64,
     /// Fitness and success of the opponents in the same trial, which is an episode of theirs in their populations.
     pub(crate) others: Vec<(f64, bool)>,
@@ -33,13 +33,13 @@ pub struct TestTrial {
     pub trial: u32,
     /// Number of steps.
     pub steps: u32,
-    /// Whether the trial succeeded.
+    /// Success of the trial.
     pub success: bool,
     /// The fitness of the trial, NaN after a failure.
     pub fitness: f64,
 }
 
-/// The trials of a test as text, the head first; every line is as long as the head.
+/// The trials of a test as lines of text of equal length, the head first.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Table {
     lines: Vec<Vec<String>>,
@@ -84,7 +84,7 @@ impl Table {
         Self { lines: std::iter::once(head).chain(lines).collect() }
     }
 
-    /// What the text of the file at `path` says.
+    /// Parses the text of the file at `path`.
     ///
     /// # Errors
     /// [`Error::Damaged`] when it is not the table of a test.
@@ -96,17 +96,17 @@ impl Table {
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
         let mut lines: Vec<Vec<String>> = Vec::new();
         for record in reader.records() {
-            // A line of another length than the first is an error here, and the error says which.
+            // The reader reports lines of unequal length with their number.
             lines.push(record.map_err(|error| error.to_string())?.iter().map(str::to_owned).collect());
         }
         let table = Self::from_lines(lines, 2)?;
         if text.ends_with('\n') && table.lines.len() > 1 { Ok(table) } else { Err("truncated".into()) }
     }
 
-    /// The table of these lines, the head first; the one after it is the line of this number of a file.
+    /// Builds the table of these lines, the head first. `line` is the number of the first trial's line in the file.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// Returns the fault as text.
     pub(super) fn from_lines(lines: Vec<Vec<String>>, first: usize) -> Result<Self, String> {
         let head = lines.first().map(|line| line.iter().map(String::as_str).collect::<Vec<_>>()).unwrap_or_default();
         if !head.starts_with(&HEAD) {
@@ -126,7 +126,7 @@ impl Table {
         Ok(Self { lines })
     }
 
-    /// The same in tables of so many trials, each counted from 0.
+    /// Divides it into tables of the given number of trials, each counted from 0.
     pub(super) fn divided(&self, trials: usize) -> Vec<Self> {
         let Some((head, lines)) = self.lines.split_first() else { return Vec::new() };
         let part = |lines: &[Vec<String>]| {
@@ -164,7 +164,7 @@ impl Table {
         writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))
     }
 
-    /// The table with columns that stand under each other; numbers have four significant digits.
+    /// Returns the table with aligned columns. Numbers have four significant digits.
     pub(crate) fn aligned(&self) -> String {
         let short = |field: &String| match field.parse::<f64>() {
             Ok(x) if field.contains('.') => significant(x),
@@ -183,7 +183,7 @@ impl Table {
         text
     }
 
-    /// What the trials say together; `terms` are those of the experiment.
+    /// Summarizes the trials. `terms` holds the names of the fitness terms.
     pub(crate) fn findings(&self, terms: &[String]) -> Findings {
         let rows = self.lines.get(1..).unwrap_or_default();
         let field = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
@@ -207,7 +207,7 @@ impl Table {
     }
 }
 
-/// What the trials of a test say together.
+/// Summary of the trials of a test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Findings {
     pub(crate) trials: usize,
@@ -223,20 +223,20 @@ pub(crate) struct Findings {
     pub(crate) notes: Vec<(String, Finding)>,
 }
 
-/// How many of how many succeeded.
+/// Returns the share as text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub(crate) struct Share {
     pub(crate) successes: usize,
     pub(crate) of: usize,
 }
 
-/// What the trials say about a note.
+/// Summary of a note.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Finding {
     /// The mean of a quantity, over the trials that have it.
     Mean(f64),
-    /// How often each word was said.
+    /// Count of each word.
     Counts(BTreeMap<String, usize>),
 }
 

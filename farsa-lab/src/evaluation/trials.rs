@@ -1,4 +1,4 @@
-//! What a trial of a test is, and what came of one, in numbers and in words.
+//! The trials of a test, and their outcomes in numbers and words.
 
 use farsa_evo::Fitness;
 use farsa_view::readable;
@@ -8,27 +8,28 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::outcome::{Note, Outcome};
 use crate::run::plan::MAX_SEED;
 
-/// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
+/// Returns the episode of a test trial, numbered through all trials, for the first individual. `kinds` is the
+/// experiment's number of trials.
 pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
     let kinds = kinds.max(1);
     let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
     EpisodeId { seed: seed | !MAX_SEED, generation, individual: 0, trial }
 }
 
-/// The fitness of trials; that of a failed one is the worst.
+/// Returns the fitness of trials. That of a failed trial is the worst.
 pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
     let finite = outcomes.iter().all(Outcome::is_finite);
     let fitness = if finite { Fitness::nan_as_failed(evaluator.fitness(outcomes)) } else { Fitness::WORST };
     fitness.get()
 }
 
-/// Whether a trial succeeded, and what it earned, in words.
+/// Returns success and fitness of a trial as text.
 pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
     let success = if outcome.success { "success" } else { "no success" };
     format!("{success}, {}", readable(fitness(evaluator, std::slice::from_ref(outcome))))
 }
 
-/// What came of a trial, by name.
+/// Returns the outcome of a trial by name.
 pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String, String)> {
     let fitness = fitness(evaluator, core::slice::from_ref(outcome));
     let terms = evaluator.info().terms.into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));

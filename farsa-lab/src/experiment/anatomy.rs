@@ -56,12 +56,12 @@ pub struct Anatomy {
     order: Option<Vec<usize>>,
 }
 
-/// A kind of change, and the names that it knows.
+/// A kind of change with its valid names.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct PartNames {
-    /// What stands before the colon: `sensor`, `neuron`, `bias`.
+    /// Word before the colon: `sensor`, `neuron`, `bias`.
     pub kind: String,
-    /// What may stand behind it.
+    /// Valid words after the colon.
     pub names: Vec<String>,
 }
 
@@ -102,7 +102,7 @@ impl Anatomy {
         Self { order: Some(order), ..self }
     }
 
-    /// The kinds of changes that name a part, with the names that each of them knows; a link is named by two nodes.
+    /// Returns the kinds of changes that name a part, with their valid names. A link is named by two nodes.
     pub fn names(&self) -> Vec<PartNames> {
         let groups = self.groups.iter().map(|(group, _)| group);
         let single = self.sensors.iter().filter(|&name| self.groups.iter().all(|(group, _)| group != name));
@@ -120,11 +120,11 @@ impl Anatomy {
         lists.into_iter().chain(own).filter(|part| !part.names.is_empty()).collect()
     }
 
-    /// What a list of changes says.
+    /// Parses a list of changes.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name that there is; [`Error::Usage`] for a change that is none, or a number that is
-    /// missing or none.
+    /// [`Error::Setting`] with the nearest name, [`Error::Usage`] for an invalid change and a missing or invalid
+    /// number.
     pub fn intervention(&self, list: &str) -> Result<Intervention, Error> {
         if list.len() > LONGEST {
             return Err(Error::Usage(format!("--lesion: a list of {} bytes, at most {LONGEST}", list.len())));
@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn names_become_what_they_stand_for() {
         let parameters = |list: &str| anatomy().intervention(list).unwrap().parameters;
-        // A neuron comes before a sensor or an output of its name, unless its kind is said.
+        // Without a kind, a neuron takes precedence over a sensor or an output of the same name.
         assert_eq!(parameters("link:1-3"), [(weight(LeakyParameter::RecurrentWeight, 2), 0.0)]);
         assert_eq!(parameters("link:sensor 1-3=0.5"), [(weight(LeakyParameter::SensorWeight, 11), 0.5)]);
         assert_eq!(parameters("link: 2 - output 3 "), [(weight(LeakyParameter::OutputWeight, 3), 0.0)]);

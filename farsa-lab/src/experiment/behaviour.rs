@@ -1,27 +1,27 @@
-//! What an experiment says of an individual beside its fitness: more objectives, and what it did.
+//! Objectives and measures of an individual in addition to its fitness.
 
 use crate::experiment::outcome::{Note, Outcome};
 use crate::experiment::parameter::Parameter;
 
-/// What an experiment says of an individual beside its fitness, [`Task::behaviour`](crate::Task::behaviour): for strategies that
-/// search for several objectives, such as NSGA-II, or for individuals that behave differently, such as MAP-Elites.
+/// Objectives and measures of an individual in addition to its fitness, [`Task::behaviour`](crate::Task::behaviour).
+/// NSGA-II searches for several objectives, MAP-Elites for individuals with different measures.
 ///
-/// The fitness is the first objective of every strategy; those here come after it. [`NotedBehaviour`] is one that is all said by a
-/// table of [`Outcome::notes`].
+/// The fitness is the first objective of every strategy, and these follow. [`NotedBehaviour`] builds them from a table
+/// of [`Outcome::notes`].
 pub trait Behaviour {
-    /// The objectives beside the fitness, in their order; more of each is better. By default none.
+    /// Returns the names of the further objectives, in order. More is better. By default none.
     fn objectives(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The values that describe a behaviour, each with the range, low to high, that an archive divides; a value beyond it counts
-    /// as the nearest end. By default none.
+    /// Returns the measures of a behavior, each with the range from low to high that an archive divides. A value beyond
+    /// it counts as the nearest end. By default none.
     fn descriptors(&self) -> Vec<Parameter> {
         Vec::new()
     }
 
-    /// The objectives and then the descriptor values of an individual, from its trials in their order; with a number that is not
-    /// finite it counts as failed.
+    /// Returns the objectives and then the measures of an individual, from its trials in order. A number that is not
+    /// finite counts as a failure.
     fn describe(&self, trials: &[Outcome]) -> Vec<f64>;
 }
 
@@ -65,7 +65,7 @@ impl Behaviour for NotedBehaviour {
     }
 }
 
-/// The mean over the trials of a note that is a number; NaN where a trial has none of the name.
+/// Returns the mean of a numeric note over the trials. NaN if a trial lacks it.
 pub fn mean_of_note(trials: &[Outcome], name: &str) -> f64 {
     let number = |outcome: &Outcome| match outcome.notes.iter().find(|(own, _)| *own == name) {
         Some((_, Note::Number(x))) => *x,

@@ -1,4 +1,4 @@
-//! An episode of one robot that a network controls, with an objective of one's own.
+//! An episode of one robot with a network and a custom objective.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{
@@ -44,32 +44,32 @@ impl<W> PlanarWorld for W where
 {
 }
 
-/// What a robot in a planar world is to do: how a trial starts, and what a step earns.
+/// The task of a robot in a planar world: the start of a trial, and the reward of a step.
 pub trait Objective: Clone + Send + 'static {
-    /// Sets the world up for an episode, by random numbers of its own alone, and forgets the one before.
+    /// Sets the world up for an episode with its own random numbers, and discards the previous state.
     fn start<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId);
 
-    /// What the step that has passed earns; NaN for a trial that broke down.
+    /// Returns the reward of the last step. NaN for a trial that failed.
     fn reward<W: PlanarWorld>(&mut self, world: &W) -> f64;
 
-    /// Whether the trial is over before its time.
+    /// Returns whether the trial ends early.
     fn is_over(&self) -> bool {
         false
     }
 
-    /// Whether the trial succeeded, at its end.
+    /// Returns whether the trial succeeded, at its end.
     fn success(&self) -> bool {
         false
     }
 
-    /// What else is worth a column, by name and after every step: a replay shows each step, a test the end of each trial.
-    /// The same names always.
+    /// Returns further columns by name, after every step. A replay shows each step, a test the end of each trial. The
+    /// names are always the same.
     fn values(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
 }
 
-/// How many trials an evaluation has, and how long each takes at most.
+/// Number and length of the trials of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trials {
     /// Trials of an evaluation.
@@ -144,7 +144,7 @@ where
 }
 
 impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S, M, O> {
-    /// Those of [`Neurocontroller::protocols`].
+    /// Returns the protocols of [`Neurocontroller::protocols`].
     fn info(&self) -> TaskInfo {
         TaskInfo {
             description: self.control.description(self.trials.steps as usize, self.trials.time_step),

@@ -10,8 +10,8 @@ use crate::experiment::network_export::NetworkExport;
 /// A controller with all that another program needs to run it in another world: numbers, and names of the model that
 /// `farsa export robot` writes.
 ///
-/// Units are SI unless a channel says otherwise. Numbers are those that trials here use: what is single precision here is
-/// written with the digits that single precision needs.
+/// Units are SI unless a channel states otherwise. Single-precision numbers are written with the digits that single
+/// precision needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ControllerExport {
     /// The network.
@@ -24,7 +24,7 @@ pub struct ControllerExport {
     pub actuators: Vec<ActuatorExport>,
     /// The surfaces of all pairs of shapes that may touch, in the order of the robot's description.
     pub surfaces: Vec<SurfaceExport>,
-    /// How a trial is judged, where sensors depend on it.
+    /// Judgement of a trial, if sensors depend on it.
     pub judge: Option<JudgeExport>,
     /// Control step \[s\].
     pub time_step: f64,
@@ -33,7 +33,7 @@ pub struct ControllerExport {
 }
 
 impl ControllerExport {
-    /// A controller whose channels say all that there is to say: no actuators, surfaces or judge of a model.
+    /// Builds a controller without actuators, surfaces or judge.
     pub fn new(
         network: NetworkExport,
         sensors: Vec<SensorExport>,
@@ -45,7 +45,7 @@ impl ControllerExport {
         Self { network, sensors, motors, actuators, surfaces, judge: None, time_step, steps }
     }
 
-    /// What [`farsa_nn::bytes::channel_hash`] makes of the names of its channels.
+    /// Value of [`farsa_nn::bytes::channel_hash`] of the channel names.
     pub fn channels(&self) -> u64 {
         let sensors = self.sensors.iter().map(|sensor| &sensor.name);
         channel_hash(sensors, self.motors.iter().map(|motor| &motor.name))
@@ -55,9 +55,9 @@ impl ControllerExport {
 /// A sensor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SensorExport {
-    /// What it is called here.
+    /// Name of the channel.
     pub name: String,
-    /// What it reads.
+    /// Quantity that the channel reads.
     #[serde(flatten)]
     pub reads: SensorReading,
 }
@@ -79,10 +79,10 @@ impl MotorExport {
     }
 }
 
-/// What lies between a pair of shapes: a spring and a damper.
+/// The spring and damper between a pair of shapes.
 ///
-/// The normal force at the end of a step is stiffness * depth - damping * the speed at which the shapes part, and none where
-/// that is not positive: a pair touches while its depth is more than 0 and more than damping / stiffness times that speed.
+/// The normal force at the end of a step is stiffness * depth - damping * the separation speed of the shapes. Negative
+/// forces are 0. A pair touches while its depth is positive and exceeds damping / stiffness times that speed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurfaceExport {
     /// Names of the two shapes.
@@ -93,7 +93,7 @@ pub struct SurfaceExport {
     pub damping: f64,
 }
 
-/// What a sensor channel reads.
+/// The reading of a sensor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "reads", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -107,11 +107,11 @@ pub enum SensorReading {
         /// Position that reads 1 \[rad\].
         to: f32,
     },
-    /// min(1, n / saturation), n pairs of shapes that touch under a normal force > 0; see [`SurfaceExport`].
+    /// min(1, n / saturation), with n pairs of shapes that touch under a normal force > 0. See [`SurfaceExport`].
     Touch {
         /// Names of the pairs' two shapes.
         pairs: Vec<[String; 2]>,
-        /// How many pairs read 1.
+        /// Number of pairs that reads 1.
         saturation: f32,
     },
     /// One component of scale * (target - from).
@@ -131,13 +131,13 @@ pub enum SensorReading {
     Quantity {
         /// Which.
         quantity: String,
-        /// Its unit; `1` if it has none.
+        /// Unit. `1` for none.
         unit: &'static str,
         /// Its value that reads 0.
         zero: f64,
         /// Its value that reads 1.
         one: f64,
-        /// Whether readings between are (q - zero) / (one - zero); else they follow a curve or a table.
+        /// True if readings in between are (q - zero) / (one - zero). Otherwise they follow a curve or a table.
         linear: bool,
     },
     /// The sensor channel of this number, from 0, as the experiment's own program reads it.
@@ -145,7 +145,8 @@ pub enum SensorReading {
         /// Its number.
         channel: usize,
     },
-    /// `amplitude` in the phase of this name, else 0; the phase is that after the step before, the first one at the start.
+    /// `amplitude` in the phase of this name, else 0. The phase is that after the previous step, and the first phase at
+    /// the start.
     Label {
         /// The phase.
         phase: &'static str,
@@ -163,17 +164,17 @@ pub struct PointExport {
     pub at: [f64; 3],
 }
 
-/// A motor channel; its value is clamped into \[0, 1\] first, if not said otherwise.
+/// A motor channel. Its value is clamped into \[0, 1\] first unless stated otherwise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotorExport {
-    /// What it is called here.
+    /// Name of the channel.
     pub name: String,
-    /// What it drives.
+    /// Quantity that the channel drives.
     #[serde(flatten)]
     pub drives: MotorDrive,
 }
 
-/// What a motor channel drives.
+/// The effect of a motor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "drives", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -185,11 +186,11 @@ pub enum MotorDrive {
         /// 0 the agonist, which pulls towards the joint's lower limit, 1 the antagonist.
         muscle: usize,
     },
-    /// A quantity, zero + (one - zero) y; here y is not clamped.
+    /// A quantity, zero + (one - zero) y, without clamping y.
     Quantity {
         /// Which.
         quantity: String,
-        /// Its unit; `1` if it has none.
+        /// Unit. `1` for none.
         unit: &'static str,
         /// Its value at 0.
         zero: f64,
@@ -230,7 +231,7 @@ pub struct ActuatorExport {
     pub law: Law<f64>,
 }
 
-/// How trials of `reach-grasp-lift` are judged: what phases and success depend on.
+/// The judgement of `reach-grasp-lift` trials, on which phases and success depend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgeExport {
     /// The phases in their order.
@@ -247,7 +248,7 @@ pub struct JudgeExport {
     pub on_table: [String; 2],
     /// Height of the target's centre above the world's origin from which it counts as held \[m\].
     pub success_height: f64,
-    /// How many of the last steps it must have been held in, all of them.
+    /// Number of final steps during which the object must be held.
     pub success_steps: u32,
 }
 
@@ -256,6 +257,6 @@ pub struct JudgeExport {
 pub struct StartExport {
     /// Position of every joint \[rad or m\], by name.
     pub joints: Vec<(String, f32)>,
-    /// Place of every free body's origin \[m\], by name; none is turned.
+    /// Position of every free body's origin \[m\], by name, without rotation.
     pub bodies: Vec<(String, [f32; 3])>,
 }

@@ -1,4 +1,4 @@
-//! What an experiment is to the command: a name, a table of settings, and what evaluates parameters.
+//! An experiment as the command sees it: a name, a table of settings, and an evaluator.
 
 use std::path::PathBuf;
 
@@ -10,16 +10,16 @@ use crate::strategy::truncation::Truncation;
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///
-/// The experiment says what there is to set and how parameters are evaluated; the command brings evolution, threads, files,
-/// checkpoints and replay. See the crate's documentation for a whole one.
+/// The experiment defines its settings and the evaluation of parameters. The command adds evolution, threads, files,
+/// checkpoints and replay. See the documentation of the crate for a complete example.
 pub trait Experiment: Sync {
     /// The name on the command line and in the run directory: lower-case letters, digits and hyphens.
     fn name(&self) -> &'static str;
 
-    /// What is asked, in one line.
+    /// Returns the question, in one line.
     fn summary(&self) -> &'static str;
 
-    /// The conditions that are compared, the default one first; empty if there is only one.
+    /// Returns the conditions to compare, the default one first. Empty for a single condition.
     fn conditions(&self) -> &'static [&'static str] {
         &[]
     }
@@ -31,21 +31,21 @@ pub trait Experiment: Sync {
         1
     }
 
-    /// What a run searches with under a condition; by default the truncation algorithm.
+    /// Returns the default strategy of a condition. By default the truncation algorithm.
     fn strategy(&self, condition: &str) -> &'static dyn StrategyDefinition {
         let _ = condition;
         &Truncation
     }
 
-    /// Every setting of the experiment under a condition (`""` if there are none), with its default.
+    /// Returns every setting of the experiment under a condition (`""` without conditions), with its default.
     ///
-    /// The settings of the [`strategy`](Self::strategy) (`evolution.*`) are added by the command; a setting here with the same
-    /// key replaces the one there, which is how an experiment has its own defaults.
+    /// The command adds the settings of the [`strategy`](Self::strategy) (`evolution.*`). A setting here with the same
+    /// key replaces the one there, which gives an experiment its own defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
 
-    /// The files whose content trials depend on, such as tables of sensors that a setting names; by default none.
+    /// Returns the files that trials depend on, such as sensor tables named by a setting. By default none.
     ///
-    /// A run remembers their checksums and is neither resumed, replayed nor tested with other ones. Relative paths are
+    /// A run stores their checksums and refuses to resume, replay or test with changed files. Relative paths are
     /// relative to the current directory.
     ///
     /// # Errors
@@ -67,21 +67,21 @@ pub trait Experiment: Sync {
 
     /// Builds what one thread evaluates trials by under a condition and checked settings.
     ///
-    /// Called once for every thread; all of them must evaluate alike.
+    /// Called once for every thread. All evaluators must be equal.
     ///
     /// # Errors
     /// [`Error::setting`] for values that are each allowed but do not go together.
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error>;
 }
 
-/// An [`Experiment`] that is all said by its name, a line, its conditions, a table and a function.
+/// An [`Experiment`] of a name, a line, conditions, a table and a function.
 #[derive(Clone, Copy)]
 pub struct SimpleExperiment {
     /// The name on the command line: lower-case letters, digits and hyphens.
     pub name: &'static str,
-    /// What is asked, in one line.
+    /// Returns the question, in one line.
     pub summary: &'static str,
-    /// The conditions that are compared, the default one first; empty if there is only one.
+    /// Returns the conditions to compare, the default one first. Empty for a single condition.
     pub conditions: &'static [&'static str],
     /// Every setting with its default, under a condition.
     pub settings: fn(&str) -> Vec<Setting>,

@@ -1,4 +1,4 @@
-//! Bodies that are put elsewhere or pushed in the course of an episode.
+//! Bodies that are moved or pushed during an episode.
 
 use farsa_body::ports::{Arrange, BodyId, ExternalForces, Handles, Kinematics};
 use farsa_body::{Pose, Recorder, Twist};
@@ -12,11 +12,11 @@ use crate::experiment::episode::{Episode, EpisodeId};
 pub struct Displacement {
     /// Before which step, from 0.
     pub step: u32,
-    /// Which body; nothing happens to one that hangs on a joint.
+    /// The body. A body on a joint is not moved.
     pub body: u16,
     /// Where to \[m\].
     pub position: [f32; 3],
-    /// How it lies there: a unit quaternion \[x, y, z, w\].
+    /// Orientation: a unit quaternion \[x, y, z, w\].
     pub rotation: [f32; 4],
 }
 
@@ -34,9 +34,9 @@ pub struct Push {
     pub force: [f32; 3],
 }
 
-/// How a body is put somewhere in a world of type `W`.
+/// Moves a body in a world of type `W`.
 pub(crate) type Place<W> = fn(&mut W, &Displacement);
-/// How a body is pushed in the next step of a world of type `W`.
+/// Pushes a body in the next step of a world of type `W`.
 pub(crate) type Apply<W> = fn(&mut W, &Push);
 
 /// Puts a body somewhere.
@@ -53,7 +53,7 @@ pub(crate) fn apply<W: ExternalForces + Kinematics + Handles<Body = BodyId>>(wor
     world.apply_force(body, point, push.force);
 }
 
-/// What is done to the bodies of an episode, in any order, and how in its world.
+/// Disturbances of an episode, in any order, and their functions for its world.
 pub(crate) struct Disturbances<'d, W> {
     pub(crate) displacements: &'d [Displacement],
     pub(crate) pushes: &'d [Push],
@@ -62,13 +62,13 @@ pub(crate) struct Disturbances<'d, W> {
 }
 
 impl<W> Disturbances<'_, W> {
-    /// Whether anything is done.
+    /// Returns whether there is any disturbance.
     pub(crate) fn any(&self) -> bool {
         let placed = self.place.is_some() && !self.displacements.is_empty();
         placed || self.apply.is_some() && !self.pushes.is_empty()
     }
 
-    /// What is done before a step: bodies are put elsewhere first.
+    /// Applies the disturbances before a step. Displacements come first.
     fn before(&self, step: u32, world: &mut W) {
         if let Some(place) = self.place {
             let now = self.displacements.iter().filter(|displacement| displacement.step == step);

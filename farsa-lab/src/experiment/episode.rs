@@ -29,10 +29,10 @@ impl EpisodeId {
 /// An episode steps no world: [`run_episode`] does, alone, and [`run_in_lanes`](crate::run_in_lanes) in a lane of a batch. So
 /// the same episode gives the same bits in both.
 pub trait Episode<W: ?Sized> {
-    /// Sets the world and the episode up; what an earlier episode left behind is forgotten.
+    /// Sets up the world and the episode. The previous episode is discarded.
     fn start(&mut self, world: &mut W, id: EpisodeId);
 
-    /// Whether the start could be arranged; if not, the episode ends before its first step with a return of NaN.
+    /// Returns whether the start succeeded. Otherwise the episode ends before its first step with a return of NaN.
     fn has_started(&self) -> bool {
         true
     }
@@ -40,10 +40,10 @@ pub trait Episode<W: ?Sized> {
     /// Senses, computes and acts, before the world steps.
     fn act(&mut self, world: &mut W);
 
-    /// Judges the step that has passed; `Some(return)` ends the episode.
+    /// Judges the last step. `Some(return)` ends the episode.
     ///
-    /// A return of NaN says that the world or the controller gave a number that is not finite. The world is mutable for
-    /// surroundings that change with what happened, such as ground under a swinging foot.
+    /// A return of NaN means that the world or the controller produced a number that is not finite. The world is
+    /// mutable for surroundings that react, such as ground under a swinging foot.
     fn judge(&mut self, world: &mut W) -> Option<f64>;
 
     /// Records what the sensors see where they are, after [`act`](Self::act) and before the step: their rays.
@@ -78,7 +78,7 @@ impl<W: ?Sized, E: Episode<W> + ?Sized> Episode<W> for &mut E {
     }
 }
 
-/// Runs one episode alone in `world` and returns its return; what it records does not change it.
+/// Runs one episode alone in `world` and returns its return. Recording does not change it.
 pub fn run_episode<W, E>(episode: &mut E, world: &mut W, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> f64
 where
     W: World + ?Sized,
@@ -104,7 +104,7 @@ where
     }
 }
 
-/// No world, for episodes that hold all that changes themselves; it has no clock.
+/// The empty world without a clock, for episodes that hold their whole state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct NoWorld;
 
@@ -122,7 +122,7 @@ impl World for NoWorld {
     }
 }
 
-/// Records a row of scalars and ends the recorder's tick at `time` \[s\], if somebody records.
+/// Records a row of scalars and ends the recorder's tick at `time` \[s\], if there is a recorder.
 pub fn record_row(recorder: &mut Option<&mut dyn Recorder>, time: f64, values: &[f64]) {
     if let Some(recorder) = recorder {
         recorder.scalars(values);
@@ -130,7 +130,7 @@ pub fn record_row(recorder: &mut Option<&mut dyn Recorder>, time: f64, values: &
     }
 }
 
-/// The time after so many steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
+/// Returns the time after `steps` steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
 pub fn seconds(steps: u32, time_step: f64) -> f64 {
     (f64::from(steps) * time_step * 1e9).round() / 1e9
 }

@@ -1,4 +1,4 @@
-//! What an experiment is evaluated by: parameters go in, outcomes come out.
+//! The evaluation of an experiment: parameters in, outcomes out.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -87,7 +87,7 @@ impl TaskInfo {
 
     /// Returns the step at which an episode is stopped, so that every episode ends.
     ///
-    /// Without a `step_budget` it is the number of steps in the description, or ten million if there is none.
+    /// Without a `step_budget` this is the number of steps in the description, or ten million.
     pub fn step_budget(&self) -> u64 {
         self.step_budget.unwrap_or(match self.description.steps {
             0 => 10_000_000,
@@ -124,17 +124,17 @@ pub trait Task: Send {
     }
 }
 
-/// What `farsa export` writes of an experiment; each by default nothing.
+/// The data of `farsa export`. Each method returns nothing by default.
 pub trait Exports {
-    /// What a MuJoCo model of the robot in the [`schema`](TaskInfo::schema) says beside the robot.
+    /// Returns the options of the robot's MuJoCo model.
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         None
     }
 
-    /// The robot as other programs may have it, where that is not the one of the [`schema`](TaskInfo::schema): of these
-    /// parameters where bodies are made of them, else, or without parameters, the experiment's own.
+    /// Returns the robot for other programs, if it differs from the one of the [`schema`](TaskInfo::schema). Bodies
+    /// that evolve are built from the parameters.
     ///
-    /// Its MuJoCo model steps as [`MjcfOptions::default`] does, unless [`mjcf_options`](Self::mjcf_options) says otherwise.
+    /// Its MuJoCo model steps by [`MjcfOptions::default`] unless [`mjcf_options`](Self::mjcf_options) differs.
     fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
         let _ = parameters;
         None
@@ -146,13 +146,13 @@ pub trait Exports {
         None
     }
 
-    /// The same for an individual of the population of this number, where the channels of populations stand for other things.
+    /// Returns the controller of an individual of a population, if the channels of populations differ.
     fn controller_of(&self, population: usize, parameters: &[f32]) -> Option<ControllerExport> {
         let _ = population;
         self.controller(parameters)
     }
 
-    /// How an episode starts.
+    /// Returns the start of an episode.
     fn start(&self, id: EpisodeId) -> Option<StartExport> {
         let _ = id;
         None
@@ -161,7 +161,8 @@ pub trait Exports {
 
 /// Bodies that are made of parameters.
 pub trait Bodies {
-    /// The schema of one evaluation's episodes; its channels are those of [`TaskInfo::schema`], whatever the parameters.
+    /// Returns the schema of one evaluation's episodes. Its channels are those of [`TaskInfo::schema`] for any
+    /// parameters.
     fn schema_with(&self, parameters: &[f32]) -> Schema;
 }
 
@@ -172,25 +173,26 @@ pub struct Evaluation<'p> {
     pub number: usize,
     /// The parameters \[[`TaskInfo::parameters`]\].
     pub parameters: &'p [f32],
-    /// Those of its opponents, one of each other population in the order of the populations; empty where there is only one.
+    /// Parameters of the opponents, one of each other population in order. Empty for a single population.
     ///
     /// Which population the parameters are of follows from the episode, [`EpisodeId::population`].
     pub opponents: &'p [&'p [f32]],
-    /// What was observed in all generations before, where observations are to be normalised \[[`TaskInfo::observations`]\].
+    /// Statistics of the observations of all previous generations, if observations are normalized
+    /// \[[`TaskInfo::observations`]\].
     pub normalisation: Option<&'p ObservationStatistics>,
     /// Which episode.
     pub id: EpisodeId,
-    /// The case of a test protocol that it belongs to \[[`TaskInfo::protocols`]\]; none in a run and in a plain test.
+    /// Case of a test protocol \[[`TaskInfo::protocols`]\]. None in a run and in a plain test.
     ///
     /// All cases of a protocol have the same episodes, so that they differ in nothing but the case.
     pub case: Option<CaseId>,
-    /// What else is done to the controller, where a test asks for that \[[`TaskInfo::anatomy`]\].
+    /// Further change of the controller in a test \[[`TaskInfo::anatomy`]\].
     pub intervention: Option<&'p Intervention>,
-    /// Bodies that are put elsewhere in its course \[[`Evaluator::displaces`]\]; none in a run and in a test.
+    /// Bodies that are moved during the episode \[[`Evaluator::displaces`]\]. None in a run and in a test.
     pub displacements: &'p [Displacement],
-    /// Forces on bodies in its course \[[`Evaluator::pushes`]\]; none in a run and in a test.
+    /// Forces on bodies during the episode \[[`Evaluator::pushes`]\]. None in a run and in a test.
     pub pushes: &'p [Push],
-    /// Of several robots the one whose channels are recorded \[[`TaskInfo::robots`]\]; by default the individual's first.
+    /// Robot whose channels are recorded, of several \[[`TaskInfo::robots`]\]. By default the individual's first.
     pub watched: Option<u32>,
 }
 
@@ -214,35 +216,35 @@ impl<'p> Evaluation<'p> {
 
 /// Evaluates trials of an experiment in one thread: its robot, world and scratch memory.
 ///
-/// An outcome depends on the [`Evaluation`] alone, never on what was evaluated before: that is what makes runs repeatable,
-/// resumable and the same on any number of threads. A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set,
-/// so that no number is shared with any run; the individual is then the first of its population and the generation counts
-/// the earlier episodes of the same trial.
+/// An outcome depends on the [`Evaluation`] alone, never on previous evaluations. This makes runs repeatable, resumable
+/// and equal on any number of threads. A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set, so that
+/// no run shares its numbers. The individual is then the first of its population, and the generation counts the earlier
+/// episodes of the same trial.
 pub trait Evaluator: Task {
     /// Runs one trial from its start to its end.
     ///
-    /// What [`schema`](TaskInfo::schema) names goes to the recorder at every step if there is one; whether there is must
-    /// not change the outcome. A trial that broke down is [`Outcome::failed`]; one that panics counts as such, and this value is
-    /// then dropped and made again. [`InWorld`](crate::InWorld) ends a trial at its [step budget](TaskInfo::step_budget); a loop of
-    /// one's own has to end by itself.
+    /// A recorder receives the values of the [`schema`](TaskInfo::schema) at every step and must not change the
+    /// outcome. A trial that failed is [`Outcome::failed`]. A trial that panics counts as failed, and this value is
+    /// then dropped and built again. [`InWorld`](crate::InWorld) ends a trial at its [step
+    /// budget](TaskInfo::step_budget). A custom loop must end by itself.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
-    /// Whether bodies are put elsewhere where an evaluation says so; by default they are not.
+    /// Returns whether evaluations can move bodies. By default they cannot.
     fn displaces(&self) -> bool {
         false
     }
 
-    /// Whether bodies are pushed where an evaluation says so; by default they are not.
+    /// Returns whether evaluations can push bodies. By default they cannot.
     fn pushes(&self) -> bool {
         false
     }
 
-    /// How trials are evaluated side by side, if they can be.
+    /// Returns the evaluation in lanes, if there is one.
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         None
     }
 
-    /// How it is trained, where the strategy is [`Learning`](crate::Learning).
+    /// Returns the training for the strategy [`Learning`](crate::Learning).
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         None
     }
@@ -250,14 +252,14 @@ pub trait Evaluator: Task {
 
 /// Evaluates trials side by side, one in each lane.
 pub trait InLanes {
-    /// Gets ready for so many lanes; for one, nothing is kept.
+    /// Prepares for a number of lanes. With one lane nothing is kept.
     ///
     /// # Errors
     /// Whatever keeps the lanes from being built.
     fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error>;
 
-    /// Evaluates until `next` has no more; `done` takes the number of each evaluation with its outcome, which is what
-    /// [`Evaluator::evaluate`] would return.
+    /// Evaluates until `next` returns none. `done` receives the number of each evaluation and its outcome, equal to
+    /// that of [`Evaluator::evaluate`].
     ///
     /// `next` may be asked in any order of `done`: other threads draw from the same evaluations.
     fn evaluate_all<'p>(
@@ -272,17 +274,18 @@ pub trait Learner {
     /// The state from which learning starts: all that [`iterate`](Self::iterate) depends on besides seed and generation.
     fn initial_state(&self, seed: u64) -> Vec<f64>;
 
-    /// Changes the state by one iteration and says what it was like; `None` for a state that nothing can be learned from.
+    /// Changes the state by one iteration and returns its errors. Returns `None` for a state without anything to learn
+    /// from.
     ///
     /// The same state, seed and generation must become the same state, whatever this value did before.
     fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration>;
 
-    /// What has been learned in this state: a value for each of the task's [`parameters`](TaskInfo::parameters), which is evaluated
-    /// after it was rounded to the nearest gene.
+    /// Returns a value for each of the task's [`parameters`](TaskInfo::parameters). It is rounded to the nearest gene
+    /// and evaluated.
     fn learned(&self, state: &[f64]) -> Vec<f64>;
 }
 
-/// What an iteration was like, [`Learner::iterate`].
+/// Errors and successes of an iteration, [`Learner::iterate`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Iteration {
     /// Root of the mean squared error of motor values before it, on demonstrations that have never been learned from.

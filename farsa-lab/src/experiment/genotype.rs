@@ -1,12 +1,12 @@
-//! From genes to the parameters that they stand for.
+//! Decoding of genes into parameters.
 
 use farsa_evo::Population;
 use farsa_num::Scalar as _;
 
 use crate::experiment::parameter::Parameter;
 
-/// Genes of some bits, one for each parameter: 0 stands for the parameter's first end, the largest gene for the other,
-/// linear between. Real genes likewise: -1 stands for the first end, 1 for the other, and what lies beyond is reflected.
+/// One gene per parameter. An integer gene of some bits is linear: 0 is the parameter's first end, the largest gene the
+/// other. A real gene maps -1 to the first end and 1 to the other, and is reflected beyond.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Genotype {
     ends: Vec<[f64; 2]>,
@@ -34,13 +34,13 @@ impl Genotype {
         u16::MAX >> (u16::BITS - self.bits)
     }
 
-    /// The parameters of everyone; `None` for genomes of another length.
+    /// Decodes all individuals. Returns `None` for genomes of another length.
     pub(crate) fn decode_all(&self, genomes: &Population) -> Option<Vec<Vec<f32>>> {
         genomes.iter().map(|genes| self.decode(genes)).collect()
     }
 
-    /// The genes that come nearest to parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it; `None` for
-    /// another number of parameters.
+    /// Returns the genes nearest to parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it.
+    /// Returns `None` for another number of parameters.
     pub fn encode(&self, parameters: &[f64]) -> Option<Vec<u16>> {
         let largest = self.largest();
         let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
@@ -51,7 +51,7 @@ impl Genotype {
         (parameters.len() == self.ends.len()).then(|| parameters.iter().zip(&self.ends).map(gene).collect())
     }
 
-    /// The parameters \[[`genes`](Self::genes)\] that genes stand for; `None` for another number of genes.
+    /// Returns the parameters \[[`genes`](Self::genes)\] of integer genes. Returns `None` for another number of genes.
     ///
     /// Each is computed in f64, `first + (other - first) * gene / largest`, and rounded to f32 at the end: never outside
     /// its range, exact at both ends.
@@ -66,11 +66,11 @@ impl Genotype {
         (genes.len() == self.ends.len()).then(|| genes.iter().zip(&self.ends).map(value).collect())
     }
 
-    /// The parameters \[[`genes`](Self::genes)\] that real genes stand for; `None` for another number of genes, or one that is
-    /// not finite.
+    /// Returns the parameters \[[`genes`](Self::genes)\] of real genes. Returns `None` for another number of genes, or
+    /// one that is not finite.
     ///
-    /// Each is computed in f64 and rounded to f32 at the end, `first + (other - first) * (gene + 1) / 2`, of the gene that
-    /// the ends of its range, -1 and 1, reflect it to: never outside the parameter's range, exact at both ends.
+    /// Each is computed in f64 and rounded to f32 at the end: `first + (other - first) * (gene + 1) / 2`, after
+    /// reflection into -1 to 1. It is never outside the parameter's range, and exact at both ends.
     pub fn decode_reals(&self, genes: &[f64]) -> Option<Vec<f32>> {
         let value = |(&gene, &[first, other]): (&f64, &[f64; 2])| {
             if !gene.is_finite() {
@@ -85,8 +85,8 @@ impl Genotype {
         genes.iter().zip(&self.ends).map(value).collect()
     }
 
-    /// The real genes of parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it and 0 where both
-    /// ends are the same; `None` for another number of parameters.
+    /// Returns the real genes of parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it, and 0
+    /// if both ends are equal. Returns `None` for another number of parameters.
     pub fn encode_reals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
             let share = (parameter - first) / (other - first);
@@ -101,7 +101,7 @@ fn share(gene: f64) -> f64 {
     if (-1.0..=1.0).contains(&gene) {
         return 0.5 * (gene + 1.0);
     }
-    // The remainder is exact; the range there and back is 4 long.
+    // The remainder is exact. The range forth and back has length 4.
     let place = (gene % 4.0 + 5.0) % 4.0;
     0.5 * if place > 2.0 { 4.0 - place } else { place }
 }

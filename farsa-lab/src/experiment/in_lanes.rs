@@ -21,7 +21,7 @@ pub trait Batch {
     fn step(&mut self);
 }
 
-/// A batch of farsa-physics has these methods of its own.
+/// Implements the trait by the inherent methods of farsa-physics' batches.
 macro_rules! batch {
     ($($module:ident),*) => {$(
         impl Batch for $module::Batch {
@@ -46,10 +46,9 @@ batch!(articulated, arena);
 
 /// Runs episode after episode in the lanes of a batch until there are no more.
 ///
-/// Each of `episodes` has a lane of its own. `begin` makes an episode ready for its next start and returns which it is, or
-/// `None` when there is none left; `end` takes the return. A lane is filled again as soon as its episode ends, whatever
-/// the others are at, so every episode is the one that [`run_episode`](crate::run_episode) runs alone: lanes, batches and the order
-/// change nothing but time.
+/// Each of `episodes` has its own lane. `begin` prepares an episode for its next start and returns its id, or `None`
+/// after the last one. `end` takes the return. A lane is refilled as soon as its episode ends. So every episode equals
+/// the one that [`run_episode`](crate::run_episode) runs alone: lanes, batches and order change only the time.
 pub fn run_in_lanes<B, E>(
     episodes: &mut [E],
     batch: &mut B,
@@ -72,7 +71,7 @@ pub fn run_in_lanes<B, E>(
                 *running = false;
             }
             while !*running && more {
-                // Once there is none left, nobody asks again.
+                // After the last one `begin` is not called again.
                 let Some(id) = begin(episode) else {
                     more = false;
                     break;

@@ -13,9 +13,9 @@ use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::Outcome;
 
-/// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
+/// The episode of a task: it loads parameters before its start and returns its outcome after its end.
 pub trait Rollout: Task {
-    /// Gives the controllers, or whatever parameters are for, their values; false if they are none of the task.
+    /// Loads the parameters. Returns false if they do not fit the task.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool;
 
     /// Records the parameters before the first step: those of a network, for the page's picture of it.
@@ -103,9 +103,9 @@ pub struct InWorld<W, R> {
     budget: Option<u64>,
     make: Option<Make<R>>,
     lanes: Option<Box<dyn SideBySide<R>>>,
-    /// How bodies are put elsewhere, where they can be.
+    /// Moves bodies, if the world can.
     place: Option<Place<W>>,
-    /// How bodies are pushed, where they can be.
+    /// Pushes bodies, if the world can.
     apply: Option<Apply<W>>,
 }
 
@@ -132,7 +132,7 @@ impl<W, R> InWorld<W, R> {
         self
     }
 
-    /// And where an evaluation says so, bodies are put elsewhere.
+    /// Adds the ability to move bodies during an episode.
     #[must_use]
     pub fn with_displacements(self) -> Self
     where
@@ -141,7 +141,7 @@ impl<W, R> InWorld<W, R> {
         Self { place: Some(place), ..self }
     }
 
-    /// And where an evaluation says so, bodies are pushed.
+    /// Adds the ability to push bodies during an episode.
     #[must_use]
     pub fn with_pushes(self) -> Self
     where
@@ -236,7 +236,7 @@ where
         done: &mut dyn FnMut(usize, Outcome),
     ) {
         if let Some(lanes) = &mut self.lanes {
-            // In lanes nothing is put elsewhere or pushed.
+            // Lanes have no displacements or pushes.
             let mut alone = Vec::new();
             let mut plain = || loop {
                 let evaluation = next()?;

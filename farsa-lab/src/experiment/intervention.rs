@@ -1,4 +1,4 @@
-//! What a test does to a controller: neurons that are silent, inputs and links that are cut, noise.
+//! Changes of a controller in a test: silent neurons, cut inputs and links, noise.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use farsa_nn::Lesion;
 
 use crate::experiment::outcome::ChannelGroup;
 
-/// What a test does to a controller: [`Interventions::applied`](crate::Interventions::applied) says what that is in an
+/// A change of a controller in a test. [`Interventions::applied`](crate::Interventions::applied) returns that of an
 /// evaluation.
 ///
 /// Two steps of [`Rollout::load`](crate::Rollout::load) obey it: [`edited`](Self::edited) for the parameters, and
@@ -16,7 +16,7 @@ use crate::experiment::outcome::ChannelGroup;
 pub struct Intervention {
     /// Neurons that are held.
     pub lesions: Vec<Lesion>,
-    /// Inputs that have this value whatever is sensed; where observations are normalised, 0 is their mean.
+    /// Inputs with a fixed value. With normalized observations 0 is their mean.
     pub inputs: Vec<(Range<usize>, f32)>,
     /// Each input is changed at every step by a random number between minus and plus this.
     pub noise: f32,
@@ -60,7 +60,7 @@ impl Intervention {
         both
     }
 
-    /// The parameters of a network as they are with this; those that it has not are passed over.
+    /// Returns the parameters of a network with the change applied. Indices beyond the network are skipped.
     pub fn edited<'p>(&self, parameters: &'p [f32]) -> Cow<'p, [f32]> {
         if self.parameters.is_empty() {
             return Cow::Borrowed(parameters);

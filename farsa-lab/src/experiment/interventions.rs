@@ -39,7 +39,7 @@ impl Interventions {
 
     /// The same with the protocol `name` of cases that have an intervention each, after one that is called `intact`.
     ///
-    /// It is left out where the names of its cases cannot be told apart or shown.
+    /// The protocol is omitted if the names of its cases are equal or not printable.
     #[must_use]
     pub fn with_cases<R: Into<String>>(
         self,
@@ -85,13 +85,13 @@ impl Interventions {
         self.protocols.iter().map(|(protocol, _)| protocol.clone()).collect()
     }
 
-    /// What is done to the controller in an evaluation: by its case, and by the test itself.
+    /// Returns the change of an evaluation: that of its case and that of the test itself.
     pub fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
         let of_case = self.of(evaluation.case).unwrap_or(&NOTHING);
         evaluation.intervention.map_or(Cow::Borrowed(of_case), |other| Cow::Owned(of_case.and(other)))
     }
 
-    /// What is done in a case; none without a case.
+    /// Returns the change of a case, or none without a case.
     pub fn of(&self, case: Option<CaseId>) -> Option<&Intervention> {
         let CaseId { protocol, case } = case?;
         self.protocols.get(protocol)?.1.get(case)
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(all.of(at(2, 1)), Some(&Intervention::noise(0.25)));
         assert_eq!((all.of(at(3, 0)), all.of(at(1, 9)), all.named(None)), (None, None, None));
 
-        // What a test does is added to what its case does.
+        // The change of the test is added to that of the case.
         let plain = Evaluation::new(&[], crate::EpisodeId::default());
         let of_case = Evaluation { case: at(1, 2), ..plain };
         assert_eq!((&*all.applied(&plain), &*all.applied(&of_case)), (&NOTHING, &Intervention::cut(3..5)));

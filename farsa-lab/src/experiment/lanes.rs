@@ -1,4 +1,4 @@
-//! How many trials a thread runs side by side, and by which instructions.
+//! Number of lanes per thread, and their instructions.
 
 use farsa_num::Instructions;
 use farsa_physics::articulated::{Batch, LANES};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 
-/// So many trials side by side in each thread, by these instructions; every choice gives the same results.
+/// A number of trials side by side in each thread, and their instructions. Every choice gives the same results.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes {
     count: usize,
@@ -19,7 +19,7 @@ impl Lanes {
         Self { count: 1, instructions: Instructions::baseline() }
     }
 
-    /// So many trials side by side, 1 or one of [`LANES`], by these instructions.
+    /// Selects 1 lane or one of [`LANES`], with these instructions.
     ///
     /// # Errors
     /// [`Error::Usage`] for another number.
@@ -48,7 +48,7 @@ impl Lanes {
         self.instructions
     }
 
-    /// What was chosen, as the manifest tells it.
+    /// Returns the choice as the manifest stores it.
     pub(crate) fn info(&self) -> LanesInfo {
         let simd = if self.count == 1 { "none" } else { name(self.instructions) };
         LanesInfo { lanes: self.count, simd: simd.into() }
@@ -64,13 +64,13 @@ pub(crate) struct LanesInfo {
 }
 
 impl Default for LanesInfo {
-    /// What sessions did before there were lanes.
+    /// The value of sessions older than lanes.
     fn default() -> Self {
         Lanes::one().info()
     }
 }
 
-/// What the command line asks for.
+/// Lanes of a command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wanted {
     /// As many as the machine's instructions or the experiment make sensible, if there is no number.
@@ -91,16 +91,16 @@ fn name(instructions: Instructions) -> &'static str {
     }
 }
 
-/// How many worlds an instruction set steps at the least cost for each.
+/// Returns the number of worlds with the least cost per world.
 fn usual(instructions: Instructions) -> usize {
     if name(instructions) == SIMD[2] { LANES[1] } else { LANES[0] }
 }
 
 impl Wanted {
-    /// One trial after the other, for what nobody chose.
+    /// One lane, the default.
     pub(crate) const ONE: Self = Self { count: Some(1), simd: None };
 
-    /// What of it this machine has.
+    /// Selects from the instructions of this machine.
     ///
     /// # Errors
     /// [`Error::Usage`] for instructions that it lacks.

@@ -1,11 +1,11 @@
-//! An episode that ends at the latest after so many steps.
+//! An episode with a maximum number of steps.
 
 use farsa_body::Recorder;
 
 use crate::experiment::episode::{Episode, EpisodeId};
 use crate::experiment::outcome::{Failure, Outcome};
 
-/// An episode that is stopped when it has not ended after so many steps.
+/// An episode that is stopped after a maximum number of steps.
 pub(crate) struct Limited<E> {
     pub(crate) episode: E,
     budget: u64,
@@ -19,7 +19,7 @@ impl<E> Limited<E> {
         Self { episode, budget, left: budget, stopped: false }
     }
 
-    /// The outcome of an episode that was stopped; none of one that ended by itself.
+    /// Returns the outcome if the episode was stopped.
     pub(crate) fn stopped(&self) -> Option<Outcome> {
         let steps = u32::try_from(self.budget).unwrap_or(u32::MAX);
         let outcome = || Outcome { steps, failure: Some(Failure::Endless(self.budget)), ..Outcome::failed() };
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::experiment::episode::{NoWorld, run_episode};
 
-    /// Ends after so many steps.
+    /// Ends after a number of steps.
     struct Steps(u32, u32);
 
     impl Episode<NoWorld> for Steps {

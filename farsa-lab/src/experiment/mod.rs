@@ -1,57 +1,56 @@
-//! What an experiment is and how it is evaluated: the contract, and what helps to keep it.
-//!
-//! - `definition`: what an experiment is to the command: a name, a table of settings, and what evaluates it
-//! - `evaluator`: parameters go in, outcomes come out; what only some experiments can do
-//! - `anatomy`: the parts of a controller that a test can change, by name
-//! - `behaviour`: what an experiment says of an individual beside its fitness
-//! - `outcome`: what comes of a trial, and what is told of a robot and its controller
-//! - `parameter`: a number that evolution finds, with its range
-//! - `protocol`: tests of an individual, as tables of cases
-//! - `episode`: one trial in a world, and the loop that runs it
-//! - `disturbance`: bodies that are put elsewhere or pushed in the course of an episode
-//! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
-//! - `in_world`: an evaluator made of a world and an episode
-//! - `intervention`: what a test does to a controller: silent neurons, cut inputs and links, noise
-//! - `interventions`: test protocols that do such things
-//! - `lanes`: how many episodes a thread runs side by side, and by which instructions
-//! - `limited`: an episode that ends at the latest after so many steps
-//! - `genotype`: from genes to the parameters that they stand for
-//! - `network_parameters`: the parameters of a network with a bias and a leak for every neuron
-//! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
-//! - `normalised_controller`: a controller whose observations are normalised
-//! - `controlled`: an episode of one robot that a network controls, with an objective of one's own
-//! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
-//! - `network_export`: a network of any kind as plain data, and as bytes
-//! - `rescored`: an experiment that there is, under another fitness
-//! - `setting`: a setting of an experiment: its key, its default, and which values it takes
-//! - `settings`: the configuration of a run: the settings of an experiment and their values
-//! - `value`: values of settings
+//! The contract of experiments and its parts.
 
+/// Named parts of a controller that a test can change.
 mod anatomy;
+/// Objectives and measures of an individual in addition to its fitness.
 pub(crate) mod behaviour;
+/// An episode of one robot with a network and a custom objective.
 mod controlled;
+/// A controller, its channels and its starts as plain data for `farsa export`.
 pub(crate) mod controller_export;
+/// An experiment as the command sees it: a name, settings, and an evaluator.
 pub(crate) mod definition;
+/// Bodies that are moved or pushed during an episode.
 pub(crate) mod disturbance;
+/// One trial in a world, and its loop.
 pub(crate) mod episode;
+/// Tasks and evaluators: parameters in, outcomes out.
 pub(crate) mod evaluator;
+/// Decoding of genes into parameters.
 pub(crate) mod genotype;
+/// The loop over many episodes in the lanes of a batch of worlds.
 mod in_lanes;
+/// An evaluator made of a world and an episode.
 mod in_world;
+/// Changes of a controller in a test: silent neurons, cut inputs and links, noise.
 pub(crate) mod intervention;
+/// Test protocols of such changes.
 mod interventions;
+/// Number of lanes per thread, and their instructions.
 pub(crate) mod lanes;
+/// An episode with a maximum number of steps.
 mod limited;
+/// A network of any kind as plain data and as bytes.
 pub(crate) mod network_export;
+/// Parameters of a network with a bias and a leak for every neuron.
 mod network_parameters;
+/// The controller of a robot: its sensors, a network, and its motors.
 mod neurocontroller;
+/// A controller with normalized observations.
 mod normalised_controller;
+/// The outcome of a trial, and the description of a robot.
 pub(crate) mod outcome;
+/// A number that evolution sets, with its range.
 pub(crate) mod parameter;
+/// Tests of an individual as tables of cases.
 pub(crate) mod protocol;
+/// An existing experiment with another fitness.
 mod rescored;
+/// A setting: its key, default, and allowed values.
 mod setting;
+/// The configuration of a run: settings and their values.
 pub(crate) mod settings;
+/// Values of settings.
 mod value;
 
 pub use anatomy::{Anatomy, PartNames};

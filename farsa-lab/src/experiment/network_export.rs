@@ -8,15 +8,15 @@ use serde_json::{Value, json};
 
 /// A network with its parameters, each in the order of its layout.
 ///
-/// As JSON it is what a program needs to compute the same: its shape, and its tables of parameters by name. All kinds
-/// but the leaky network, which was the first, say their `kind`.
+/// As JSON it holds all that a program needs to compute the same numbers: its shape, and its parameter tables by name.
+/// All kinds but the leaky network, the first one, have a `kind`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NetworkExport {
     /// [`farsa_nn::LeakyNetwork`], with one hidden layer.
     ///
-    /// Its slope s is that of sigma(x) = 1 / (1 + exp(-s x)). The reading of the leak d, with y = sigma(net): `filter` is
-    /// H = d y + (1-d) H(t-1), `two-tap` d y + (1-d) y(t-1), `evonet` d H(t-1) + (1-d) y.
+    /// Its slope s is that of sigma(x) = 1 / (1 + exp(-s x)). The leak d, with y = sigma(net), has three readings.
+    /// `filter` is H = d y + (1-d) H(t-1), `two-tap` is d y + (1-d) y(t-1), and `evonet` is d H(t-1) + (1-d) y.
     Leaky {
         /// The layout.
         layout: LeakyLayout,
@@ -88,7 +88,7 @@ impl NetworkExport {
     /// The network as bytes of `farsa-nn` (docs/controller-format.md), with this hash of its channels.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] for parameters that are none of such a network.
+    /// [`BytesError::Parameters`] for parameters that do not fit the network.
     pub fn bytes(&self, channels: u64) -> Result<Vec<u8>, BytesError> {
         let mut bytes;
         match self {
@@ -238,7 +238,7 @@ fn group(group: &Group) -> Value {
     json!({"neurons": neurons, "activation": activation.name(), "slope": slope, "bias": bias, "gain": gain, "leak": leak})
 }
 
-/// A block by what it does; spans are \[first neuron, neurons\].
+/// A block by its effect. Spans are \[first neuron, neurons\].
 fn block(block: &Block) -> Value {
     match *block {
         Block::Connect { from, to, delay } => {

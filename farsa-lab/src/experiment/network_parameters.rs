@@ -5,7 +5,7 @@ use farsa_nn::{Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use crate::error::Error;
 use crate::experiment::parameter::Parameter;
 
-/// A network over memory of its own.
+/// A network that owns its memory.
 pub type OwnedNetwork = LeakyNetwork<Vec<f32>, Vec<f32>>;
 
 /// A network's parameters in their order: weights and biases from minus to plus `range`, leaks from `leaks[0]` to `leaks[1]`.

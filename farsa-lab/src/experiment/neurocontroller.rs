@@ -1,4 +1,4 @@
-//! What genes control a robot by: its sensors, a network, and its motors.
+//! The controller of a robot: its sensors, a network, and its motors.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::Protocol;
 
-/// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
+/// Sensors, a recurrent network, and motors: an episode adds the world and the reward.
 ///
 /// The network has one hidden layer, all linked to all ([`LeakyLayout`]), with leaks as filters. Its parameters are
 /// weights and biases, and leaks from 0 to 1. The loop stays the caller's:
@@ -60,7 +60,8 @@ pub struct Neurocontroller<S, M> {
 }
 
 impl<S: Channels, M: Channels> Neurocontroller<S, M> {
-    /// A network with so many hidden neurons between sensors and motors, its weights and biases from minus to plus `range`.
+    /// Builds a network with `hidden` hidden neurons between sensors and motors. Weights and biases range from minus to
+    /// plus `range`.
     ///
     /// # Errors
     /// [`Error::Other`] if the range is negative or not finite, or there is nothing to sense or to drive.
@@ -100,8 +101,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         &self.layout
     }
 
-    /// Gives the network its parameters and forgets what an earlier episode left in sensors, network and motors; false for
-    /// another number of parameters, which changes nothing.
+    /// Loads the network's parameters and resets sensors, network and motors. Returns false for another number of
+    /// parameters and changes nothing.
     pub fn load(&mut self, parameters: &[f32]) -> bool {
         if self.network.controller_mut().copy_parameters(parameters).is_err() {
             return false;
@@ -110,8 +111,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         true
     }
 
-    /// The same with the parameters of an evaluation, and with observations normalised where it says so; false for what is
-    /// none of this network.
+    /// Loads the parameters of an evaluation, with normalized observations if it has statistics. Returns false for
+    /// parameters or statistics that do not fit.
     pub fn load_evaluation(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let change = self.interventions.applied(evaluation).into_owned();
         let loaded = self.network.load(evaluation.normalisation) && self.load(&change.edited(evaluation.parameters));
@@ -119,15 +120,15 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         loaded
     }
 
-    /// The protocols `lesions` and `noise`, which [`load_evaluation`](Self::load_evaluation) obeys: each group of sensors is
-    /// cut, by the groups of the [`schema`](Self::schema) or one by one where it has none, and each hidden neuron is silent;
-    /// every input has noise up to 0.4.
+    /// Returns the protocols `lesions` and `noise`, which [`load_evaluation`](Self::load_evaluation) applies. `lesions`
+    /// cuts each group of sensors of the [`schema`](Self::schema), or each sensor without a group, and silences each
+    /// hidden neuron. `noise` adds up to 0.4 to every input.
     pub fn protocols(&self) -> Vec<Protocol> {
         self.interventions.protocols()
     }
 
-    /// What tests can change by name, which [`load_evaluation`](Self::load_evaluation) obeys: sensors by the groups of the
-    /// [`schema`](Self::schema), too.
+    /// Returns the named parts that tests can change, which [`load_evaluation`](Self::load_evaluation) applies. Sensors
+    /// also have the group names of the [`schema`](Self::schema).
     pub fn anatomy(&self) -> Anatomy {
         let sensors = groups(&self.schema).into_iter().map(|(group, inputs)| {
             // One that is in no group has its own name.
@@ -138,20 +139,20 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         Anatomy::new(&self.schema, &Description { sensors: sensors.collect(), ..Description::default() })
     }
 
-    /// What was sensed since [`load_evaluation`](Self::load_evaluation), where it is normalised: for
+    /// Returns the statistics since [`load_evaluation`](Self::load_evaluation), if observations are normalized, for
     /// [`Outcome::observed`](crate::Outcome::observed).
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// Forgets what an earlier episode left in sensors, network and motors.
+    /// Resets sensors, network and motors.
     pub fn reset(&mut self) {
         self.sensors.reset();
         self.network.reset();
         self.motors.reset();
     }
 
-    /// Senses, thinks and acts; the caller steps the world.
+    /// Reads the sensors, steps the network and drives the motors. The caller steps the world.
     pub fn act<W>(&mut self, world: &mut W)
     where
         W: ?Sized,
@@ -163,8 +164,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         self.motors.drive(&self.y, world);
     }
 
-    /// Records where the bodies of the schema are, what touches, and what was sensed, computed and done last; the
-    /// caller ends the tick, with [`Recorder::tick`].
+    /// Records the bodies of the schema, contacts, and the last sensor, neuron and output values. The caller ends the
+    /// tick with [`Recorder::tick`].
     pub fn record<W>(&self, world: &W, recorder: &mut dyn Recorder)
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
@@ -180,8 +181,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         recorder.parameters(self.network.controller().parameters());
     }
 
-    /// The same with this schema, to which the network is added; sensors and outputs that it does not name are numbered
-    /// from 1.
+    /// Replaces the schema and adds the network to it. Unnamed sensors and outputs are numbered from 1.
     #[must_use]
     pub fn with_schema(self, schema: Schema) -> Self {
         let numbered = |count: usize| (1..=count).map(|number| number.to_string()).collect::<Vec<_>>();
@@ -194,12 +194,12 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         Self { schema, interventions, ..self }
     }
 
-    /// What [`record`](Self::record) and the caller record, by name.
+    /// Returns the schema of the recording.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// What `farsa info` tells of it, for trials of so many steps of `step_seconds` \[s\].
+    /// Returns the description for `farsa info`, for trials of `steps` steps of `step_seconds` \[s\].
     pub fn description(&self, steps: usize, step_seconds: f64) -> Description {
         let (inputs, outputs) = (self.x.len(), self.y.len());
         Description {
@@ -212,17 +212,17 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         }
     }
 
-    /// What was sensed last \[sensors\].
+    /// Returns the last sensor values \[sensors\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What was done last \[outputs\].
+    /// Returns the last outputs \[outputs\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
 
-    /// The sensors, such as to give a trial noise of its own.
+    /// Returns the sensors, for example to set the noise of a trial.
     pub fn sensors_mut(&mut self) -> &mut S {
         &mut self.sensors
     }
@@ -242,7 +242,7 @@ fn groups(schema: &Schema) -> Vec<(String, Range<usize>)> {
     groups
 }
 
-/// The protocols of a network with these sensors and so many hidden neurons.
+/// Builds the protocols of a network with these sensors and `hidden` hidden neurons.
 fn interventions(schema: &Schema, hidden: usize) -> Interventions {
     let neurons = (0..hidden).map(|neuron| (format!("neuron {}", neuron + 1), neuron));
     Interventions::default().with_lesions(groups(schema), neurons).with_noise(&Interventions::NOISE)
@@ -289,7 +289,7 @@ mod tests {
         let mut motor = TorqueMotor::new(ActuatorId(0), 20.0).unwrap();
         let (mut x, mut y) = ([0.0; 2], [0.0; 1]);
 
-        // The second episode knows nothing of the first.
+        // The second episode does not depend on the first.
         for _life in 0..2 {
             network.reset();
             control = control.with_schema(Schema { bodies: vec!["point".into()], ..Schema::from_scalars(["t"]) });

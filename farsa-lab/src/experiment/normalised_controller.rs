@@ -10,12 +10,11 @@ use crate::experiment::intervention::Intervention;
 /// The most that a normalised observation is away from 0, in standard deviations.
 const LIMIT: f32 = 10.0;
 
-/// A controller that takes observations as they are or, where the evaluation says so, normalised by the mean and the
-/// deviation of earlier ones.
+/// A controller with raw observations, or with observations normalized by the mean and the deviation of earlier ones.
 ///
-/// An evaluation that normalises also wants to know what was observed: [`observed`](Self::observed) goes into
-/// [`Outcome::observed`](crate::Outcome::observed). An evaluation that does not changes no bit of what the controller
-/// computes.
+/// An evaluation with statistics also collects statistics: [`observed`](Self::observed) goes into
+/// [`Outcome::observed`](crate::Outcome::observed). An evaluation without statistics leaves every bit of the
+/// controller's output unchanged.
 ///
 /// Source: V2 of \[Mania2018\] algorithm 1. As there, nothing is changed before there are two observations. Deviations:
 /// those of [`ObservationStatistics`], and a limit of 10 standard deviations.
@@ -44,10 +43,10 @@ const LIMIT: f32 = 10.0;
 #[derive(Clone, Debug)]
 pub struct NormalisedController<C> {
     controller: C,
-    /// What was observed before, and since [`load`](Self::load); none where nothing is normalised.
+    /// Statistics of earlier observations, and since [`load`](Self::load). None without normalization.
     statistics: Option<[ObservationStatistics; 2]>,
     x: Vec<f32>,
-    /// What a test does to it.
+    /// Change of the controller in a test.
     changed: Option<Changed<C>>,
 }
 
@@ -86,8 +85,8 @@ impl<C: Controller> NormalisedController<C> {
         Self { controller, statistics: None, x, changed: None }
     }
 
-    /// Normalises by what was observed before, or does not normalise, and forgets what was observed since; false for
-    /// statistics of other channels than the controller's inputs, which change nothing. No intervention stays.
+    /// Loads statistics of earlier observations, or none, and discards the collected ones. Removes any intervention.
+    /// Returns false for statistics of another number of channels and changes nothing.
     pub fn load(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.changed = None;
         let Some(before) = before else {
@@ -101,17 +100,17 @@ impl<C: Controller> NormalisedController<C> {
         true
     }
 
-    /// What was observed since [`load`](Self::load), before it was normalised; none where it is not.
+    /// Returns the statistics of raw observations since [`load`](Self::load). None without normalization.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.statistics.as_ref().map(|[_, since]| since)
     }
 
-    /// Changes what the controller senses and what its neurons do until the next [`load`](Self::load); the parameters of the
-    /// intervention are the caller's to change, [`Intervention::edited`].
+    /// Changes inputs and neurons until the next [`load`](Self::load). The caller edits the parameters with
+    /// [`Intervention::edited`].
     ///
-    /// The noise is drawn from the stream of [`Domain::Network`] of the episode and the number of the robot, from 0: the same in
-    /// every case of a protocol. It comes after the observations are normalised, and so do inputs that are held; what is
-    /// [`observed`](Self::observed) is without.
+    /// The noise is drawn from the stream of [`Domain::Network`] of the episode and the robot's number, from 0. It is
+    /// the same in every case of a protocol. Noise and held inputs are applied after normalization and are not part of
+    /// [`observed`](Self::observed).
     pub fn intervene(&mut self, intervention: &Intervention, id: EpisodeId, robot: u32)
     where
         C: Ablatable,
@@ -144,7 +143,7 @@ impl<C: Controller> Controller for NormalisedController<C> {
         self.controller.outputs()
     }
 
-    /// Forgets what the controller remembers; what was observed stays.
+    /// Resets the controller. The collected statistics stay.
     fn reset(&mut self) {
         self.controller.reset();
     }
@@ -180,7 +179,7 @@ mod tests {
     use super::*;
     use farsa_nn::{Leak, LeakyLayout, LeakyNetwork};
 
-    /// Two inputs, two hidden neurons, one output; all weights are 1.
+    /// Two inputs, two hidden neurons, one output. All weights are 1.
     fn network() -> NormalisedController<LeakyNetwork<Vec<f32>, Vec<f32>>> {
         let layout = LeakyLayout::new(2, 2, 1);
         let (parameters, state) = (vec![1.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
@@ -209,7 +208,7 @@ mod tests {
         control.intervene(&Intervention::default(), id, 0);
         assert_eq!((&response(&mut control, [0.5, 0.0]), &response(&mut control, [0.5, 0.9])), (&cut, &intact));
         assert_ne!(cut, intact);
-        // With all hidden neurons silent the output is that of its own sum alone: half of the range, whatever is sensed.
+        // With all hidden neurons silent the output has only its own sum: half of the range for any input.
         let silent = Intervention { lesions: vec![Lesion::new(0), Lesion::new(1)], ..Intervention::default() };
         control.intervene(&silent, id, 0);
         assert_eq!(response(&mut control, [0.5, 0.9]), [0.5; 5]);
@@ -224,7 +223,7 @@ mod tests {
         let first = noisy(0.3, id, 0);
         assert!(first != intact && first == noisy(0.3, id, 0) && noisy(0.0, id, 0) == intact);
         assert!(first != noisy(0.3, EpisodeId { trial: 4, ..id }, 0) && first != noisy(0.3, id, 1));
-        // An input beyond the network's is none; what is loaded anew is intact.
+        // An input beyond the network's is ignored. Loading restores the intact controller.
         control.intervene(&Intervention::cut(1..9), id, 0);
         assert_eq!(response(&mut control, [0.5, 0.9]), cut);
         assert!(control.load(None));
@@ -240,7 +239,7 @@ mod tests {
         assert!(control.load(Some(&before)));
         control.intervene(&Intervention::cut(1..2), EpisodeId::default(), 0);
         assert_eq!(response(&mut control, [2.5, 35.0]), mean);
-        // What was observed is what there was.
+        // The statistics are those of the inputs.
         assert_eq!(control.observed().unwrap().mean(), [2.5, 35.0]);
     }
 
@@ -287,7 +286,7 @@ mod tests {
         }
         control.reset();
         assert_eq!(control.observed(), Some(&statistics(&seen)));
-        // Another evaluation knows nothing of this one.
+        // Another evaluation does not depend on this one.
         assert!(control.load(Some(&before)));
         assert_eq!(control.observed().unwrap().count(), 0);
     }

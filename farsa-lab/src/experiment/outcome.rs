@@ -1,24 +1,25 @@
-//! What comes of a trial, and what is told of a robot and its controller.
+//! The outcome of a trial, and the description of a robot and its controller.
 
 use std::fmt;
 
 use farsa_evo::ObservationStatistics;
 
-/// What came of one trial.
+/// The outcome of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
-    /// The terms of the fitness, named by [`TaskInfo::terms`](crate::TaskInfo::terms); a term that is not finite makes the individual a failed one.
+    /// Terms of the fitness, named by [`TaskInfo::terms`](crate::TaskInfo::terms). A term that is not finite makes the
+    /// individual a failed one.
     pub terms: Vec<f64>,
     /// Steps of the episode.
     pub steps: u32,
-    /// Whether the trial succeeded, by a definition that may be stricter than the fitness.
+    /// Success of the trial. The definition may be stricter than the fitness.
     pub success: bool,
-    /// What else `farsa test` tells about the trial, by name: `("phase", "lift".into())`; the same names in every trial.
+    /// Further results for `farsa test` by name, such as `("phase", "lift".into())`. Every trial has the same names.
     pub notes: Vec<(&'static str, Note)>,
-    /// What the controller observed, where the [`Evaluation`](crate::Evaluation) normalises observations: what
-    /// [`NormalisedController::observed`](crate::NormalisedController::observed) says.
+    /// Statistics of the observations if the [`Evaluation`](crate::Evaluation) normalizes them, from
+    /// [`NormalisedController::observed`](crate::NormalisedController::observed).
     pub observed: Option<ObservationStatistics>,
-    /// Why the trial failed, where that is known; a trial with a failure counts as failed whatever its terms are.
+    /// Reason of a failure. A trial with a reason counts as failed whatever its terms are.
     pub failure: Option<Failure>,
 }
 
@@ -28,7 +29,7 @@ pub struct Outcome {
 pub enum Failure {
     /// It panicked: the message and the place in the source.
     Panicked(String),
-    /// It had not ended after so many steps, [`TaskInfo::step_budget`](crate::TaskInfo::step_budget).
+    /// Not ended after this number of steps, [`TaskInfo::step_budget`](crate::TaskInfo::step_budget).
     Endless(u64),
 }
 
@@ -52,12 +53,12 @@ impl Outcome {
         Self { failure: Some(Failure::Panicked(why.into())), ..Self::failed() }
     }
 
-    /// Whether nothing failed and all terms are finite.
+    /// Returns whether nothing failed and all terms are finite.
     pub fn is_finite(&self) -> bool {
         self.failure.is_none() && self.terms.iter().all(|term| term.is_finite())
     }
 
-    /// Why the trial counts as failed, in words, if it does; `names` are those of the terms.
+    /// Returns the reason of a failure as text. `names` holds the names of the terms.
     pub(crate) fn why_failed(&self, names: &[String]) -> Option<String> {
         if let Some(failure) = &self.failure {
             return Some(failure.to_string());
@@ -76,9 +77,9 @@ pub fn mean_of_trials(trials: &[Outcome]) -> f64 {
 /// A value of [`Outcome::notes`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Note {
-    /// A quantity; `farsa test` gives its mean.
+    /// A quantity. `farsa test` prints its mean.
     Number(f64),
-    /// One of a few words; `farsa test` counts them.
+    /// One of a few words. `farsa test` counts them.
     Text(String),
 }
 
@@ -94,7 +95,7 @@ impl From<&str> for Note {
     }
 }
 
-/// What `farsa info` tells about a robot and its controller.
+/// The robot and its controller in `farsa info`.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct Description {
     /// The sensors in the order of the network's inputs.
@@ -107,18 +108,18 @@ pub struct Description {
     pub parameters: usize,
     /// Most steps of a trial.
     pub steps: usize,
-    /// Time between two steps \[s\]; 0 if the experiment has no clock.
+    /// Time between two steps \[s\]. 0 for an experiment without a clock.
     pub step_seconds: f64,
 }
 
 /// A group of sensor or motor channels.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct ChannelGroup {
-    /// What they are called.
+    /// Name of the group.
     pub name: String,
-    /// How many there are.
+    /// Number of channels.
     pub count: usize,
-    /// What they hold, with unit and range.
+    /// Content with unit and range.
     pub meaning: String,
 }
 

@@ -1,11 +1,11 @@
 //! A number that evolution finds.
 
-/// A number that an experiment wants, such as a weight of a network or the length of a leg.
+/// A number that evolution sets, such as a weight of a network or the length of a leg.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// What it is called.
+    /// Name of the parameter.
     pub name: String,
-    /// Its range, from the end that a gene of 0 stands for to the other; it may fall.
+    /// Range, from the end of gene 0 to the other. It may fall.
     pub ends: [f64; 2],
 }
 

@@ -15,8 +15,8 @@ const LONGEST: [usize; 2] = [64, 120];
 
 /// A test of an individual: a table of cases, each of which is run on the same starts.
 ///
-/// `farsa test DIR --protocol NAME` runs it; the experiment is told in [`Evaluation::case`](crate::Evaluation::case) which case
-/// a trial belongs to. A list of cases is a table of one column.
+/// `farsa test DIR --protocol NAME` runs it, and [`Evaluation::case`](crate::Evaluation::case) names the case of a
+/// trial. A list of cases is a table of one column.
 ///
 /// ```
 /// use farsa_lab::Protocol;
@@ -33,28 +33,28 @@ const LONGEST: [usize; 2] = [64, 120];
 pub struct Protocol {
     /// Its name, of small letters, digits and hyphens.
     pub name: String,
-    /// What it tests, in one line.
+    /// Purpose, in one line.
     pub summary: String,
     /// Trials of each case where no others are asked for.
     pub trials: u32,
-    /// What rows and columns are: `["action", "object"]`; empty where nothing need be said.
+    /// Titles of rows and columns: `["action", "object"]`. Empty for none.
     pub axes: [String; 2],
-    /// The cells of the table, in the order in which they are run and shown; rows and columns are shown in the order in which
-    /// they come first here. A table may have holes.
+    /// Cells of the table, in the order of evaluation. Rows and columns are shown in order of first appearance. A table
+    /// may have holes.
     pub cases: Vec<Case>,
-    /// The neurons of the [`Schema`](farsa_view::Schema) that are the internal state, of which the first trials of each case are
-    /// recorded and reports draw the first two principal components; empty where nothing is recorded.
+    /// Neurons of the [`Schema`](farsa_view::Schema) that form the internal state. The first trials of each case are
+    /// recorded, and reports draw the first two principal components. Empty for no recording.
     pub states: Range<usize>,
 }
 
 /// A cell of a protocol's table.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Case {
-    /// The row it stands in.
+    /// Row of the case.
     pub row: String,
-    /// The column; empty in a list.
+    /// Column of the case. Empty in a list.
     pub column: String,
-    /// Whether nothing of the kind was among the trials that the individual evolved with.
+    /// True if the case was absent from the trials of evolution.
     pub held_out: bool,
 }
 
@@ -64,7 +64,7 @@ impl Case {
         Self { row: row.into(), column: column.into(), held_out: false }
     }
 
-    /// What it is called in a line of text: `TOUCH red`.
+    /// Returns the name in a line of text: `TOUCH red`.
     pub fn name(&self) -> String {
         if self.column.is_empty() { self.row.clone() } else { format!("{} {}", self.row, self.column) }
     }
@@ -111,7 +111,7 @@ impl Protocol {
         Self { cases, ..Self::new(name, summary) }
     }
 
-    /// The same with so many trials of each case.
+    /// Sets the number of trials per case.
     #[must_use]
     pub fn with_trials(self, trials: u32) -> Self {
         Self { trials, ..self }
@@ -175,7 +175,7 @@ impl Protocol {
         found.ok_or_else(|| Error::unknown(&place, "case", name, names.iter().map(String::as_str)))
     }
 
-    /// Refuses protocols of which a name is none or is there twice, and those without cases or trials.
+    /// Checks the names, cases and trials of all protocols.
     ///
     /// # Errors
     /// [`Error::Other`] that names the protocol and what is wrong with it.
@@ -193,7 +193,7 @@ impl Protocol {
         Ok(())
     }
 
-    /// What is wrong with it by itself.
+    /// Checks this protocol by itself.
     fn wrong(&self) -> Option<String> {
         let word = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
         let [name, place] = LONGEST;

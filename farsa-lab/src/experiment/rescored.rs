@@ -8,7 +8,7 @@ use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLan
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Outcome, mean_of_trials};
 
-/// Evaluates as another evaluator does, and puts terms of its own in the place of the outcomes'.
+/// An evaluator with the terms of its outcomes replaced.
 ///
 /// All else is the other's: parameters, populations, lanes, exports. The fitness is the mean of the terms' sums over the trials.
 pub struct Rescored {
@@ -31,7 +31,7 @@ impl Rescored {
     }
 }
 
-/// The outcome with other terms; one that failed stays failed.
+/// Replaces the terms of an outcome. A failed outcome stays failed.
 fn rescore(score: &Score, outcome: Outcome) -> Outcome {
     if outcome.is_finite() { Outcome { terms: score(&outcome), ..outcome } } else { outcome }
 }

@@ -17,7 +17,7 @@ pub enum Source {
     Given,
     /// Follows from what the source states.
     Derived,
-    /// Ours: the source does not say.
+    /// Chosen here: the source does not state it.
     #[default]
     Chosen,
 }
@@ -98,28 +98,28 @@ impl Setting {
         self
     }
 
-    /// Says that the default is stated by the experiment's source.
+    /// States that the default is given by the experiment's source.
     pub fn given(mut self) -> Self {
         self.source = Source::Given;
         self
     }
 
-    /// Says that the default follows from what the source states.
+    /// States that the default follows from the source.
     pub fn derived(mut self) -> Self {
         self.source = Source::Derived;
         self
     }
 
-    /// Adds one sentence that says what it is and, for a chosen default, why that.
+    /// Adds one sentence of documentation. For a chosen default it gives the reason.
     pub fn doc(mut self, doc: &str) -> Self {
         self.doc = doc.into();
         self
     }
 
-    /// The same with another default, for an experiment that gives a strategy's setting one of its own.
+    /// Replaces the default, for an experiment that has its own default of a strategy's setting.
     ///
     /// # Errors
-    /// What is wrong with a value that it cannot have.
+    /// Checks the limits of a value and returns the fault as text.
     pub fn with_default(&self, value: Value) -> Result<Self, String> {
         Ok(Self { default: self.check(value)?, ..self.clone() })
     }
@@ -134,7 +134,7 @@ impl Setting {
         &self.default
     }
 
-    /// The unit; empty if there is none.
+    /// Returns the unit. Empty for none.
     pub fn unit_name(&self) -> &str {
         &self.unit
     }
@@ -144,7 +144,7 @@ impl Setting {
         self.source
     }
 
-    /// What it is.
+    /// Returns the documentation.
     pub fn doc_text(&self) -> &str {
         &self.doc
     }
@@ -173,13 +173,13 @@ impl Setting {
         }
     }
 
-    /// Checks a value; a whole number is taken where a number is wanted.
+    /// Checks a value. A whole number is accepted as a number.
     pub(super) fn check(&self, value: Value) -> Result<Value, String> {
         let outside = |x: &dyn fmt::Display| Err(format!("{x} is outside {}", self.allowed()));
         let shown = |value: &Value| shortened(&value.to_string()).into_owned();
         match (&self.allowed, value) {
             (Allowed::Flag, value @ Value::Flag(_)) | (Allowed::Text, value @ Value::Word(_)) => Ok(value),
-            // What was written is no longer known: 1.50 and 1.5 are one number, but not one name of a file.
+            // The written digits are lost: 1.50 and 1.5 are one number, but two names of files.
             (Allowed::Text, value) => Err(format!("{0} is not a text; write it in quotes: \"{0}\"", shown(&value))),
             (Allowed::Whole(range), Value::Whole(n)) if range.contains(&n) => Ok(Value::Whole(n)),
             (Allowed::Whole(_), Value::Whole(n)) => outside(&n),

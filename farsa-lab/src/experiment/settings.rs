@@ -19,8 +19,8 @@ impl Settings {
     /// The defaults of a table.
     ///
     /// # Errors
-    /// [`Error::Setting`] when a key is not of the form `section.name`, stands twice, or has a default outside its own
-    /// limits: mistakes in the experiment.
+    /// [`Error::Setting`] if a key is not of the form `section.name`, appears twice, or has a default outside its
+    /// limits. These are mistakes in the experiment.
     pub fn new(table: Vec<Setting>) -> Result<Self, Error> {
         let mut values = BTreeMap::new();
         for setting in &table {
@@ -41,10 +41,10 @@ impl Settings {
         &self.table
     }
 
-    /// Sets a value; `place` says where it stands, for the error (`my.toml line 3`, `--set`).
+    /// Sets a value. `place` is its location for the error (`my.toml line 3`, `--set`).
     ///
     /// # Errors
-    /// Those of [`find`](Self::find), and [`Error::Setting`] when the value is not allowed; nothing is then changed.
+    /// As for [`find`](Self::find), and [`Error::Setting`] if the value is not allowed. Nothing changes on an error.
     pub fn set(&mut self, place: &str, key: &str, value: Value) -> Result<(), Error> {
         let value = self.find(place, key)?.check(value).map_err(|why| Error::Setting {
             place: place.into(),
@@ -55,10 +55,10 @@ impl Settings {
         Ok(())
     }
 
-    /// The setting of a key; `place` says where that stands, for the error.
+    /// Returns the setting of a key. `place` is its location for the error.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest key, or [`Error::Setting`] for what is chosen elsewhere, such as a strategy.
+    /// [`Error::Setting`] with the nearest key, or with the right option for a choice such as the strategy.
     pub fn find(&self, place: &str, key: &str) -> Result<&Setting, Error> {
         self.table.iter().find(|setting| setting.key() == key).ok_or_else(|| match elsewhere(key) {
             Some(why) => Error::Setting { place: place.into(), key: key.into(), why: why.into() },
@@ -66,7 +66,7 @@ impl Settings {
         })
     }
 
-    /// Whether there is a section of this name, or some within it.
+    /// Checks that there is a section of this name, or one within it.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest section.
@@ -77,7 +77,7 @@ impl Settings {
         if sections().any(within) { Ok(()) } else { Err(Error::unknown(place, "section", name, sections())) }
     }
 
-    /// Whether the table has such a key.
+    /// Returns whether the table has this key.
     pub fn has(&self, key: &str) -> bool {
         self.values.contains_key(key)
     }
@@ -178,13 +178,13 @@ impl Settings {
     }
 }
 
-/// Whether a key can stand in a table of a TOML file without quotes.
+/// Returns whether a key is valid in a TOML table without quotes.
 fn is_key(key: &str) -> bool {
     let bare = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     key.contains('.') && key.split('.').all(|part| !part.is_empty() && part.chars().all(bare))
 }
 
-/// How a run is told what is no setting of it, by the last part of a key that asks for it.
+/// Returns the message for a key that is an option and not a setting, by its last part.
 fn elsewhere(key: &str) -> Option<&'static str> {
     match key.rsplit('.').next()? {
         "strategy" | "algorithm" => {
@@ -270,7 +270,7 @@ mod tests {
         let long = wrong("noise.on", Value::Word("a".repeat(1 << 20)));
         assert_eq!(long, format!("--set: `noise.on`: \"{}... is not true or false", "a".repeat(199)));
         assert_eq!(wrong("noise.no", Value::Flag(true)), "--set: unknown key `noise.no`; the nearest is `noise.on`");
-        // What is asked for elsewhere; a setting that has such a name is one.
+        // Keys that are options. A setting of the same name is a setting.
         for (key, option) in [
             ("evolution.strategy", "`--strategy`"),
             ("search.algorithm", "`--strategy`"),

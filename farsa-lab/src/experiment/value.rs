@@ -55,7 +55,7 @@ pub(crate) struct Paragraph<'t>(pub(crate) &'t str);
 impl fmt::Display for Paragraph<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(text) = self;
-        // What a literal text cannot hold as it is.
+        // Characters that a literal text cannot hold.
         if text.contains("'''")
             || text.ends_with('\'')
             || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t')

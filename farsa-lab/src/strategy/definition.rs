@@ -1,4 +1,4 @@
-//! What the command has to know of a strategy.
+//! The interface between a strategy and the command.
 
 use farsa_evo::coevolution::Populations;
 use farsa_evo::{EvoError, Snapshot, Strategy};
@@ -9,12 +9,12 @@ use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::search::Search;
 use crate::strategy::settings::NORMALISE;
 
-/// A strategy as the command knows it: a name, a table of settings and a function that makes one.
+/// A strategy as the command sees it: a name, a table of settings and a constructor.
 ///
-/// The strategy itself is a [`farsa_evo::Strategy`]: three methods. With both traits the command runs it, writes its
-/// checkpoints, goes on after an interruption, and replays any individual of any generation. An experiment names the one it
-/// is run with, [`Experiment::strategy`](crate::Experiment::strategy); `--strategy NAME` gives it another of those that the
-/// command knows, [`strategies`](crate::strategies) and those of [`Laboratory::with_strategy`](crate::Laboratory::with_strategy).
+/// The strategy itself is a [`farsa_evo::Strategy`] of three methods. With both traits the command runs it, writes its
+/// checkpoints, resumes it, and replays any individual of any generation.
+/// [`Experiment::strategy`](crate::Experiment::strategy) names the default of an experiment. `--strategy NAME` selects
+/// another of [`strategies`](crate::strategies) or of [`Laboratory::with_strategy`](crate::Laboratory::with_strategy).
 ///
 /// ```
 /// use std::process::ExitCode;
@@ -50,12 +50,13 @@ pub trait StrategyDefinition: Sync {
     /// The name: lower-case letters, digits and hyphens.
     fn name(&self) -> &'static str;
 
-    /// What it does, in one line with its source; by default nothing is said.
+    /// Returns the method in one line with its source. By default empty.
     fn summary(&self) -> &'static str {
         ""
     }
 
-    /// Its settings with their defaults, `evolution.generations` among them; an experiment may have other defaults.
+    /// Returns the settings with their defaults, `evolution.generations` among them. An experiment may have other
+    /// defaults.
     fn settings(&self) -> Vec<Setting>;
 
     /// Makes the strategy, at its first generation.
@@ -64,20 +65,20 @@ pub trait StrategyDefinition: Sync {
     /// [`Error::setting`] for values that do not go together, [`Error::Other`] for a problem that it cannot search.
     fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error>;
 
-    /// Whether observations are normalised by what was observed in all generations before, where the experiment can
-    /// ([`TaskInfo::observations`](crate::TaskInfo::observations)); by default what a setting `strategy.normalise_observations`
-    /// says, if there is one.
+    /// Returns whether observations are normalized by those of all previous generations, if the experiment can
+    /// ([`TaskInfo::observations`](crate::TaskInfo::observations)). By default the value of the setting
+    /// `strategy.normalise_observations`, if there is one.
     fn normalises_observations(&self, settings: &Settings) -> bool {
         settings.has(NORMALISE) && settings.flag(NORMALISE).unwrap_or(false)
     }
 
-    /// How [`Strategy::diagnostics`] are written and drawn, where the strategy has some.
+    /// Returns the form of [`Strategy::diagnostics`] in files and pictures, if there are any.
     fn diagnostics(&self) -> Option<Diagnostics> {
         None
     }
 }
 
-/// What a strategy is made for.
+/// The problem that a strategy is built for.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct StrategyStart<'s> {
@@ -127,7 +128,7 @@ impl StrategyStart<'_> {
     /// A search over words of each population by the strategy that `search` makes of a seed.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what [`EvoError`] says.
+    /// [`Error::Usage`] with the text of [`EvoError`].
     pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
     where
         S: Strategy + Snapshot + 'static,
@@ -142,7 +143,7 @@ impl StrategyStart<'_> {
     /// A search over reals of each population by the strategy that `search` makes of a seed.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what [`EvoError`] says.
+    /// [`Error::Usage`] with the text of [`EvoError`].
     pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
     where
         S: Strategy<f64> + Snapshot + 'static,
@@ -155,17 +156,17 @@ impl StrategyStart<'_> {
     }
 }
 
-/// What is wrong with the values of a strategy's settings.
+/// Converts an error about the values of a strategy's settings.
 fn refused(error: EvoError) -> Error {
     Error::Usage(error.to_string())
 }
 
-/// A table of numbers about each generation that a strategy tells beside the fitness, `FILE.csv`, and its picture, `FILE.svg`.
+/// A table of a strategy's numbers about each generation, `FILE.csv`, and its picture, `FILE.svg`.
 #[derive(Clone, Copy, Debug)]
 pub struct Diagnostics {
     /// The name of both files without its end.
     pub file: &'static str,
-    /// The pictures, one below the other; their curves in this order are the columns.
+    /// Pictures, top to bottom. Their curves in this order are the columns.
     pub charts: &'static [DiagnosticsChart],
 }
 
@@ -174,7 +175,7 @@ pub struct Diagnostics {
 pub struct DiagnosticsChart {
     /// The title, after the name of the run.
     pub title: &'static str,
-    /// What the vertical axis shows.
+    /// Title of the vertical axis.
     pub axis: &'static str,
     /// For each curve the name of its column and its label.
     pub curves: &'static [(&'static str, &'static str)],

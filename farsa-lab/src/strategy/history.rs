@@ -11,26 +11,26 @@ use crate::strategy::search::{Genome, Genomes, Search};
 /// Makes the strategy of a run, at its first generation.
 pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Search, Error> + 'h>;
 
-/// The finished generations of a run, and where that stands.
+/// The finished generations of a run, and their file.
 pub(crate) struct History<'h> {
     path: PathBuf,
     past: Past<'h>,
-    /// What was observed before each generation, where observations are normalised.
+    /// Statistics of the observations before each generation, if observations are normalized.
     observations: Vec<ObservationStatistics>,
     /// The generation whose best is the run's champion, where that is not the last one's.
     champion: Option<u32>,
 }
 
-/// What genomes are rebuilt from.
+/// Source of the genomes.
 enum Past<'h> {
-    /// What the strategy was told.
+    /// The reported fitness.
     RunRecord { record: Record, fresh: Fresh<'h> },
-    /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
+    /// External genomes as the only generation: one population after the other, of equal size.
     Imported { genomes: Vec<Vec<u16>>, populations: usize },
 }
 
 impl<'h> History<'h> {
-    /// The generations that a strategy was told of.
+    /// Returns the number of generations with reported fitness.
     pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
         Self { path, past: Past::RunRecord { record, fresh }, observations: Vec::new(), champion: None }
     }
@@ -69,7 +69,7 @@ impl<'h> History<'h> {
         }
     }
 
-    /// Populations that evolve beside each other.
+    /// Returns the number of populations.
     pub(crate) fn populations(&self) -> usize {
         match &self.past {
             Past::RunRecord { record, .. } => record.populations(),
@@ -95,8 +95,7 @@ impl<'h> History<'h> {
         }
     }
 
-    /// The genomes of finished generations, given in rising order, one after the other; `visit` takes the place of each
-    /// in that order.
+    /// Visits the genomes of finished generations, given in rising order. `visit` receives the index in that order.
     ///
     /// # Errors
     /// [`Error::Damaged`] for a generation that is not finished, and when the record is not one of this strategy.
@@ -172,7 +171,7 @@ impl<'h> History<'h> {
         Ok(trials.map(|trial| search.met(individual, trial)).collect())
     }
 
-    /// What is said of a generation, or an individual of it, that is not there.
+    /// Builds the error about a generation or individual that does not exist.
     pub(crate) fn missing(&self, generation: u32) -> Error {
         Error::damaged(&self.path, format!("an individual of generation {generation} is missing"))
     }

@@ -13,7 +13,7 @@ use crate::strategy::settings::GENERATIONS;
 /// Nothing is selected: a generation is one individual, which is trained by an iteration after it was evaluated,
 /// [`Learner::iterate`](crate::Learner::iterate).
 ///
-/// The log of such a run has one fitness three times; errors are in `learning.csv`.
+/// The log of such a run repeats one fitness three times. The errors are in `learning.csv`.
 #[derive(Debug, Clone, Copy)]
 pub struct Learning;
 
@@ -80,7 +80,7 @@ struct Trainee {
     /// Number of iterations.
     generation: u32,
     latest: Option<Iteration>,
-    /// What iterations change.
+    /// State that iterations change.
     state: Vec<f64>,
     /// The individual alone.
     population: Population,
@@ -164,7 +164,7 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
-    /// Learns from as many values as the seed says, with one gene more after each iteration where there are two.
+    /// Learns from `seed` values, with one more gene after each iteration if there are two.
     struct Forgetful;
 
     impl Learner for Forgetful {

@@ -1,33 +1,32 @@
-//! What a run searches with: strategies as the command knows them, and what is rebuilt from their record.
-//!
-//! - `definition`: what the command has to know of a strategy, [`StrategyDefinition`]
-//! - `search`: a strategy, whatever its genes are, [`Search`]
-//! - `simple`: a strategy that is all said by its name, a line, a table and a function, [`SimpleStrategy`]
-//! - `known`: the strategies that a run may be asked for by name, [`strategies`]
-//! - `settings`: the settings that strategies share, and the table of an experiment with those of its strategy
-//! - `truncation`: the truncation algorithm, in one population or several
-//! - `one_plus_one`: one parent and one mutant
-//! - `random`: search without selection
-//! - `novelty`: novelty search over the truncation algorithm
-//! - `generalist`: competitive co-evolution of two populations with generalist selection
-//! - `reals`: strategies over real genes
-//! - `learning`: one individual, which is trained by an iteration after each generation
-//! - `history`: the genomes and champions of past generations
-//! - `opponents`: whom an individual of one of several populations meets, in a run and when a trial is replayed
+//! Strategies as the command sees them, and the reconstruction of generations from their record.
 
+/// The interface between a strategy and the command.
 pub(crate) mod definition;
+/// Competitive coevolution of two populations with generalist selection.
 mod generalist;
+/// Genomes and champions of past generations.
 pub(crate) mod history;
+/// The strategies that `--strategy` finds by name.
 pub(crate) mod known;
+/// One individual, trained by an iteration per generation.
 mod learning;
+/// Novelty search over the truncation algorithm.
 mod novelty;
+/// One parent and one mutant.
 mod one_plus_one;
+/// Opponents of an individual of one of several populations.
 pub(crate) mod opponents;
+/// Search without selection.
 mod random;
+/// Strategies over real genes.
 mod reals;
+/// A strategy over integer or real genes.
 pub(crate) mod search;
+/// Settings that strategies share, and an experiment's table with those of its strategy.
 pub(crate) mod settings;
+/// A strategy of a name, a line, a table and a function.
 mod simple;
+/// The truncation algorithm, in one population or several.
 pub(crate) mod truncation;
 
 pub use definition::{Diagnostics, DiagnosticsChart, StrategyDefinition, StrategyStart};

@@ -16,8 +16,8 @@ const LAST_RATE: &str = "evolution.last_rate";
 /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::words::OnePlusOne`], with the defaults of
 /// the original's discrimination experiment.
 ///
-/// The log of such a run is about the mean fitness of the parent over all its evaluations and the fitness of the mutant: the
-/// best of the two is that of the survivor, which is the champion.
+/// The log of such a run holds the mean fitness of the parent over all its evaluations and the fitness of the mutant.
+/// The best of the two is the survivor, which is the champion.
 #[derive(Debug, Clone, Copy)]
 pub struct OnePlusOne;
 

@@ -1,4 +1,4 @@
-//! Whom an individual of one of several populations meets, in a run and when a trial is replayed.
+//! Opponents of an individual of one of several populations, in a run and in a replay.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ pub(crate) enum Opponent {
     Peer(usize),
 }
 
-/// Where populations of a generation meet.
+/// A generation of several populations and its trials.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Meeting {
     pub(crate) generation: u32,
@@ -28,11 +28,12 @@ pub(crate) struct Meeting {
 }
 
 impl Meeting {
-    /// The generation whose champions are met in a trial: in the first half of the trials the latest, as many generations
-    /// back as the number of the trial; in the other half those in the middle of as many equal parts of all before them.
+    /// Returns the generation whose champions are the opponents in a trial. In the first half of the trials, trial t
+    /// uses generation g - 1 - t. In the other half the trials use the middles of equal parts of all earlier
+    /// generations.
     ///
-    /// Against the latest alone, populations chase each other in circles and forget what they could do. Source: the hall of
-    /// fame of \[Rosin1997\]; deviation: its champions are spread evenly, not drawn.
+    /// Against the latest champions alone, populations chase each other in circles and lose earlier skills. Source: the
+    /// hall of fame of \[Rosin1997\]. Deviation: its champions are spread evenly, not drawn.
     fn earlier(self, trial: u32) -> Option<u32> {
         let latest = u32::try_from(self.trials.div_ceil(2)).unwrap_or(u32::MAX);
         match trial.checked_sub(latest) {
@@ -45,8 +46,8 @@ impl Meeting {
         }
     }
 
-    /// Whom an individual meets in a trial, one of each other population: champions, and where there were none yet the
-    /// individual of the trial's number.
+    /// Returns the opponents of an individual in a trial, one of each other population: champions, or without a
+    /// champion the individual of the trial's number.
     pub(crate) fn opponents(self, individual: usize, trial: u32) -> impl Iterator<Item = Opponent> {
         let Self { populations, size, .. } = self;
         let earlier = self.earlier(trial);
@@ -85,8 +86,8 @@ pub(crate) fn met(
     Ok(history.genomes(&places)?.chunks(each).map(<[_]>::to_vec).collect())
 }
 
-/// The parameters of the opponents that a strategy chooses for everyone, trial after trial, individual after individual; none if
-/// it chooses nobody, or other genomes than the experiment's.
+/// Returns the parameters of the opponents that a strategy chose, trial after trial, individual after individual.
+/// Returns none if it chooses none, or for genomes of another experiment.
 pub(crate) fn chosen(search: &Search, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
     let mut all = Vec::new();
     for trial in 0..u32::try_from(trials).ok()? {
@@ -99,7 +100,7 @@ pub(crate) fn chosen(search: &Search, genotype: &Genotype, trials: usize) -> Opt
     Some(all)
 }
 
-/// The champions of every generation; of a single population nobody is kept.
+/// The champions of every generation. Empty for a single population.
 #[derive(Debug, Default)]
 pub(crate) struct Hall {
     /// For every generation the parameters of each population's champion.
@@ -124,12 +125,12 @@ impl Hall {
         Ok(hall)
     }
 
-    /// Champions that are known: of every generation the parameters of each population's.
+    /// Builds it from the champions' parameters of every generation and population.
     pub(crate) fn from_champions(champions: Vec<Vec<Vec<f32>>>) -> Self {
         Self { champions }
     }
 
-    /// Of every generation the parameters of each population's champion.
+    /// Parameters of each population's champion, per generation.
     pub(crate) fn champions(&self) -> &[Vec<Vec<f32>>] {
         &self.champions
     }
@@ -141,8 +142,8 @@ impl Hall {
         }
     }
 
-    /// The parameters of the opponents that everyone meets, trial after trial, individual after individual; none if there is
-    /// no opponent.
+    /// Returns the parameters of all opponents, trial after trial, individual after individual. Returns none if an
+    /// opponent is missing.
     pub(crate) fn opponents<'g>(&'g self, meeting: Meeting, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
         let mut all = Vec::new();
         for trial in 0..u32::try_from(meeting.trials).ok()? {

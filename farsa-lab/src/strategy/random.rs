@@ -6,7 +6,7 @@ use crate::experiment::settings::Setting;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 use crate::strategy::simple::SimpleStrategy;
 
-/// Genomes that are drawn anew in every generation, [`farsa_evo::words::RandomSearch`].
+/// Genomes drawn at random in every generation, [`farsa_evo::words::RandomSearch`].
 pub(super) static RANDOM: SimpleStrategy = SimpleStrategy {
     name: "random-search",
     summary: "Every genome is drawn anew: what other strategies find beyond this is owed to selection.",

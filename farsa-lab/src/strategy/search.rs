@@ -14,8 +14,8 @@ pub(crate) const LARGEST_STATE: u64 = if cfg!(test) { 1 << 18 } else { 256 << 20
 
 /// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::StrategyDefinition::start) makes it.
 ///
-/// A word stands for a value of its parameter's range as [`Genotype`] says. A real stands for the range from -1 to 1: -1 is
-/// the parameter's first end, 0 the middle, 1 the other end, and what lies beyond is reflected.
+/// A [`Genotype`] decodes both. An integer gene is linear over the range of its parameter. A real gene maps -1 to the
+/// first end, 0 to the middle and 1 to the other end, and is reflected beyond.
 #[non_exhaustive]
 pub enum Search {
     /// Over 16-bit words.
@@ -65,7 +65,7 @@ impl Search {
         each!(self, strategy => strategy.ask().genome_len())
     }
 
-    /// The parameters that the individuals of the current generation stand for; none if they are no genomes of this kind.
+    /// Decodes the current generation. Returns none for genomes of another length.
     pub(crate) fn parameters(&self, genotype: &Genotype) -> Option<Vec<Vec<f32>>> {
         match self {
             Self::Words(strategy) => genotype.decode_all(strategy.ask()),
@@ -101,22 +101,22 @@ impl Search {
         each!(self, strategy => strategy.snapshot())
     }
 
-    /// The record of a strategy that has not been told anything.
+    /// Returns the record of a strategy before its first fitness.
     pub(crate) fn record(&mut self) -> Result<Record, EvoError> {
         each!(self, strategy => Record::new(strategy.as_mut()))
     }
 
-    /// How many objectives and descriptor values it is told of each individual.
+    /// Returns the number of objectives and measures per individual.
     pub fn score_shape(&self) -> ScoreShape {
         each!(self, strategy => strategy.score_shape())
     }
 
-    /// How many opponents each individual meets by the strategy's own choice, where it makes one.
+    /// Returns the number of opponents per individual, if the strategy chooses them.
     pub(crate) fn opponents(&self) -> Option<usize> {
         each!(self, strategy => strategy.opponents().map(Opponents::count))
     }
 
-    /// The genomes that an individual meets in a trial by the strategy's own choice, one of each other population.
+    /// Returns the genomes of the opponents that the strategy chose for a trial, one of each other population.
     pub(crate) fn met(&self, individual: usize, trial: u32) -> Option<Vec<Genome>> {
         let number = |count: usize| trial as usize % count.max(1);
         Some(match self {
@@ -133,17 +133,17 @@ impl Search {
         })
     }
 
-    /// What it keeps beyond a generation, where it does.
+    /// Returns the archive or front, if there is one.
     pub(crate) fn collection(&self) -> Option<&dyn Collection> {
         each!(self, strategy => strategy.collection())
     }
 
-    /// Whether its champion is the best of all generations instead of the last one's.
+    /// Returns whether the champion is the best of all generations instead of the last.
     pub(crate) fn keeps_champion(&self) -> bool {
         each!(self, strategy => strategy.champion_is_best_ever())
     }
 
-    /// Tells the judgements of the current generation and records them.
+    /// Reports the scores of the current generation and records them.
     pub(crate) fn tell(&mut self, record: &mut RecordWriter, judgements: &Scores) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {
             ScoreShape::FITNESS => record.tell(strategy.as_mut(), &judgements.fitness()),
@@ -196,7 +196,7 @@ impl Genome {
         }
     }
 
-    /// The parameters that it stands for; none for another number of genes.
+    /// Decodes the genome. Returns none for another number of genes.
     pub(crate) fn decode(&self, genotype: &Genotype) -> Option<Vec<f32>> {
         match self {
             Self::Words(genes) => genotype.decode(genes),
@@ -220,7 +220,7 @@ impl Genomes {
         }
     }
 
-    /// The parameters of everyone; none for genomes of another length.
+    /// Decodes all individuals. Returns none for genomes of another length.
     pub(crate) fn decode_all(&self, genotype: &Genotype) -> Option<Vec<Vec<f32>>> {
         match self {
             Self::Words(all) => genotype.decode_all(all),

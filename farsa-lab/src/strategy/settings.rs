@@ -9,11 +9,11 @@ use crate::experiment::settings::{Setting, Settings};
 pub(crate) const GENERATIONS: &str = "evolution.generations";
 /// Individuals of a generation.
 pub(crate) const POPULATION: &str = "evolution.population";
-/// Whether observations are normalised.
+/// Setting of normalized observations.
 pub(crate) const NORMALISE: &str = "strategy.normalise_observations";
 /// The name of a strategy that is not the experiment's own.
 pub(crate) const STRATEGY: &str = "strategy.name";
-/// What happens to a bit that mutation hits.
+/// Effect of mutation on a bit.
 pub(crate) const MUTATION: &str = "evolution.mutation";
 
 /// An experiment's table with the settings of its strategy that it does not define itself in front.
@@ -29,8 +29,8 @@ pub(crate) fn complete(mut own: Vec<Setting>, mut strategy: Vec<Setting>) -> Vec
 
 /// An experiment's table with the settings of a strategy that is not its own, and that strategy's name.
 ///
-/// The strategy has its own defaults; what the experiment says of `evolution` and `strategy` is about another one, but for how long
-/// to search.
+/// The strategy has its own defaults. The experiment's `evolution` and `strategy` settings describe another strategy,
+/// except the length of the search.
 pub(crate) fn chosen(own: Vec<Setting>, name: &str, strategy: Vec<Setting>) -> Vec<Setting> {
     let of_strategy = |key: &str| ["evolution.", "strategy."].iter().any(|section| key.starts_with(section));
     let about_this = |setting: &Setting| !of_strategy(setting.key()) || setting.key() == GENERATIONS;

@@ -1,11 +1,11 @@
-//! A strategy that is all said by its name, a line, a table and a function.
+//! A strategy of a name, a line, a table and a function.
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
 use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart};
 use crate::strategy::search::Search;
 
-/// A [`StrategyDefinition`] that is all said by its name, a line, a table and a function.
+/// A [`StrategyDefinition`] of a name, a line, a table and a function.
 ///
 /// ```
 /// use farsa_evo::gradient::{Snes, SnesConfig};
@@ -23,13 +23,13 @@ use crate::strategy::search::Search;
 pub struct SimpleStrategy {
     /// The name on the command line: lower-case letters, digits and hyphens.
     pub name: &'static str,
-    /// What it does, in one line with its source.
+    /// Method in one line with its source.
     pub summary: &'static str,
     /// Its settings with their defaults.
     pub settings: fn() -> Vec<Setting>,
     /// Makes the strategy, at its first generation.
     pub start: fn(&StrategyStart<'_>) -> Result<Search, Error>,
-    /// How its [`diagnostics`](farsa_evo::Strategy::diagnostics) are written and drawn, where it has some.
+    /// Form of its [`diagnostics`](farsa_evo::Strategy::diagnostics) in files and pictures, if there are any.
     pub diagnostics: Option<Diagnostics>,
 }
 

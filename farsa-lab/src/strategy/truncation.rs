@@ -13,8 +13,8 @@ use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 const PARENTS: &str = "evolution.parents";
 pub(super) const RATE: &str = "evolution.mutation_rate";
 
-/// The best of a generation make mutated copies, [`farsa_evo::words::TruncationGa`]; with several populations within each of them,
-/// [`farsa_evo::coevolution::Coevolution`]. Defaults of \[Ferrauto2010\].
+/// The best of a generation produce mutated copies, [`farsa_evo::words::TruncationGa`]. Several populations evolve each
+/// by itself, [`farsa_evo::coevolution::Coevolution`]. Defaults of \[Ferrauto2010\].
 #[derive(Debug, Clone, Copy)]
 pub struct Truncation;
 

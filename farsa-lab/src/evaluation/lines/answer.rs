@@ -1,4 +1,4 @@
-//! What is written: the description at first, then a line for each line.
+//! Output lines: a description first, then one answer per input line.
 
 use serde::{Serialize, Serializer};
 
@@ -14,10 +14,10 @@ use crate::run::fitness::{FailedTrial, Individual};
 pub(super) struct Introduction<'d> {
     experiment: &'d str,
     condition: &'d str,
-    /// Of lines that name none.
+    /// Seed of lines without one.
     seed: u64,
     populations: &'d [String],
-    /// Individuals of each population; null where there is one only, of any number.
+    /// Individuals per population. Null for a single population, which has no limit.
     population_size: Option<usize>,
     trials: usize,
     terms: Vec<String>,
@@ -34,7 +34,7 @@ struct Ranged {
     name: String,
     /// From low to high.
     range: [f64; 2],
-    /// Whether gene -1 stands for the high end, and 1 for the low one.
+    /// True if gene -1 maps to the high end and 1 to the low end.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     reversed: bool,
 }
@@ -95,25 +95,25 @@ impl<K, T> Named<K, T> {
     }
 }
 
-/// What came of a line.
+/// The answer to a line.
 #[derive(Serialize)]
 pub(super) struct Answer<'a> {
     pub(super) line: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) id: Option<serde_json::Value>,
-    /// Of every individual; null for one that failed.
+    /// Fitness of every individual. Null for a failed one.
     pub(super) fitness: ByPopulation<'a, Vec<Option<f64>>>,
     pub(super) individuals: ByPopulation<'a, Vec<Judged>>,
 }
 
-/// That nothing came of a line, and why.
+/// A refused line with the reason.
 #[derive(Serialize)]
 pub(super) struct Refusal<'a> {
     pub(super) line: u64,
     pub(super) error: &'a str,
 }
 
-/// What an individual came to.
+/// The result of an individual.
 #[derive(Serialize)]
 pub(super) struct Judged {
     pub(super) fitness: Option<f64>,
@@ -130,7 +130,7 @@ pub(super) struct Judged {
 }
 
 impl Judged {
-    /// What an individual came to: its fitness, objectives and behaviour in one row, and its trials.
+    /// Builds the result from a row of fitness, objectives and measures, and from the trials.
     pub(super) fn new(found: Result<Individual, FailedTrial>, evaluator: &dyn Evaluator) -> Self {
         let (objectives, behaviour) = (Named(Vec::new()), Named(Vec::new()));
         let (row, outcomes) = match found {
@@ -153,7 +153,7 @@ impl Judged {
     }
 }
 
-/// What came of a trial.
+/// The result of a trial.
 #[derive(Serialize)]
 struct Trial {
     terms: Named<String, f64>,
@@ -167,7 +167,7 @@ impl Trial {
     fn new(outcome: Outcome, terms: &[String]) -> Self {
         let Outcome { terms: values, steps, success, notes, .. } = outcome;
         let value = |note: Note| match note {
-            // What is no number is null.
+            // NaN is null in JSON.
             Note::Number(x) => serde_json::Value::from(x),
             Note::Text(text) => text.into(),
         };

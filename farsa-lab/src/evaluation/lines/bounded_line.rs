@@ -2,19 +2,19 @@
 
 use std::io::{self, BufRead};
 
-/// What is read as a line.
+/// A line of the input.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum BoundedLine {
     /// Its bytes without the end of the line.
     Whole(Vec<u8>),
-    /// It is longer than the limit; all of it has been passed over.
+    /// A line beyond the limit. It was skipped.
     TooLong,
 }
 
-/// The next line of at most `limit` bytes, of which no more are kept; none at the end. The last one need not be ended.
+/// Reads the next line of at most `limit` bytes. Returns none at the end. The last line needs no line end.
 ///
 /// # Errors
-/// Those of the input.
+/// Errors of the input.
 pub(super) fn next_line(input: &mut impl BufRead, limit: usize) -> io::Result<Option<BoundedLine>> {
     let (mut line, mut read, mut too_long) = (Vec::new(), false, false);
     loop {

@@ -7,19 +7,19 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 
 use crate::escaped::Quoted;
 
-/// The most populations that an object names; no experiment has as many.
+/// Maximum number of populations in an object, above that of any experiment.
 const MOST_NAMES: usize = 1000;
 
 /// Vectors of numbers: `[..]` is one, `[[..], [..]]` are several, and an object has those of populations by their names.
 #[derive(Debug, PartialEq)]
 pub(super) enum Given {
-    /// Of the only population.
+    /// Vectors of the only population.
     Unnamed(Vectors),
-    /// Of each population that is named, in the order of the line.
+    /// Vectors of each named population, in the order of the line.
     Named(Vec<(String, Vectors)>),
 }
 
-/// Vectors one behind the other: each in a list of its own would take twenty times as much as a text of short ones.
+/// Vectors in one buffer. A list for each would take twenty times the memory of a text of short vectors.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Vectors {
     numbers: Vec<f64>,
@@ -28,7 +28,7 @@ pub(super) struct Vectors {
 }
 
 impl Vectors {
-    /// How many there are.
+    /// Returns the number of vectors.
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }
@@ -102,7 +102,7 @@ fn vectors<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vectors, A::Error> {
     Ok(found)
 }
 
-/// What stands in a list, a vector or a number of one, whose numbers join others; whether it is a number.
+/// Reads an element of a list into the shared buffer. Returns whether it is a number.
 struct Item<'v>(&'v mut Vectors);
 
 impl Item<'_> {

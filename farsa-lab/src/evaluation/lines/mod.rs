@@ -1,15 +1,14 @@
-//! `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimisers in any language.
-//!
-//! - `answer`: what is written: the description at first, then a line for each line
-//! - `bounded_line`: lines of an input, each of a bounded length
-//! - `given`: vectors of numbers as a line gives them
-//! - `request`: what a line asks for
-//! - `serve`: from the first line to the last
+//! `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimizers in any language.
 
+/// Output lines: a description first, then one answer per input line.
 mod answer;
+/// Input lines of bounded length.
 mod bounded_line;
+/// Vectors of numbers in a line.
 mod given;
+/// Requests: the content of an input line.
 mod request;
+/// The loop over lines.
 mod serve;
 
 #[cfg(feature = "fuzzing")]

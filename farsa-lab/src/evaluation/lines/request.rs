@@ -1,4 +1,4 @@
-//! What a line asks for.
+//! Requests: the content of an input line.
 
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -17,20 +17,20 @@ const LARGEST_INDIVIDUAL: u32 = 1_000_000_000;
 /// The most bytes of what an answer repeats.
 const LONGEST_ID: usize = 4096;
 
-/// What an experiment takes.
+/// The shape of valid requests.
 pub(crate) struct Wanted {
     pub(crate) experiment: &'static str,
     /// The names of the populations, in their order.
     pub(crate) populations: Vec<String>,
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) genotype: Genotype,
-    /// Individuals of each of several populations; 0 for a single one, of which there may be any number.
+    /// Individuals of each of several populations. 0 for a single population, which has no limit.
     pub(crate) size: usize,
-    /// Of lines that name none.
+    /// Seed of lines without one.
     pub(crate) seed: u64,
 }
 
-/// A line as it stands.
+/// A line before validation.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line<'l> {
@@ -44,10 +44,10 @@ struct Line<'l> {
     evaluate: Option<Vec<String>>,
 }
 
-/// What a line asks for.
+/// A valid request.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Request {
-    /// What the answer repeats.
+    /// Id that the answer repeats.
     pub(crate) id: Option<serde_json::Value>,
     pub(crate) seed: u64,
     pub(crate) generation: u32,
@@ -55,21 +55,21 @@ pub(crate) struct Request {
     pub(crate) individual: u32,
     /// The parameters of every individual of each population.
     pub(crate) parameters: Vec<Vec<Vec<f32>>>,
-    /// Whether each population is evaluated; what is not is met by the others.
+    /// Flag of each evaluated population. The others only serve as opponents.
     pub(crate) evaluated: Vec<bool>,
 }
 
 impl Request {
-    /// What the bytes of a line ask for.
+    /// Parses and validates a line.
     ///
     /// # Errors
-    /// What is wrong with them, in words.
+    /// Returns the fault as text.
     pub(crate) fn from_line(bytes: &[u8], wanted: &Wanted) -> Result<Self, String> {
         let text = std::str::from_utf8(bytes).map_err(|error| format!("byte {}: is no UTF-8", error.valid_up_to()))?;
         if text.trim().is_empty() {
             return Err("is empty".into());
         }
-        // Fields by their order are none of the format.
+        // Fields by position are not part of the format.
         if !text.trim_start().starts_with('{') {
             return Err("is no object of JSON, {..}".into());
         }
@@ -105,7 +105,7 @@ impl Request {
     }
 }
 
-/// What the answer is to repeat.
+/// Id that the answer repeats.
 fn read_id(text: &RawValue) -> Result<serde_json::Value, String> {
     let text = text.get();
     if text.len() > LONGEST_ID {
@@ -125,7 +125,7 @@ fn unreadable(text: &str, error: &serde_json::Error) -> String {
 }
 
 impl Wanted {
-    /// Whether each population is evaluated, where these are named.
+    /// Names of the evaluated populations.
     fn evaluated(&self, named: Option<&[String]>) -> Result<Vec<bool>, String> {
         let Some(named) = named else { return Ok(vec![true; self.populations.len()]) };
         if let Some(other) = named.iter().find(|name| !self.populations.contains(name)) {
@@ -168,7 +168,7 @@ impl Wanted {
         }
     }
 
-    /// Whether there may be so many vectors.
+    /// Checks the number of vectors.
     fn counted(&self, count: usize, first: u32) -> Result<(), String> {
         match count {
             0 => Err("there is no vector".into()),
@@ -202,7 +202,7 @@ impl Wanted {
         row.iter().zip(&self.parameters).enumerate().map(value).collect()
     }
 
-    /// What real genes stand for, -1 and 1 at the ends of the ranges.
+    /// Decodes real genes, with -1 and 1 at the ends of the ranges.
     fn read_genes(&self, row: &[f64]) -> Result<Vec<f32>, String> {
         self.length(row.len())?;
         self.genotype.decode_reals(row).ok_or_else(|| "has a number that is not finite".into())

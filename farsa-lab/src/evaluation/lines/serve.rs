@@ -22,8 +22,8 @@ const LONGEST_LINE: usize = 16 << 20;
 /// as those of a run. Each is written out before the next is read.
 ///
 /// # Errors
-/// [`Error::Usage`] at the end if a line was refused, which its answer says, and for observations that are to be normalised;
-/// [`Error::Io`] of input and output.
+/// [`Error::Usage`] at the end if any line was refused, and for normalized observations. [`Error::Io`] of input and
+/// output.
 pub(crate) fn serve(
     plan: &Plan<'_>,
     mut pool: Pool<'_>,
@@ -68,14 +68,14 @@ pub(crate) fn serve(
     }
 }
 
-/// Writes a value in a line, which is on its way at once: who asks waits for it.
+/// Writes a value as a line and flushes, because the caller waits for it.
 fn write(output: &mut impl Write, value: &impl Serialize) -> Result<(), Error> {
     let mut text = serde_json::to_vec(value).map_err(|error| Error::Other(error.to_string()))?;
     text.push(b'\n');
     output.write_all(&text).and_then(|()| output.flush()).map_err(Error::io("write", "the output".as_ref()))
 }
 
-/// Evaluates what a line asks for, one population after the other.
+/// Evaluates a request, one population after the other.
 fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'_>) -> Result<Answer<'w>, Error> {
     let Request { id, seed, generation, individual, parameters, evaluated } = request;
     let behaviour = pool.evaluator().behaviour();
@@ -112,8 +112,8 @@ fn by_population<T>(mut all: Vec<(&str, T)>, populations: usize) -> ByPopulation
     }
 }
 
-/// Whom the individuals of a population meet, trial after trial, individual after individual: in each trial that of the trial's
-/// number of each other population, as in the first generation of a run.
+/// Returns the opponents of a population, trial after trial, individual after individual. As in the first generation of
+/// a run, trial t is against individual t of each other population.
 fn opponents(parameters: &[Vec<Vec<f32>>], own: usize, trials: usize) -> Vec<&[f32]> {
     let others = || parameters.iter().enumerate().filter(move |(other, _)| *other != own);
     let of_trial = |trial: usize| others().map(move |(_, rows)| rows[trial % rows.len()].as_slice());

@@ -22,16 +22,16 @@ const MOST_CASES: usize = 60;
 pub(crate) struct Choice<'c> {
     /// The protocol's name.
     pub(crate) protocol: &'c str,
-    /// Names or numbers of cases; empty for all.
+    /// Names or numbers of cases. Empty for all.
     pub(crate) cases: &'c [String],
     /// The number of the trial in each case.
     pub(crate) trial: u32,
-    /// Of the test.
+    /// Seed of the test.
     pub(crate) seed: u64,
 }
 
-/// A run's champion in the cases that were chosen, as `farsa test` runs it; of several populations the first one's in the
-/// first place.
+/// A run's champion in the selected cases, with the trials of `farsa test`. With several populations the first one's
+/// champion comes first.
 pub(crate) struct CaseTrials {
     evaluator: Box<dyn Evaluator>,
     subject: Subject,
@@ -46,7 +46,7 @@ impl CaseTrials {
     /// Reads the champion and finds the cases.
     ///
     /// # Errors
-    /// Those of [`Protocol::find`], [`Protocol::case`] and [`Subject::read`]; [`Error::Usage`] for too many cases.
+    /// As for [`Protocol::find`], [`Protocol::case`] and [`Subject::read`], [`Error::Usage`] for too many cases.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, choice: Choice<'_>) -> Result<Self, Error> {
         let pool = Pool::new(plan, 1, Wanted::ONE)?;
         let mut protocols = pool.info().protocols.clone();

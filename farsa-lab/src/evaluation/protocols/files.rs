@@ -17,14 +17,14 @@ pub(crate) struct ProtocolRecord {
     pub(crate) protocol: String,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
-    /// Of each case.
+    /// Trials per case.
     pub(crate) trials: usize,
     pub(crate) seed: u64,
     pub(crate) table_crc: u32,
 }
 
 impl ProtocolRecord {
-    /// Whether both are of one test, whatever their tables hold of it.
+    /// Returns whether both describe the same test, whatever their tables hold.
     pub(crate) fn same_test(&self, other: &Self) -> bool {
         *self == Self { table_crc: self.table_crc, ..other.clone() }
     }
@@ -42,7 +42,7 @@ fn places(directory: &Directory, name: &str) -> [PathBuf; 2] {
     ["csv", "json"].map(|end| folder.join(format!("{name}.{end}")))
 }
 
-/// What a directory holds of a protocol; see [`recorded::read`].
+/// Reads the table and record of a protocol, see [`recorded::read`].
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Damaged`].
@@ -64,12 +64,12 @@ pub(crate) fn read(
 /// Makes sure that the folder of the files is there, and is one.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Damaged`] where something else has its name.
+/// [`Error::Io`], and [`Error::Damaged`] if the name is taken by something else.
 pub(crate) fn make_folder(directory: &Directory) -> Result<(), Error> {
     let folder = directory.protocols();
     match fs::create_dir(&folder) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-            // A link would lead elsewhere.
+            // A link would lead to another place.
             let own = fs::symlink_metadata(&folder).map_err(Error::io("read", &folder))?.is_dir();
             if own { Ok(()) } else { Err(Error::damaged(&folder, "is not a directory")) }
         }
@@ -80,7 +80,7 @@ pub(crate) fn make_folder(directory: &Directory) -> Result<(), Error> {
 /// Writes both files of a protocol.
 ///
 /// # Errors
-/// Those of [`recorded::write`] and of [`make_folder`].
+/// As for [`recorded::write`] and [`make_folder`].
 pub(crate) fn write(
     directory: &Directory,
     name: &str,

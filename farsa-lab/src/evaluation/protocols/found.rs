@@ -1,4 +1,4 @@
-//! What the trials of each case of a protocol say together.
+//! Summaries of the trials of each case.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::figures::proportion::Proportion;
 use crate::figures::significant::significant;
 use crate::run::text_table::text_table;
 
-/// What came of a case.
+/// Summary of a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct FoundCase {
     pub(crate) row: String,
@@ -29,7 +29,7 @@ pub(crate) struct FoundCase {
 }
 
 impl FoundCase {
-    /// What each case of a table came to; `terms` are those of the experiment.
+    /// Summarizes each case of a table. `terms` holds the names of the fitness terms.
     pub(crate) fn all(table: &ProtocolTable, terms: &[String]) -> Vec<Self> {
         table.cases.iter().map(|(case, table)| Self::new(case, table.findings(&[]), own_columns(terms))).collect()
     }

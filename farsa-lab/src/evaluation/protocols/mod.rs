@@ -1,21 +1,20 @@
 //! `farsa test --protocol`: the champion in every case of a table.
-//!
-//! - `chosen`: a champion in the cases that were chosen, for `draw` and `replay`
-//! - `files`: the files of a protocol's results in a run's directory
-//! - `found`: what the trials of each case say together
-//! - `replay`: `farsa replay --protocol`: a trial of each of some cases, step by step
-//! - `sheet`: `farsa draw --protocol`: how a trial of each case ends, side by side
-//! - `states`: `protocols/NAME.states.csv`: what the neurons of the first trials were like, step by step
-//! - `table`: `protocols/NAME.csv`: a line per trial, case after case
-//! - `test`: the command
-//! - `trial`: a single trial of a protocol's case, step by step
 
+/// A champion in selected cases, for `draw` and `replay`.
 pub(crate) mod chosen;
+/// The files of a protocol's results in a run's directory.
 pub(crate) mod files;
+/// Summaries of the trials of each case.
 pub(crate) mod found;
+/// `farsa replay --protocol`: a trial of a case, step by step.
 pub(crate) mod replay;
+/// `farsa draw --protocol`: the end of a trial of each case, side by side.
 pub(crate) mod sheet;
+/// `protocols/NAME.states.csv`: neuron states of the first trials, step by step.
 pub(crate) mod states;
+/// `protocols/NAME.csv`: one line per trial, case after case.
 pub(crate) mod table;
+/// The command.
 pub(crate) mod test;
+/// A single trial of a protocol's case, step by step.
 mod trial;

@@ -40,7 +40,7 @@ struct ReplayedCase {
     column: String,
     held_out: bool,
     steps: u32,
-    /// Of the trial; no number in JSON if it failed.
+    /// Fitness of the trial. Null in JSON if it failed.
     fitness: f64,
     success: bool,
     /// Why it failed, if it did.
@@ -98,10 +98,10 @@ impl InWords for CasesSummary {
     }
 }
 
-/// Writes the trial of one case as CSV, a line per step, to what `out` opens once it is known that there is such a trial.
+/// Writes the trial of one case as CSV, one line per step. `out` opens the output after the case was found.
 ///
 /// # Errors
-/// Those of [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Usage`] for more cases than one, [`Error::Io`].
+/// As for [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Usage`] for more than one case, [`Error::Io`].
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -126,7 +126,7 @@ pub(crate) fn replay<W: Write>(
 /// Writes the trials, and those of the same cases in another run, as a page for a browser.
 ///
 /// # Errors
-/// Those of [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Io`].
+/// As for [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Io`].
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,

@@ -19,7 +19,7 @@ use crate::store::replace::{create_results, refuse_existing};
 /// Width and height of each picture where none are asked for, and the largest.
 const SIZE: (u32, u32) = (320, 260);
 const LARGEST: u32 = 2048;
-/// Most pictures beside each other.
+/// Maximum number of pictures in a row.
 const COLUMNS: usize = 8;
 /// Heights of the title and of a picture's label, and what lies between pictures.
 const HEAD: u32 = 44;
@@ -32,11 +32,11 @@ const TITLE_LETTER: u32 = 10;
 pub(crate) struct Wish<'w> {
     pub(crate) choice: Choice<'w>,
     pub(crate) camera: Option<&'w str>,
-    /// Of each picture.
+    /// Size of each picture.
     pub(crate) size: Option<(u32, u32)>,
 }
 
-/// What was drawn.
+/// A drawn sheet.
 #[derive(Debug, Serialize)]
 pub(crate) struct Sheet {
     directory: String,
@@ -65,8 +65,8 @@ struct DrawnCase {
 /// Draws the end of a trial of each case of a protocol, all to the same scale, and writes them to a new file.
 ///
 /// # Errors
-/// Those of [`CaseTrials::find`] and [`CaseTrials::run`]; [`Error::Usage`] for a file that is no SVG, a size that none is, and
-/// trials without bodies; [`Error::Io`].
+/// As for [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Io`], [`Error::Usage`] for a file that is not an SVG,
+/// an invalid size, and trials without bodies.
 pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path: &Path) -> Result<Sheet, Error> {
     if path.extension().is_none_or(|end| !end.eq_ignore_ascii_case("svg")) {
         return Err(Error::Usage(format!("{}: the name of a sheet of pictures ends in .svg", path.display())));
@@ -82,7 +82,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
     let camera = camera.unwrap_or(Camera::for_view(trials.schema().view));
     let caption = trials.caption();
     let shown: Vec<Case> = trials.cases.iter().map(|number| trials.case(*number)).collect();
-    // Of a whole table a row is a row; cases that were named stand beside each other.
+    // A whole table keeps its rows. Named cases form one row.
     let abreast =
         if wish.choice.cases.is_empty() { Protocol::places(&shown, |case| &case.column).len() } else { shown.len() };
     let columns = abreast.clamp(1, COLUMNS);
@@ -124,7 +124,7 @@ fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, 
     Ok(cases)
 }
 
-/// The pictures with their labels, so many beside each other.
+/// Returns the labeled pictures in rows of the given length.
 fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [width, height]: [u32; 2]) -> String {
     let margin = MARGIN as u32;
     let rows = cases.len().div_ceil(columns) as u32;

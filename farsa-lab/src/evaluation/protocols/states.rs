@@ -16,7 +16,7 @@ use crate::store::directory::Directory;
 
 /// The first trials of each case that are recorded.
 const TRIALS: usize = 6;
-/// Cases of which any are; further ones are not.
+/// Maximum number of recorded cases.
 const MOST_CASES: usize = 60;
 /// Most steps that are kept of a trial: of a longer one every second is, or every fourth, and so on.
 const MOST_STEPS: usize = 1000;
@@ -73,12 +73,12 @@ impl Recorder for StateRecorder {
 }
 
 impl States {
-    /// Runs the first trials of each case of a protocol again and records them; those that panic are left out.
+    /// Runs the first trials of each case again and records them. Trials that panic are skipped.
     ///
-    /// Of several populations it is the first one's champion that is recorded.
+    /// With several populations the first one's champion is recorded.
     ///
     /// # Errors
-    /// [`Error::Other`] for neurons that the schema has not; those of [`Plan::evaluator`].
+    /// [`Error::Other`] for neurons beyond the schema, and as for [`Plan::evaluator`].
     pub(crate) fn record(
         plan: &Plan<'_>,
         tested: Tested<'_>,
@@ -119,7 +119,7 @@ impl States {
         self.trials.iter().flat_map(|trial| &trial.steps).map(|(_, states)| states.as_slice())
     }
 
-    /// What a directory holds of a protocol, with the record of the test that it is of.
+    /// Reads the states of a protocol with the record of their test.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Damaged`].
@@ -132,7 +132,7 @@ impl States {
     /// Writes both files.
     ///
     /// # Errors
-    /// Those of [`recorded::write`] and of [`make_folder`].
+    /// As for [`recorded::write`] and [`make_folder`].
     pub(crate) fn write(
         &self,
         directory: &Directory,

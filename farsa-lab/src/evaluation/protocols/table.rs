@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::evaluation::test_table::{Table, TrialResult};
 use crate::experiment::protocol::{Case, Protocol};
 
-/// The columns that say which case it is; those of a test follow, and their index counts the trials of the case.
+/// Columns of the case. The columns of a test follow, and their index counts the trials of the case.
 const HEAD: [&str; 4] = ["case", "row", "column", "held_out"];
 
 /// The trials of a protocol, a table for each case.
@@ -16,7 +16,7 @@ pub(crate) struct ProtocolTable {
 }
 
 impl ProtocolTable {
-    /// The table of so many trials of each case; `others` are the names of all populations but the first.
+    /// Builds the table of a number of trials of each case. `others` holds the names of all populations but the first.
     pub(crate) fn new(
         cases: &[Case],
         trials: usize,
@@ -29,7 +29,7 @@ impl ProtocolTable {
         Self { cases: cases.iter().cloned().zip(tables).collect() }
     }
 
-    /// What the text of the file at `path` says.
+    /// Parses the text of the file at `path`.
     ///
     /// # Errors
     /// [`Error::Damaged`] when it is not the table of a protocol.
@@ -41,7 +41,7 @@ impl ProtocolTable {
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
         let mut records = reader.records();
         let mut next = || -> Result<Option<[Vec<String>; 2]>, String> {
-            // A line of another length than the first is an error here, and the error says which.
+            // The reader reports lines of unequal length with their number.
             let Some(record) = records.next().transpose().map_err(|error| error.to_string())? else { return Ok(None) };
             let (of_case, rest) = (record.iter().take(HEAD.len()), record.iter().skip(HEAD.len()));
             Ok(Some([of_case.map(str::to_owned).collect(), rest.map(str::to_owned).collect()]))

@@ -23,7 +23,7 @@ use crate::store::lock::Lock;
 /// Most trials of all cases together.
 const MOST_TRIALS: usize = 100_000_000;
 
-/// What a test by a protocol found.
+/// The result of a test by a protocol.
 #[derive(Debug, Serialize)]
 pub(crate) struct ProtocolRun {
     directory: String,
@@ -35,7 +35,7 @@ pub(crate) struct ProtocolRun {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     individuals: Vec<u32>,
     seed: u64,
-    /// Of each case.
+    /// Trials per case.
     trials: usize,
     cases: Vec<FoundCase>,
     /// That the champion may behave otherwise than in its run.
@@ -69,10 +69,10 @@ impl ProtocolRun {
     }
 }
 
-/// How many trials a test has, and how they are run.
+/// Options of a test.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Effort {
-    /// Of each case; else as many as the protocol says.
+    /// Trials per case. By default those of the protocol.
     pub(crate) trials: Option<usize>,
     pub(crate) seed: u64,
     pub(crate) threads: usize,
@@ -80,19 +80,20 @@ pub(crate) struct Effort {
     pub(crate) quiet: bool,
 }
 
-/// Runs fresh trials of the champion in every case of a protocol, and writes `protocols/NAME.csv` with its record; and
-/// `protocols/NAME.states.csv` where the protocol records states.
+/// Runs fresh trials of the champion in every case of a protocol. Writes `protocols/NAME.csv` with its record, and
+/// `protocols/NAME.states.csv` if the protocol records states.
 ///
 /// Trial i of each case is trial i of [`test`](crate::evaluation::test::test), so that cases differ in nothing else.
 ///
 /// # Errors
-/// Those of [`Protocol::find`], [`Subject::read`] and [`States::record`], [`Error::Usage`] for more than 10^8 trials, [`Error::Io`].
+/// As for [`Protocol::find`], [`Subject::read`] and [`States::record`], [`Error::Usage`] for more than 10^8 trials,
+/// [`Error::Io`].
 pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: Effort) -> Result<ProtocolRun, Error> {
     let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
     let (number, protocol) = protocol(plan, &pool, name)?;
     let trials = trials_of(&protocol, effort)?;
     let subject = Subject::read(plan, directory, &pool)?;
-    // Where nothing can be written, that is said before anything is computed.
+    // An occupied directory is reported before the computation.
     files::make_folder(directory)?;
     drop(Lock::of_tests(directory.path())?);
     let asked = cases(number, None, protocol.cases.len());
@@ -115,11 +116,11 @@ pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: E
     Ok(found)
 }
 
-/// Runs the same trials of the champion as it is and with each of some lists of changes, or those of every case of a protocol with
-/// one such list; writes nothing.
+/// Runs the same trials with the intact champion and with each list of changes. With a protocol, runs every case with
+/// one list of changes. Writes no file.
 ///
 /// # Errors
-/// Those of [`Protocol::find`], [`Subject::read`], [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention),
+/// As for [`Protocol::find`], [`Subject::read`], [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention),
 /// [`Error::Usage`] for several lists with a protocol, and more than 10^8 trials.
 pub(crate) fn lesions(
     plan: &Plan<'_>,

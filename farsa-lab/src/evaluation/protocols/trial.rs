@@ -15,12 +15,12 @@ pub(crate) struct CaseTrial {
     pub(crate) case: CaseId,
     /// Its number in the case.
     pub(crate) trial: usize,
-    /// Of the test.
+    /// Seed of the test.
     pub(crate) seed: u64,
 }
 
 impl CaseTrial {
-    /// Runs it as `farsa test` does; of several populations with the first one's champion in the first place.
+    /// Runs the trial as `farsa test` does. With several populations the first one's champion comes first.
     ///
     /// # Errors
     /// That it panicked: the evaluator is not used again then.

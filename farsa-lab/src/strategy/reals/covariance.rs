@@ -58,7 +58,7 @@ fn config(settings: &Settings, genes: usize) -> Result<CmaEsConfig, Error> {
     Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, ..plain })
 }
 
-/// The same by a triangular factor in the place of axes, [`farsa_evo::covariance::CholeskyCmaEs`].
+/// CMA-ES with a triangular factor instead of axes, [`farsa_evo::covariance::CholeskyCmaEs`].
 pub(in crate::strategy) static CHOLESKY_CMA_ES: SimpleStrategy = SimpleStrategy {
     name: "cholesky-cma-es",
     summary: "Covariance matrix adaptation by a Cholesky factor, for some hundreds of genes [Krause2016].",

@@ -16,7 +16,7 @@ const SIGMA_RATE: &str = "strategy.sigma_learning_rate";
 const SIGMA_CHANGE: &str = "strategy.sigma_max_change";
 const FITNESS: &str = "strategy.fitness";
 
-/// Whether observations are normalised.
+/// Setting of normalized observations.
 fn normalise() -> Setting {
     Setting::flag(NORMALISE, false).doc(
         "Whether each channel of the observations is normalised by its mean and standard deviation in all generations before.",

@@ -19,7 +19,7 @@ const EMITTERS: &str = "strategy.emitters";
 /// Points that a tessellation is made of, for each cell.
 const POINTS: usize = 10;
 
-/// How behaviours are divided.
+/// Division of the measures into cells.
 fn division() -> [Setting; 2] {
     [
         Setting::word(DIVISION, "grid", &["grid", "cvt"]).doc(

@@ -1,22 +1,21 @@
 //! Strategies over real genes by name.
 //!
-//! A real gene is 0 in the middle of its parameter's range and -1 and 1 at the ends, so that step sizes are in the unit of
-//! half a range.
-//!
-//! - `genetic`: generational, of evolution strategies, and steady state
-//! - `cosyne`: cooperative co-evolution of weights
-//! - `covariance`: covariance matrix adaptation, full and separable
-//! - `natural`: natural evolution strategies
-//! - `gradient`: estimated gradients
-//! - `pareto`: several objectives
-//! - `map_elites`: archives of individuals that behave differently
+//! A real gene is 0 in the middle of its parameter's range and -1 and 1 at the ends. So step sizes are in units of half
+//! a range.
 
+/// Cooperative coevolution of weights.
 mod cosyne;
+/// Covariance matrix adaptation, full and separable.
 mod covariance;
+/// Generational, evolution strategies, and steady state.
 mod genetic;
+/// Estimated gradients.
 mod gradient;
+/// Archives of individuals with different measures.
 mod map_elites;
+/// Natural evolution strategies.
 mod natural;
+/// Several objectives.
 mod pareto;
 
 use crate::error::Error;
@@ -39,7 +38,7 @@ fn bounds(genes: usize) -> Vec<[f64; 2]> {
     vec![[-1.0, 1.0]; genes]
 }
 
-/// How many generations, and individuals of each.
+/// Settings of the number of generations and of individuals.
 fn sizes(population: Setting) -> Vec<Setting> {
     let generations = Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1);
     vec![generations.doc("Generations that are evaluated; the one thing that a resumed run may change."), population]

@@ -12,7 +12,7 @@ const MEAN_RATE: &str = "strategy.mean_learning_rate";
 const SIGMA_RATE: &str = "strategy.sigma_learning_rate";
 const SHAPE_RATE: &str = "strategy.shape_learning_rate";
 
-/// Settings of learning rates, of which 0 stands for the default of table 1 of the source.
+/// Settings of learning rates. 0 is the default of table 1 of the source.
 fn rate(key: &str, of: &str) -> Setting {
     let doc = format!("Learning rate of {of}; 0 for that of the source, which depends on the number of genes.");
     Setting::number(key, 0.0, 0.0..=10.0).given().doc(&doc)
