@@ -1,6 +1,6 @@
 //! Control steps of planar worlds: a Khepera through sensors and ports, many Kheperas in lanes, and ten thousand in one arena.
 //!
-//! `cargo bench --bench arena` measures; elements are robot steps.
+//! `cargo bench --bench arena` measures, elements are robot steps.
 #![allow(missing_docs)]
 
 use std::hint::black_box;
@@ -23,9 +23,9 @@ fn arena() -> Arena {
     arena
 }
 
-/// Weights of a robot that turns away from what is in front of it: it goes about, and meets walls and the cylinder.
+/// Weights of a robot that turns away from near surfaces: it drives around, and touches walls and the cylinder.
 fn parameters() -> Vec<f32> {
-    // Left to right in front, six sensors to the left and the right wheel; then the biases.
+    // Left to right in front, six sensors to the left and the right wheel. Then the biases.
     let weights = [[4.0, -4.0], [4.0, -5.0], [3.0, -6.0], [-5.0, 2.0], [-5.0, 3.0], [-4.0, 4.0]];
     weights.into_iter().flatten().chain([2.0, 1.6]).collect()
 }
@@ -73,7 +73,7 @@ fn drive(world: &mut World, parts: &MobileParts, y: [f32; 2]) {
     }
 }
 
-/// The ring by what a world's port tells.
+/// Reads the ring through a world's port.
 fn ring<W>(world: &W, robot: BodyId, radius: f32, axes: &[[f32; 2]], out: &mut [f32])
 where
     W: Planar<Body = BodyId> + Kinematics,
@@ -105,7 +105,7 @@ where
     }
 }
 
-/// As many worlds as there are lanes, each with a network of its own: ring, network, wheels, step.
+/// As many worlds as lanes, each with its own network: ring, network, wheels, step.
 fn lanes(c: &mut Criterion) -> Result<(), ArenaError> {
     let mut group = c.benchmark_group("arena");
     for (instructions, lanes) in

@@ -1,6 +1,6 @@
 //! One 10 ms control step of the whole loop, one world on one core, and the kernels below it.
 //!
-//! `cargo bench` measures; instructions are counted by `./ci callgrind`.
+//! `cargo bench` measures times, and `./ci callgrind` counts instructions.
 #![allow(missing_docs)]
 
 mod scene;

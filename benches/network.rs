@@ -1,7 +1,7 @@
 //! One step of the network, from borrowed parameters, by its size and at each instruction set that the machine runs.
 //!
-//! `cargo bench --bench network` measures; instructions are counted by `./ci callgrind`. The continuous networks stand beside a
-//! naive version in Rust and, where `python3` (or what `PYTHON` names) has it, beside numpy.
+//! `cargo bench --bench network` measures times, and `./ci callgrind` counts instructions. The continuous networks are
+//! compared with a naive version in Rust and, where `python3` (or the program in `PYTHON`) has it, with numpy.
 #![allow(missing_docs)]
 
 use std::hint::black_box;
@@ -41,7 +41,7 @@ fn steps(c: &mut Criterion) {
     group.finish();
 }
 
-/// What one writes first: neuron by neuron, a row of weights each, in single precision.
+/// The obvious version: neuron by neuron, a row of weights each, in single precision.
 struct Naive {
     time_step: f32,
     states: Vec<f32>,
@@ -116,7 +116,7 @@ fn continuous(c: &mut Criterion) {
         });
     }
     group.finish();
-    // The same in numpy, in the same run; not where benches are only tried.
+    // The version in numpy, in this run, except where benches are only tried.
     if !std::env::args().any(|argument| argument == "--test") {
         let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/ctrnn_numpy.py");

@@ -1,9 +1,9 @@
-//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles; plays scripts
-//! in either engine and prints what comes of it.
+//! Our side of the comparison with MuJoCo. It records four phases, steps them, and prints times or joint angles. It
+//! also plays scripts in either engine and prints the results.
 //!
 //! `record FOLDER`, `time|trace PHASE.txt STEPS_PER_10_MS SECONDS`, `lanes PHASE.txt STEPS_PER_10_MS SECONDS 8|16`,
-//! `grasps STARTS seen|blind CM STEPS_PER_10_MS`, `rest|press STEPS_PER_10_MS`, the last three with the program
-//! `step_mujoco` and a model after it for MuJoCo; the script `run` beside it calls it.
+//! `grasps STARTS seen|blind CM STEPS_PER_10_MS`, `rest|press STEPS_PER_10_MS`. The last three take the program
+//! `step_mujoco` and a model for MuJoCo as well. The script `run` in this folder calls it.
 #![allow(missing_docs)]
 
 mod drive;
@@ -27,16 +27,18 @@ use farsa::physics::articulated::{Precision, World};
 use farsa_experiments::reach_grasp_lift::{Config, Scene};
 use phase::{Failure, MUSCLES, Phase, command, world};
 
-/// After so many what the sphere slips in the hand is measured: the phase begins without the contacts' impulses.
+/// The number of steps before the slip of the sphere is measured, because the phase begins without the contacts'
+/// impulses.
 const SETTLED: usize = 20;
 
-/// The sphere's centre in the palm's frame [m].
+/// The sphere's center in the palm's frame [m].
 fn held<R: Precision>(world: &World<R>) -> [f64; 3] {
     let place = world.pose_of(ArmAndHand::PALM).cast::<f64>();
     place.transform_back(world.pose_of(Tabletop::SPHERE).cast::<f64>().position)
 }
 
-/// Microseconds per control step; touching pairs and points; what the sphere slipped in the hand [mm], its height [mm].
+/// Measures microseconds per control step, touching pairs and points, the slip of the sphere in the hand [mm], and its
+/// height [mm].
 fn time<R: Precision>(scene: &Scene, phase: &Phase, substeps: u32, seconds: f64) -> Result<(), Failure> {
     let mut world = world::<R>(scene, substeps, phase.contacts)?;
     phase.place(&mut world);
@@ -106,7 +108,7 @@ fn play<E: Engine>(scene: &Arc<Scene>, engine: &mut E, script: &[&str]) -> Resul
     }
 }
 
-/// The same in ours, or in MuJoCo where its program and model are named.
+/// Plays a script in our engine, or in MuJoCo where its program and model are given.
 fn play_in(scene: &Arc<Scene>, script: &[&str], substeps: u32, theirs: &[&str]) -> Result<(), Failure> {
     match *theirs {
         [] => play(scene, &mut Ours::new(scene, substeps)?, script),
@@ -120,7 +122,7 @@ fn main() -> Result<(), Failure> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let scene = Arc::new(Scene::new(Config::default())?);
     match arguments[..] {
-        // Of `cargo bench`, which measures nothing here.
+        // An argument of `cargo bench`, which measures nothing here.
         [.., "--bench"] => {
             println!("benches/mujoco/run measures");
             Ok(())

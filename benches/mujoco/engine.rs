@@ -1,4 +1,5 @@
-//! Both engines as what a script can drive: told the state after every control step, it answers with commands.
+//! Both engines behind one interface for scripts. A script receives the state after every control step and returns
+//! commands.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write as _};
@@ -21,13 +22,13 @@ pub(crate) struct Touching {
     pub(crate) force: f64,
 }
 
-/// What an engine tells of its world.
+/// The state of an engine's world.
 pub(crate) struct Seen {
     q: [f32; JOINTS],
     v: [f32; JOINTS],
-    /// The sphere's centre in the palm's frame \[m\].
+    /// The sphere's center in the palm's frame \[m\].
     pub(crate) held: [f64; 3],
-    /// Height of the sphere's centre \[m\].
+    /// Height of the sphere's center \[m\].
     pub(crate) height: f64,
     pub(crate) touching: Vec<Touching>,
 }
@@ -48,7 +49,7 @@ impl Joints for Seen {
 }
 
 impl Seen {
-    /// How a pair touches; depth and force 0 when it does not.
+    /// Returns the contact of a pair, with depth and force 0 without one.
     pub(crate) fn contact(&self, pair: PairId) -> Touching {
         let none = Touching { pair, depth: 0.0, force: 0.0 };
         self.touching.iter().find(|touching| touching.pair == pair).copied().unwrap_or(none)
@@ -57,7 +58,7 @@ impl Seen {
 
 /// Something that moves the scene.
 pub(crate) trait Engine {
-    /// Starts anew where a phase begins, for so many control steps.
+    /// Restarts at the beginning of a phase, for `steps` control steps.
     fn start(&mut self, phase: &Phase, steps: usize) -> Result<Seen, Failure>;
     /// Takes a control step.
     fn step(&mut self, words: &[f32; WORDS]) -> Result<Seen, Failure>;
@@ -101,7 +102,7 @@ impl Engine for Ours {
     }
 }
 
-/// MuJoCo, in a process of its own that `step_mujoco.c` is.
+/// MuJoCo, in the process of `step_mujoco.c`.
 pub(crate) struct Theirs {
     scene: Arc<Scene>,
     // The input closes first, which ends the process.

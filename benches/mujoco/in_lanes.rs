@@ -1,4 +1,4 @@
-//! The same phases in many worlds at once, one in a lane, each some way ahead of its neighbour.
+//! The phases in many worlds at once, one in a lane, each some steps ahead of its neighbor.
 
 use std::time::Instant;
 
@@ -10,10 +10,11 @@ use farsa_experiments::reach_grasp_lift::Scene;
 
 use crate::phase::{Failure, MUSCLES, Phase, command, model};
 
-/// How many control steps a lane is ahead of its neighbour.
+/// The control steps by which a lane is ahead of its neighbor.
 const AHEAD: usize = 5;
 
-/// Microseconds per world and control step: eight lanes at AVX2, sixteen at AVX-512; nothing where they do not run.
+/// Measures microseconds per world and control step: eight lanes at AVX2, sixteen at AVX-512, or nothing where they do
+/// not run.
 pub(crate) fn time(scene: &Scene, phase: &Phase, substeps: u32, seconds: f64, lanes: &str) -> Result<(), Failure> {
     let model = model::<f32>(scene, substeps, phase.contacts)?;
     match lanes {

@@ -1,4 +1,4 @@
-//! What comes of it: grasps from random starts, a sphere at rest, a finger that presses, in either engine.
+//! Outcomes in either engine: grasps from random starts, a sphere at rest, a finger that presses.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use crate::phase::{Failure, JOINTS, Phase};
 /// When the hand has lifted and held still for a while, and for how long the sphere shall stay in it \[control steps\].
 const LIFTED: usize = 500;
 const HOLD: usize = 500;
-/// The sphere counts as held when its centre is this high \[m\], off the table, for the last second.
+/// The sphere counts as held when its center is this high \[m\], off the table, for the last second.
 const HIGH: f64 = 0.05;
 const SECOND: usize = 100;
-/// How hard the finger presses \[N\].
+/// The force of the finger [N].
 const PRESSED: f64 = 5.0;
 
 /// A scene at rest, the sphere lying on the table.
@@ -29,11 +29,11 @@ fn at_rest(scene: &Scene, q: &[f64], [x, y]: [f64; 2]) -> Phase {
     Phase { contacts: true, q, v: [0.0; JOINTS], sphere: (Pose::at(at), Twist::default()), commands: Vec::new() }
 }
 
-/// A line for each start: whether the sphere was held; how far it slipped in the hand in 5 s \[mm\]; the deepest contact
+/// Prints a line for each start: success of the grasp, slip in the hand in 5 s \[mm\], and the deepest contact
 /// meanwhile \[um\].
 ///
-/// The script sees the joints of the engine that it drives; of the sphere's place it knows the displaced one or
-/// (`blind`) the one without displacement.
+/// The script reads the joints of its engine. It receives the displaced place of the sphere, or (`blind`) the one
+/// without displacement.
 pub(crate) fn grasps<E: Engine>(scene: &Arc<Scene>, engine: &mut E, starts: u32, blind: bool) -> Result<(), Failure> {
     let (statics, motors) = (Arc::new(Statics::new(scene)?), scene.motors()?);
     for start in 0..starts {
@@ -92,7 +92,7 @@ pub(crate) fn rest<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(), Failu
 /// A line: how deep the index finger's tip presses into the table \[um\] and with what force \[N\], means of the last
 /// second of 6.
 ///
-/// The finger is bent, the arm presses it down; the force is regulated to [`PRESSED`].
+/// The finger is bent, and the arm presses it down. The force is regulated to [`PRESSED`].
 pub(crate) fn press<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(), Failure> {
     let statics = Statics::new(scene)?;
     let (body, point) = scene.arm.fingertip(Finger::Index);

@@ -23,7 +23,7 @@ pub(crate) const STEPS: usize = 200;
 
 /// Where a phase begins and what is commanded in it.
 pub(crate) struct Phase {
-    /// Whether anything may touch anything.
+    /// True if anything may touch anything.
     pub(crate) contacts: bool,
     pub(crate) q: [f32; JOINTS],
     pub(crate) v: [f32; JOINTS],
@@ -49,7 +49,7 @@ impl Phase {
         text
     }
 
-    /// The muscles, where the phase begins, and that so many commands follow.
+    /// Prints the muscles, the start of the phase, and the number of commands that follow.
     pub(crate) fn start(&self, scene: &Scene, commands: usize) -> String {
         let mut words: Vec<f64> = Vec::new();
         for actuator in &scene.robot.actuators {

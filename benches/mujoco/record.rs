@@ -1,4 +1,4 @@
-//! How the phases come about: our own world, driven by scripts whose commands are recorded.
+//! The recording of phases: our own world, driven by scripts whose commands are recorded.
 
 use std::fs;
 use std::path::Path;
@@ -70,7 +70,7 @@ fn on_table(scene: &Scene) -> Result<Phase, Failure> {
     Ok(phase)
 }
 
-/// Quick motion: every muscle follows a sine of its own between 0.5 and 2 Hz; nothing touches.
+/// Quick motion: every muscle follows a separate sine between 0.5 and 2 Hz, and nothing touches.
 fn waves(scene: &Scene) -> Result<Phase, Failure> {
     let mut world = world::<f32>(scene, scene.config.substeps, false)?;
     scene.arrange(&mut world, EpisodeId::default());

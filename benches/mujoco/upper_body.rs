@@ -1,5 +1,5 @@
-//! Our side of the cost of the iCub's upper body: the time of a dynamics step by the number of joints, and the robot and
-//! commands that MuJoCo is timed with; `upper_body.py` beside it calls it.
+//! Our side of the cost of the iCub's upper body. It measures the time of a dynamics step by the number of joints, and
+//! writes the robot and the commands for MuJoCo. The script `upper_body.py` in this folder calls it.
 //!
 //! `export FOLDER`, `time SECONDS`.
 #![allow(missing_docs)]
@@ -16,11 +16,11 @@ use farsa::body::robot::{Pair, Robot};
 use farsa::body::robots::{ArmAndHand, Chain, Icub};
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa::physics::articulated::{Batch, Model, Options, World};
-use farsa_models::{MjcfOptions, mjcf};
+use farsa_models::mjcf::{self, MjcfOptions};
 
 type Failure = Box<dyn Error>;
 
-/// Control steps that are timed, and by how many a lane is ahead of its neighbour.
+/// Timed control steps, and the number by which a lane is ahead of its neighbor.
 const STEPS: usize = 200;
 const AHEAD: usize = 5;
 /// Control steps for which a random target is held.
@@ -62,7 +62,8 @@ impl Case {
         (!matches!(actuator.law, Law::MusclePair(_))).then_some((actuator.joint, range))
     }
 
-    /// Commands of all actuators in every control step: `free`, sines about the start; `random`, targets within the limits.
+    /// Returns commands of all actuators in every control step: `free`, sines about the start, or `random`, targets
+    /// within the limits.
     fn commands(&self, phase: &str) -> Vec<Vec<[f32; 2]>> {
         let mut stream = Stream::new(1, Domain::Motor, 0, 0, 0);
         let joints: Vec<JointId> = self.robot.joints().collect();
@@ -206,7 +207,7 @@ fn times(seconds: f64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The whole robot as MuJoCo reads it, and for each phase a file with the start and the commands of every control step, both
+/// Writes the robot for MuJoCo, and for each phase a file with the start and the commands of every control step, both
 /// in the order of the joints.
 fn export(folder: &Path) -> Result<(), Failure> {
     let case = Case::icub("iCub", &Chain::ALL)?;
@@ -241,7 +242,7 @@ fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
-        // Of `cargo bench`, which measures nothing here.
+        // An argument of `cargo bench`, which measures nothing here.
         [.., "--bench"] => println!("benches/mujoco/run icub measures"),
         ["export", folder] => export(Path::new(folder))?,
         ["time", seconds] => times(seconds.parse()?)?,

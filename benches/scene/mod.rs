@@ -1,4 +1,4 @@
-//! What is measured: control steps of the whole loop in two states that can be kept, and the kernels below them.
+//! The measured scenes: control steps of the loop in two reproducible states, and the kernels below them.
 
 use std::error::Error;
 use std::fmt;
@@ -19,8 +19,8 @@ type Failure = Box<dyn Error>;
 /// Control steps after which the state is restored, so that it stays what it is called.
 const WINDOW: usize = 50;
 
-/// A network of this layout with weights in [-6, 6] and leaks in [0, 1], over the instructions that the program is compiled
-/// for: they count the same on every machine.
+/// Builds a network of this layout with weights in [-6, 6] and leaks in [0, 1], over the instructions of the build, so
+/// that counts are equal on every machine.
 pub(crate) fn network(layout: LeakyLayout) -> Result<LeakyNetwork<Vec<f32>, Vec<f32>>, Failure> {
     let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
     let leaks = |kind| kind == LeakyParameter::Leak;
@@ -30,7 +30,7 @@ pub(crate) fn network(layout: LeakyLayout) -> Result<LeakyNetwork<Vec<f32>, Vec<
     Ok(network.with_instructions(Instructions::baseline()))
 }
 
-/// The whole loop of `reach-grasp-lift` with the network in it; held commands keep the state what it is.
+/// The loop of `reach-grasp-lift` with the network in it. Held commands keep the state constant.
 pub(crate) struct Loop {
     world: World<f32>,
     senses: Senses,
@@ -87,7 +87,7 @@ impl Loop {
         Self::new(&scene, world, held)
     }
 
-    /// One control step of 10 ms: sensors, network, motors, world. What the network says is computed and not done.
+    /// Makes one control step of 10 ms: sensors, network, motors, world. The network's output is computed and not used.
     pub(crate) fn control_step(&mut self) {
         if self.tick == WINDOW {
             self.tick = 0;
@@ -101,7 +101,7 @@ impl Loop {
         self.world.step();
     }
 
-    /// How many pairs are evaluated, how many of them touch, and at how many points.
+    /// Returns the numbers of evaluated pairs, touching pairs and touching points.
     pub(crate) fn contacts(&mut self) -> Touching {
         let mut touching = Touching::new(&self.world);
         for _ in 0..WINDOW {
@@ -112,8 +112,8 @@ impl Loop {
     }
 }
 
-/// How many pairs there are; of how many the surfaces were looked at, how many touched, and at how many points: least and
-/// most over the steps between two restorations.
+/// The numbers of pairs, of pairs with examined surfaces, of touching pairs, and of points. They are least and most
+/// over the steps between two restorations.
 pub(crate) struct Touching {
     pairs: usize,
     ranges: [[usize; 2]; 3],
@@ -141,8 +141,8 @@ impl fmt::Display for Touching {
     }
 }
 
-/// The world's step alone, over and over from one state of the whole loop; with the pairs of the scene, or without any, so
-/// that the difference is what contacts cost.
+/// The world's step alone, repeated from one state of the loop. It has the pairs of the scene, or none, and the
+/// difference is the cost of contacts.
 #[allow(dead_code, reason = "instructions are counted of the whole loop")]
 pub(crate) struct Step {
     world: World<f32>,
@@ -154,7 +154,7 @@ impl Step {
     /// From the state that a loop is restored to.
     pub(crate) fn new(whole: &mut Loop, pairs: bool) -> Result<Self, Failure> {
         whole.world.restore(&whole.start);
-        // Commands that are held are given at every step; here they stay in the state.
+        // Commands that are held are given at every step. Here they stay in the state.
         whole.motors.drive(&whole.held, &mut whole.world);
         let (scene, mut world) = Loop::scene()?;
         if !pairs {
@@ -174,7 +174,7 @@ impl Step {
         self.world.step();
     }
 
-    /// How many pairs are evaluated, how many of them touch, and at how many points.
+    /// Returns the numbers of evaluated pairs, touching pairs and touching points.
     pub(crate) fn contacts(&mut self) -> Touching {
         let mut touching = Touching::new(&self.world);
         self.step();
@@ -183,14 +183,14 @@ impl Step {
     }
 }
 
-/// The same loop in every lane of a batch, each lane at another tick of the time between two restorations.
+/// The loop in every lane of a batch, each lane at another tick between two restorations.
 pub(crate) struct Lanes {
     batch: Batch,
     loops: Vec<Loop>,
 }
 
 impl Lanes {
-    /// So many lanes, stepped by these instructions.
+    /// Builds `lanes` lanes, stepped by these instructions.
     pub(crate) fn new(
         made: impl Fn() -> Result<Loop, Failure>,
         lanes: usize,
@@ -236,7 +236,8 @@ pub(crate) struct Aba {
 }
 
 impl Aba {
-    /// For the first so many joints of the arm and hand; for more than it has, arms of seven joints, each on the last.
+    /// Builds the first `joints` joints of the arm and hand. Beyond their number, arms of seven joints follow, each on
+    /// the last.
     pub(crate) fn new(joints: usize) -> Result<Self, Failure> {
         let whole = ArmAndHand::default().robot()?.segments;
         let arm = whole.iter().take(7).cycle().take(joints).enumerate().map(|(index, segment)| {

@@ -1,8 +1,8 @@
 //! Evaluations until COCO's final target (10^-8) is hit, by covariance matrix adaptation with IPOP restarts.
 //!
-//! `farsa-bbob BUDGET DIMENSION...` prints a line for each of the functions 1, 2 and 5 to 18 and the instances 1 to 15: dimension,
-//! function, instance, evaluations, and whether the target was hit. `pycma.py` prints the same of pycma. Both begin at the
-//! origin with a step size of 2, seed 1 + instance, and stop after BUDGET times the dimension.
+//! `farsa-bbob BUDGET DIMENSION...` prints a line for each of the functions 1, 2 and 5 to 18 and the instances 1 to 15.
+//! The columns are dimension, function, instance, evaluations, and success. `pycma.py` prints the lines of pycma. Both
+//! begin at the origin with a step size of 2, seed 1 + instance, and stop after BUDGET times the dimension.
 
 use std::process::ExitCode;
 
@@ -46,7 +46,7 @@ fn solve_all(dimension: u64, budget: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// Searches until the target is hit, which is noticed at once, or so many evaluations are made.
+/// Searches until the target is hit, which is detected immediately, or the evaluations are used up.
 fn solve(problem: &mut coco_rs::Problem<'_>, seed: u64, most: u64) -> Result<bool, EvoError> {
     let first = CmaEsConfig::new(vec![0.0; problem.dimension()], 2.0);
     let mut search = CmaEsRestarts::new(CmaEsRestartsConfig::new(first, RestartSchedule::Ipop), seed)?;
