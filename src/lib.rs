@@ -1,6 +1,7 @@
 // The example of the README needs `alloc`.
 #![cfg_attr(feature = "alloc", doc = include_str!("../README.md"))]
 #![cfg_attr(not(feature = "alloc"), doc = "FARSA without a heap: see the feature `alloc`.")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 
 /// Bodies as data, actuators, sensors, motors and the ports of worlds.
@@ -8,7 +9,7 @@ pub use farsa_body as body;
 /// Evolution by ask and tell.
 #[cfg(feature = "alloc")]
 pub use farsa_evo as evo;
-/// Robots from URDF and MJCF files, and back; needs std.
+/// Robots from URDF and MJCF files, and back. Needs std.
 #[cfg(feature = "models")]
 pub use farsa_models as models;
 /// Recurrent networks over borrowed parameters.

@@ -1,7 +1,7 @@
 //! The names of a first program: `use farsa::prelude::*;`.
 //!
-//! Worlds stay in their modules, because there is one of each kind: `arena::World`, `articulated::World`. The ports of all of
-//! them are here, so that a world can be stepped and asked, and a sensor read.
+//! Worlds stay in their modules, because there are several: `arena::World` and `articulated::World`. Their ports are here,
+//! so that a loop can step a world and read it.
 //!
 //! A Khepera evolves to drive in a square without running into its walls:
 //!

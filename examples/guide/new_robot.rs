@@ -10,7 +10,8 @@ use farsa::body::robot::{Collider, Joint, MassProperties, Robot, RobotError, Seg
 use farsa::body::testing::{Probe, check_arrange, check_world};
 use farsa::body::{Pose, Recorder as _};
 use farsa::physics::articulated::{Model, Options, World};
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 use farsa_view::{Camera, Page, Recording, Schema};
 
 const SHOULDER: [f64; 2] = [-1.5, 1.5]; // rad

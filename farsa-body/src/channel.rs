@@ -1,4 +1,4 @@
-//! What sensors and motors share: the error of their constructors, and writing to slices that may be short.
+//! The error of constructors of sensors and motors, and writes to slices that may be short.
 
 use core::fmt;
 
@@ -26,16 +26,16 @@ pub enum ChannelError {
         start: usize,
         /// One past the last selected channel.
         end: usize,
-        /// How many channels there are.
+        /// The number of channels.
         channels: usize,
     },
     /// A list cannot be divided into groups of one size, or is empty.
     Groups {
-        /// What is listed.
+        /// The listed parts.
         field: &'static str,
-        /// How many there are.
+        /// The number available.
         count: usize,
-        /// How many make a group.
+        /// The number of parts in a group.
         size: usize,
     },
     /// The memory given to a wrapper is too short.
@@ -71,7 +71,7 @@ pub(crate) fn positive(field: &'static str, value: f32) -> Result<f32, ChannelEr
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
 }
 
-/// Checks that so many things are one or more groups of this size.
+/// Checks that `count` parts form one or more groups of this size.
 pub(crate) fn groups(field: &'static str, count: usize, size: usize) -> Result<(), ChannelError> {
     if size > 0 && count > 0 && count.is_multiple_of(size) {
         Ok(())
@@ -103,13 +103,13 @@ pub(crate) fn write<const N: usize>(out: &mut [f32], values: [f32; N]) {
     }
 }
 
-/// The value in [0, 1] nearest to `y`; 0 for NaN.
+/// The value in [0, 1] nearest to `y`, or 0 for NaN.
 #[inline]
 pub(crate) fn unit(y: f32) -> f32 {
     farsa_num::Scalar::clamp(y, 0.0, 1.0)
 }
 
-/// The value in [-1, 1] nearest to `x`; 0 for NaN.
+/// The value in [-1, 1] nearest to `x`, or 0 for NaN.
 #[inline]
 pub(crate) fn signed_unit(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { farsa_num::Scalar::clamp(x, -1.0, 1.0) }

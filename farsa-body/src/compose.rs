@@ -1,7 +1,7 @@
 //! Sensors and motors made of sensors and motors: tuples, arrays, slices, options, references and boxes.
 //!
-//! The parts are read and driven in order, each over its own part of the slice; a short slice serves the first parts
-//! in full and leaves the last with what remains.
+//! The parts are read and driven in order, each over its own part of the slice. A short slice serves the first parts in
+//! full and leaves the last with what remains.
 
 #[cfg(feature = "alloc")]
 use alloc::{boxed::Box, vec::Vec};
@@ -88,7 +88,7 @@ impl<W: ?Sized, T: Motor<W>> Motor<W> for [T] {
     }
 }
 
-/// What owns or borrows parts hands every call to them.
+/// Owners and borrowers of parts forward every call to them.
 macro_rules! forward {
     ([$($generics:tt)*] $part:ty, $owner:ty, $this:ident => $inner:expr, $inner_mut:expr) => {
         impl<$($generics)*> Channels for $owner

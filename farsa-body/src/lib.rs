@@ -4,6 +4,7 @@
     not(feature = "alloc"),
     doc = "Actuators, ports, sensors and motors of robots; the feature `alloc` adds descriptions."
 )]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 
 #[cfg(feature = "alloc")]

@@ -35,7 +35,7 @@ id! {
     PairId
 }
 
-/// The names by which a world knows its parts; all worlds of FARSA use [`BodyId`], [`JointId`] and [`ActuatorId`].
+/// The handles of a world's parts. All worlds of FARSA use [`BodyId`], [`JointId`] and [`ActuatorId`].
 #[diagnostic::on_unimplemented(message = "`{Self}` is no world of FARSA: it names no bodies, joints or actuators")]
 pub trait Handles {
     /// A rigid body.
@@ -85,10 +85,11 @@ pub trait Joints: Handles {
 pub trait Actuated: Handles {
     /// Sets an actuator's command, which holds until the next one.
     ///
-    /// A muscle pair takes [agonist, antagonist] activations [0..1]; a servo the desired position [rad or m], a
-    /// torque motor its torque [N m or N] and a velocity motor its speed [rad/s or m/s] in the first place, and none of these
-    /// reads the second. A wheel takes its speed [rad/s], an
-    /// LED its brightness, a signal its value and an attachment device whether it holds (above 0.5) [0..1].
+    /// A muscle pair takes [agonist, antagonist] activations [0..1]. The others read the first value only: a servo its
+    /// desired position [rad or m], a torque motor its torque [N m or N], a velocity motor its speed [rad/s or m/s].
+    ///
+    /// A wheel takes its speed [rad/s], an LED its brightness and a signal its value [0..1]. An attachment device holds
+    /// above 0.5.
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
 
@@ -100,13 +101,13 @@ pub trait Actuated: Handles {
 pub trait ExternalForces: Handles {
     /// Lets a force [N] act on a body at a point [m], both in the world's axes, during the next control step alone.
     ///
-    /// Force and moment about the centre of mass keep their direction in that step; all that is applied to a body before it adds up.
-    /// Nothing happens to a body that does not move or exist. A snapshot does not hold what waits for the next step, and
-    /// [`Arrange::clear`] and [`Snapshot::restore`] forget it.
+    /// Force and moment about the center of mass keep their direction in that step. Several forces on a body add up. A
+    /// body that does not move or does not exist is unaffected. A snapshot does not hold pending forces, and
+    /// [`Arrange::clear`] and [`Snapshot::restore`] discard them.
     fn apply_force(&mut self, body: Self::Body, point: [f32; 3], force: [f32; 3]);
 }
 
-/// What a ray met.
+/// The first surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
@@ -114,7 +115,7 @@ pub struct Hit<B> {
     pub distance: f32,
     /// Outward unit normal of the surface, in the world's axes.
     pub normal: [f32; 3],
-    /// The body that was met; `None` for what does not move.
+    /// The body that was met, or `None` for what does not move.
     pub body: Option<B>,
 }
 
@@ -125,23 +126,25 @@ pub trait Rays: Handles {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
-/// What a ray of an eye meets first.
+/// The first surface on a camera's ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seen<B> {
     /// Distance along the ray [m].
     pub distance: f32,
-    /// The body that is met; `None` for what does not move.
+    /// The body that is met, or `None` for what does not move.
     pub body: Option<B>,
-    /// What colour it shows, red, green and blue [0..1]; `None` for a surface without a colour, which hides what is behind it.
+    /// The color it shows, red, green and blue [0..1], or `None` for a surface without a color, which hides what is
+    /// behind it.
     pub color: Option<[f32; 3]>,
 }
 
-/// What many rays from one place meet: the eyes of a camera with an image.
+/// Many rays from one place, for cameras with an image.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
 pub trait Vision: Handles {
-    /// The first surface on each ray from `from` [m] along unit vectors within `range` [m], in the world's axes, other than those of
-    /// `but`; `seen` [directions]. What `from` lies within is not seen, nor is anything beyond the shorter of the two slices.
+    /// The first surface on each ray from `from` [m] along unit vectors within `range` [m], in the world's axes, except
+    /// those of `but`. `seen` [directions]. Bodies around `from` are invisible, and the longer slice is used only in
+    /// part.
     fn look(
         &self,
         from: [f32; 3],
@@ -152,32 +155,33 @@ pub trait Vision: Handles {
     );
 }
 
-/// How a pair of colliders touched at the end of the last step.
+/// The contact of a pair of colliders at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairContact {
     /// Number of points that carry a normal force > 0.
     pub points: u32,
-    /// Force on the pair's first body, in the world's axes [N]; the second body gets the opposite.
+    /// Force on the pair's first body, in the world's axes [N]. The second body gets the opposite.
     pub force: [f32; 3],
     /// Sum of the normal forces of the points [N].
     pub normal_force: f32,
-    /// Mean of the touching points, weighted by normal force, in the world [m]; zero when none touches.
+    /// Mean of the touching points, weighted by normal force, in the world [m], or zero when none touches.
     pub point: [f32; 3],
-    /// The largest penetration of the pair's points [m]; negative is the distance left, as far as the world knows it.
+    /// The largest penetration of the pair's points [m]. A negative value is the remaining distance, if the world
+    /// computes it.
     pub depth: f32,
 }
 
 /// Contacts between the pairs of colliders that the robot lists.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not report its contacts (port `Contacts`)")]
 pub trait Contacts: Handles {
-    /// Number of pairs; they are numbered from 0 in the order of the robot's list.
+    /// Number of pairs. They are numbered from 0 in the order of the robot's list.
     fn pairs(&self) -> usize;
-    /// The two bodies of a pair; `None` for what does not move.
+    /// The two bodies of a pair, or `None` for what does not move.
     fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
-    /// How a pair touched at the end of the last step; all zero for a pair that does not exist.
+    /// Returns the contact of a pair at the end of the last step, all zero for a pair that does not exist.
     fn pair_contact(&self, pair: PairId) -> PairContact;
-    /// Whether a point of the pair carries a normal force > 0; a world may know this faster than all of
+    /// Returns whether a point of the pair carries a normal force > 0. A world may compute this faster than all of
     /// [`pair_contact`](Self::pair_contact).
     fn touches(&self, pair: PairId) -> bool {
         self.pair_contact(pair).points > 0
@@ -188,29 +192,29 @@ pub trait Contacts: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NearbySurface<B> {
-    /// The body whose surface it is; `None` for a wall.
+    /// The body whose surface it is, or `None` for a wall.
     pub body: Option<B>,
     /// The nearest point [m].
     pub point: [f32; 2],
-    /// Distance to that point [m]; negative within a round body, 0 within another one.
+    /// Distance to that point [m]. Negative within a round body, 0 within another one.
     pub distance: f32,
-    /// Radius of a round body [m]; 0 for a wall and for a body of another form.
+    /// Radius of a round body [m], or 0 for a wall and for a body of another form.
     pub radius: f32,
-    /// What colour it shows, red, green and blue [0..1]; of a robot that of its LEDs.
+    /// The color it shows, red, green and blue [0..1]. A robot shows the color of its LEDs.
     pub color: [f32; 3],
-    /// What a robot signals [0..1]; `None` for what is no robot.
+    /// The signal of a robot [0..1], or `None` for everything else.
     pub signal: Option<f32>,
 }
 
-/// What is seen along a line in a planar world.
+/// The first surface along a line in a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanarHit<B> {
     /// Distance along the line [m].
     pub distance: f32,
-    /// The body that is seen; `None` for a wall.
+    /// The body that is seen, or `None` for a wall.
     pub body: Option<B>,
-    /// What colour it shows, red, green and blue [0..1].
+    /// The color it shows, red, green and blue [0..1].
     pub color: [f32; 3],
 }
 
@@ -220,21 +224,21 @@ pub struct PlanarHit<B> {
 pub struct Lamp<B> {
     /// The body that shines.
     pub body: B,
-    /// Its centre [m].
+    /// Its center [m].
     pub position: [f32; 2],
-    /// How strong it is, in a unit of the caller's choice.
+    /// The intensity, in a unit of the caller's choice.
     pub intensity: f32,
 }
 
-/// What is to be seen in a plane: that of a planar world, or of the eyes in another one.
+/// Surfaces and lines of sight in a plane, of a planar world or at the height of a camera.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces and their colours (port `Sight`)")]
 pub trait Sight: Handles {
     /// Reports every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
     ///
     /// The robot that asks is reported, too.
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<Self::Body>));
-    /// The first surface along the unit vector `direction` from `from` [m] within `range` [m], other than that of `but`;
-    /// what `from` lies within is not seen.
+    /// The first surface along the unit vector `direction` from `from` [m] within `range` [m], except that of `but`.
+    /// Bodies around `from` are invisible.
     fn cast_planar(
         &self,
         from: [f32; 2],
@@ -244,28 +248,28 @@ pub trait Sight: Handles {
     ) -> Option<PlanarHit<Self::Body>>;
 }
 
-/// What there is to see and to stand on in a world of the plane, for sensors of mobile robots.
+/// The ground, lamps and attachments of a planar world, for sensors of mobile robots.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its ground and lamps (port `Planar`)")]
 pub trait Planar: Sight {
-    /// The colour of the ground at a place [m]: red, green and blue [0..1].
+    /// The color of the ground at a place [m]: red, green and blue [0..1].
     fn ground(&self, at: [f32; 2]) -> [f32; 3];
     /// Reports every lamp.
     fn lamps(&self, tell: &mut dyn FnMut(Lamp<Self::Body>));
-    /// What a robot's attachment device holds.
+    /// Returns the body that a robot's attachment device holds.
     fn attached(&self, robot: Self::Body) -> Option<Self::Body> {
         let _ = robot;
         None
     }
 }
 
-/// Everything a world remembers, as numbers.
+/// The state of a world as numbers.
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot be saved and restored (port `Snapshot`)")]
 pub trait Snapshot {
     /// Length of a snapshot.
     fn snapshot_len(&self) -> usize;
-    /// Writes every word that a step or a port reads and a step or a command wrote; `out` [`snapshot_len`].
+    /// Writes every word that a step or a port reads and a step or a command wrote. `out` [`snapshot_len`].
     fn save(&self, out: &mut [f32]);
-    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits; `from` [`snapshot_len`].
+    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits. `from` [`snapshot_len`].
     fn restore(&mut self, from: &[f32]);
 }
 
@@ -275,12 +279,12 @@ pub trait Snapshot {
     note = "a board has ports, but no call can move its robot"
 )]
 pub trait Arrange: Handles {
-    /// Back to the description's own start: every joint at 0 or the nearest limit, everything at rest, commands and
-    /// contacts forgotten.
+    /// Restores the description's start: every joint at 0 or the nearest limit, everything at rest, no commands or
+    /// contacts.
     fn clear(&mut self);
     /// Puts a joint at a position [rad or m] with a speed [rad/s or m/s].
     fn place_joint(&mut self, joint: Self::Joint, position: f32, speed: f32);
-    /// Puts a floating body somewhere with a velocity; ignored for a body that hangs on a joint.
+    /// Puts a floating body somewhere with a velocity. Ignored for a body that hangs on a joint.
     fn place_body(&mut self, body: Self::Body, pose: Pose, twist: Twist);
     /// Ends the placement: what the other ports report is true again.
     fn finish_placement(&mut self);
@@ -290,13 +294,13 @@ pub trait Arrange: Handles {
 pub trait Channels {
     /// Number of values read or driven.
     fn channels(&self) -> usize;
-    /// Forgets what was remembered of an earlier episode (noise streams, delays); called at the start of each.
+    /// Discards the memory of an earlier episode (noise streams, delays). Called at the start of each.
     fn reset(&mut self) {}
 }
 
 /// Something that reads a world.
 ///
-/// A sensor of one's own names the ports it needs and works in every world that has them:
+/// A custom sensor names the ports that it needs and works in every world that has them:
 ///
 /// ```
 /// use farsa_body::ports::{Channels, Kinematics, Sensor};
@@ -320,7 +324,7 @@ pub trait Channels {
     note = "the world may lack a port that the sensor needs"
 )]
 pub trait Sensor<W: ?Sized>: Channels {
-    /// Writes one value per channel; `out` [channels]. A shorter slice gets the first channels.
+    /// Writes one value per channel. `out` [channels]. A shorter slice gets the first channels.
     fn read(&mut self, world: &W, out: &mut [f32]);
 }
 
@@ -330,6 +334,6 @@ pub trait Sensor<W: ?Sized>: Channels {
     note = "the world may lack a port that the motor needs"
 )]
 pub trait Motor<W: ?Sized>: Channels {
-    /// Turns one value per channel into commands; `y` [channels]. Of a shorter slice the first channels are driven.
+    /// Turns one value per channel into commands. `y` [channels]. A shorter slice drives the first channels.
     fn drive(&mut self, y: &[f32], world: &mut W);
 }

@@ -12,7 +12,7 @@ pub struct Pose<R = f32> {
     pub rotation: [R; 4],
 }
 
-/// How a body moves, both parts in the world's axes.
+/// The velocity of a body, both parts in the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Twist<R = f32> {
@@ -103,7 +103,7 @@ impl<R: Real> Pose<R> {
         }
     }
 
-    /// The same pose in another precision, each number rounded once.
+    /// Returns the pose in another precision, each number rounded once.
     pub fn cast<Q: Real>(&self) -> Pose<Q> {
         Pose {
             position: self.position.map(|x| Q::from_f64(x.to_f64())),

@@ -1,17 +1,17 @@
-//! What records an episode: a file, a page, a viewer.
+//! Recorders of an episode: a file, a page, a viewer.
 
 use crate::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
 use crate::pose::Pose;
 
-/// Records an episode, tick by tick: a table, a page to look at, a viewer of one's own.
+/// A recorder of an episode, tick by tick: a table, a page, a custom viewer.
 ///
-/// The loop calls what it has values for, in any order, and ends the tick with [`tick`](Self::tick). Every other method
-/// does nothing unless a recorder wants it, so a loop may pass everything and a recorder may keep a part. `()` keeps
-/// nothing and costs nothing; a pair of recorders keeps both.
+/// The loop passes its values in any order and ends the tick with [`tick`](Self::tick). Every other method has an empty
+/// default, so a loop may pass everything and a recorder may keep a part. `()` keeps nothing and costs nothing. A pair
+/// of recorders keeps both.
 ///
 /// # For implementors
-/// An episode must not depend on whether it is recorded: keep, do not answer, and do not fail. What is recorded twice
-/// in a tick replaces or adds as the method says; what is not recorded is missing (NaN in a table).
+/// An episode must not depend on its recorder, so a recorder returns nothing and cannot fail. A second value in a tick
+/// replaces or adds, as the method documents. A missing value is NaN in a table.
 ///
 /// ```
 /// use farsa_body::ports::BodyId;
@@ -38,23 +38,25 @@ pub trait Recorder {
     fn pose(&mut self, body: BodyId, pose: Pose) {
         let _ = (body, pose);
     }
-    /// A pair that touches; one call for each.
+    /// A pair that touches. One call for each.
     fn contact(&mut self, pair: PairId, contact: &PairContact) {
         let _ = (pair, contact);
     }
-    /// A ray that a sensor cast, from its origin to where it ended [m], and whether it met something; one call for each.
+    /// A ray that a sensor cast, from its origin to where it ended [m], and whether it met something. One call for
+    /// each.
     fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
         let _ = (from, to, met);
     }
-    /// A point that is not a body but worth seeing, such as one that the fitness measures from [m]; numbered from 0.
+    /// A point that is not a body but worth seeing, such as one that the fitness measures from [m], numbered from 0.
     fn point(&mut self, point: usize, position: [f32; 3]) {
         let _ = (point, position);
     }
-    /// What a pixel of a camera's image shows, red, green and blue in [0, 1]; one call for each, number 0 is the upper left one.
+    /// The color of a pixel of a camera's image, red, green and blue in [0, 1]. One call for each, number 0 is the
+    /// upper left one.
     fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
         let _ = (image, pixel, color);
     }
-    /// What was sensed [sensors].
+    /// The values of the sensors [sensors].
     fn sensors(&mut self, x: &[f32]) {
         let _ = x;
     }
@@ -62,7 +64,7 @@ pub trait Recorder {
     fn neurons(&mut self, states: &[f32]) {
         let _ = states;
     }
-    /// What the controller answered [outputs].
+    /// The outputs of the controller [outputs].
     fn outputs(&mut self, y: &[f32]) {
         let _ = y;
     }

@@ -6,7 +6,7 @@ use farsa_lab::{
     Behaviour, ControllerExport, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport, NetworkExport,
     Outcome, Rollout, SensorExport, SensorReading, Task, TaskInfo,
 };
-use farsa_models::MjcfOptions;
+use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::{Controller as _, Leak};
 use farsa_view::{Channel, Schema};
 

@@ -1,19 +1,20 @@
-//! How large the numbers of a model may be. What is read is within them, so that it is read again when it was written.
+//! Bounds of a model's numbers. Numbers within them survive writing and reading.
 
 use farsa_body::robot::{Robot, RobotError, Shape};
 
 /// A radius, half a length and half an edge are below this [m].
-pub(crate) const LARGEST: f64 = 1e9;
+pub(crate) const MAX_SIZE: f64 = 1e9;
 
-/// As far as this or further is without end [rad, m, N m, N]: what stands for an infinite one where a format wants a number.
+/// The bound from which a number counts as infinite [rad, m, N m, N]. It replaces infinity where a format requires a
+/// number.
 pub(crate) const ENDLESS: f64 = 1e9;
 
-/// Whether a shape has sizes that files may have; those of a file may also be NaN, or too small to have a half.
+/// Returns whether a shape has sizes that files may have. Sizes of a file may also be NaN, or too small to have a half.
 pub(crate) fn has_size(shape: &Shape) -> bool {
-    let positive = |size: f64| size > 0.0 && size < LARGEST;
+    let positive = |size: f64| size > 0.0 && size < MAX_SIZE;
     match *shape {
         Shape::Sphere { radius } => positive(radius),
-        Shape::Capsule { radius, half_length } => positive(radius) && (0.0..LARGEST).contains(&half_length),
+        Shape::Capsule { radius, half_length } => positive(radius) && (0.0..MAX_SIZE).contains(&half_length),
         Shape::Box { half } => half.into_iter().all(positive),
         Shape::Plane => true,
     }
@@ -38,7 +39,7 @@ pub(crate) fn range_from_file([low, high]: [f64; 2]) -> [f64; 2] {
     [if low <= -ENDLESS { f64::NEG_INFINITY } else { low }, if high >= ENDLESS { f64::INFINITY } else { high }]
 }
 
-/// The ends that a range has in a file; a range that begins or ends out there keeps the end that it has.
+/// The ends that a range has in a file. A range that begins or ends out there keeps the end that it has.
 pub(crate) fn range_in_file([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(high.min(-ENDLESS)), high.min(low.max(ENDLESS))]
 }

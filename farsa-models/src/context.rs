@@ -1,10 +1,10 @@
-//! What the readers of both formats carry along.
+//! The shared state of both readers.
 
 use crate::files::ModelFiles;
 use crate::options::ReadOptions;
 use crate::warnings::Warnings;
 
-/// What both readers carry along.
+/// The shared state of both readers.
 pub(crate) struct Context<'o> {
     pub(crate) files: ModelFiles,
     pub(crate) options: &'o ReadOptions,

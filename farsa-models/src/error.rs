@@ -33,95 +33,40 @@ pub enum ReadError {
     },
     /// A file's path leads out of the folders that may be read, or to nothing.
     Path {
-        /// Where the path stands.
+        /// The place of the path.
         place: SourceLocation,
         /// The path.
         path: String,
-        /// What is wrong with it.
+        /// The fault.
         why: &'static str,
     },
     /// More of something than the [`Limits`](crate::Limits) allow.
     TooMuch {
         /// Where the limit was passed.
         place: SourceLocation,
-        /// Of what.
+        /// The kind of parts.
         what: &'static str,
         /// The limit.
         limit: usize,
     },
-    /// No XML, or XML that defines entities.
+    /// XML that is not a valid model.
+    ///
+    /// The reason may be the syntax, a document type, an unknown or repeated name, a missing part, an impossible value,
+    /// several roots, or links that carry each other.
     Malformed {
-        /// Where.
+        /// The place.
         place: SourceLocation,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
-    /// A name that means nothing there.
-    Unknown {
-        /// Where.
-        place: SourceLocation,
-        /// What it should be the name of.
-        what: String,
-        /// The name.
-        name: String,
-        /// The valid name that looks most like it, if there are any.
-        nearest: Option<String>,
-    },
-    /// An element without something that it needs.
-    Missing {
-        /// Where the element is.
-        place: SourceLocation,
-        /// The element.
-        element: String,
-        /// What it lacks.
-        what: String,
-    },
-    /// An attribute whose value cannot be.
-    Value {
-        /// Where.
-        place: SourceLocation,
-        /// The element.
-        element: String,
-        /// The attribute.
-        attribute: &'static str,
-        /// Its value.
-        value: String,
-        /// What it should be.
-        why: String,
-    },
-    /// A name or thing of which there may be one only.
-    Twice {
-        /// Where the second is.
-        place: SourceLocation,
-        /// What it is.
-        what: String,
-        /// Its name.
-        name: String,
-        /// The line of the first.
-        first: usize,
-    },
-    /// Something that a description cannot hold and that would change the robot if it were left out.
+    /// A valid part that a description cannot hold, and whose omission would change the robot.
     Unsupported {
-        /// Where.
+        /// The place.
         place: SourceLocation,
         /// The element.
         element: String,
-        /// What there is no place for, and what to do.
+        /// The part that cannot be held, and a remedy.
         why: String,
-    },
-    /// A tree with more than one root.
-    Roots {
-        /// Where the second root is.
-        place: SourceLocation,
-        /// The roots' names.
-        names: Vec<String>,
-    },
-    /// Links that carry each other.
-    Cycle {
-        /// Where the first of them is.
-        place: SourceLocation,
-        /// Their names.
-        names: Vec<String>,
     },
     /// A mass or inertia that a body cannot have, or that one that moves cannot do with.
     Mass {
@@ -131,16 +76,16 @@ pub enum ReadError {
         body: String,
         /// Its mass [kg].
         mass: f64,
-        /// Its inertia [xx, yy, zz, xy, xz, yz; kg m2].
+        /// Its inertia [xx, yy, zz, xy, xz, yz, kg m2].
         inertia: [f64; 6],
     },
-    /// A mesh's file that is none.
+    /// A mesh's file that contains no mesh.
     Mesh {
         /// Where the mesh is named.
         place: SourceLocation,
         /// The file.
         path: String,
-        /// What is wrong with it.
+        /// The fault.
         why: String,
     },
     /// The robot that the file describes is not valid for another reason.
@@ -159,25 +104,7 @@ impl fmt::Display for ReadError {
             Self::Path { place, path, why } => write!(f, "{place}: {path:?} {why}"),
             Self::TooMuch { place, what, limit } => write!(f, "{place}: more than {limit} {what}"),
             Self::Malformed { place, why } => write!(f, "{place}: {why}"),
-            Self::Unknown { place, what, name, nearest } => {
-                write!(f, "{place}: unknown {what} `{name}`")?;
-                match nearest {
-                    Some(nearest) => write!(f, "; the nearest is `{nearest}`"),
-                    None => write!(f, "; there is none"),
-                }
-            }
-            Self::Missing { place, element, what } => write!(f, "{place}: {element} has no {what}"),
-            Self::Value { place, element, attribute, value, why } => {
-                write!(f, "{place}: {element}: {attribute} is {value:?}, {why}")
-            }
-            Self::Twice { place, what, name, first } => {
-                write!(f, "{place}: a second {what} `{name}`, the first is in line {first}")
-            }
             Self::Unsupported { place, element, why } => write!(f, "{place}: {element}: {why}"),
-            Self::Roots { place, names } => {
-                write!(f, "{place}: {} links hang on nothing ({}); a robot has one root", names.len(), few(names))
-            }
-            Self::Cycle { place, names } => write!(f, "{place}: links carry each other: {}", few(names)),
             Self::Mass { place, body, mass, inertia } => {
                 let hint = if *mass > 0.0 && inertia.iter().any(|x| *x != 0.0) {
                     "no body has"
@@ -201,14 +128,12 @@ impl std::error::Error for ReadError {
     }
 }
 
-/// The first names of a list.
-fn few(names: &[String]) -> String {
-    let shown: Vec<&str> = names.iter().take(8).map(String::as_str).collect();
-    let rest = if names.len() > shown.len() { ", ..." } else { "" };
-    format!("{}{rest}", shown.join(", "))
+/// The error of a second part where only one can be.
+pub(crate) fn repeated(place: SourceLocation, what: &str, name: &str, first: usize) -> ReadError {
+    ReadError::Malformed { place, why: format!("a second {what} `{name}`, the first is in line {first}") }
 }
 
-/// The name of `valid` that takes the fewest changed, added or dropped letters; the first of several.
+/// The name of `valid` that takes the fewest changed, added or dropped letters. The first of several.
 pub(crate) fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(&'a str, usize)> {
     valid.into_iter().map(|candidate| (candidate, distance(name, candidate))).min_by_key(|(_, distance)| *distance)
 }

@@ -9,7 +9,7 @@ use crate::options::ReadOptions;
 
 /// Reads files for a model.
 pub(crate) struct ModelFiles {
-    /// Where relative paths begin, and the folder that they must stay in; both without links.
+    /// Where relative paths begin, and the folder that they must stay in. Both without links.
     start: Option<PathBuf>,
     root: Option<PathBuf>,
     packages: Vec<PathBuf>,
@@ -42,7 +42,7 @@ impl ModelFiles {
         })
     }
 
-    /// The text of the model itself, wherever it is; from a pipe as well, as the caller names it and not a file.
+    /// The text of the model itself, wherever it is. From a pipe as well, as the caller names it and not a file.
     pub(crate) fn model(&mut self, path: &Path) -> Result<String, ReadError> {
         let place = SourceLocation { file: path.display().to_string(), line: 1 };
         let kind = path.metadata().map_err(|error| fault(path, &error))?.file_type();
@@ -93,7 +93,7 @@ impl ModelFiles {
         other_kind(kind).map_or(Ok(path), |why| Err(refused(why)))
     }
 
-    /// Where the model says that a file is.
+    /// Returns the path of a file in the model, as the model gives it.
     fn path(&self, name: &str) -> Result<PathBuf, &'static str> {
         if let Some(within) = name.strip_prefix("package://") {
             if self.packages.is_empty() {
@@ -116,7 +116,7 @@ impl ModelFiles {
 
 const PIPE: &str = "is a pipe; a model's files are regular ones";
 
-/// What something is instead of a regular file.
+/// Returns a message for everything that is not a regular file.
 fn other_kind(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
@@ -133,13 +133,13 @@ fn fault(path: &Path, why: &dyn ToString) -> ReadError {
     ReadError::File { path: path.display().to_string(), why: why.to_string() }
 }
 
-/// `path` without links, if it is within `root`; `given` is what of it the model says.
+/// Returns `path` without links, if it is within `root`. `given` is the part in the model.
 fn inside(root: &Path, path: &Path, given: &str) -> Result<PathBuf, &'static str> {
     let absolute = |part| matches!(part, Component::RootDir | Component::Prefix(_));
     if given.contains('\\') || Path::new(given).components().any(absolute) {
         return Err("is no path relative to the model's folder");
     }
-    // A file that is not there is told apart from one outside only where that tells nothing about the outside.
+    // An absent file and one outside have different errors only if the error reveals nothing about the outside.
     let mut depth = 0_i32;
     let base = path.components().count() - Path::new(given).components().count();
     let within = base.saturating_sub(root.components().count());

@@ -8,8 +8,8 @@ use farsa_body::ports::BodyId;
 pub struct Frame {
     /// Its name in the file, or `bodyN` for MJCF's N-th if it has none.
     pub name: String,
-    /// The segment that it is fixed to; `None` for the world.
+    /// The segment that it is fixed to, or `None` for the world.
     pub body: Option<BodyId>,
-    /// Where its frame is in the segment's; the identity unless a joint is off the body's origin.
+    /// Where its frame is in the segment's. The identity unless a joint is off the body's origin.
     pub placement: Pose<f64>,
 }

@@ -16,59 +16,66 @@ use crate::xml::tree::Tree;
 
 /// A robot that was read from a file.
 ///
-/// **What is read.** URDF: links, inertials, joints but `planar` and `spherical` ones, limits, damping, collision shapes;
-/// a joint's largest effort makes a [`Torque`](farsa_body::actuators::Torque) of the joint's name. MJCF: `compiler`, `default` classes,
-/// `include`, bodies and `frame`s, inertials or the geoms' inertias, hinges, slides and free joints with range, damping,
-/// armature and `ref`, geoms, contact pairs with exclusions and surfaces as they are at rest, motors, position and velocity
-/// actuators on joints (also as `general`). Names that the format does not know are errors, with the nearest that it does.
-/// What a description has no place for is listed in [`Imported::warnings`], or an error where leaving it out would make
-/// another robot: ball joints, `attach`, `replicate`, `composite`, `flexcomp`.
+/// **Content.** URDF: links, inertials, joints except `planar` and `spherical` ones, limits, damping, collision shapes.
+/// A joint's largest effort makes a [`Torque`](farsa_body::actuators::Torque) of the joint's name.
+///
+/// MJCF: `compiler`, `default` classes, `include`, bodies and `frame`s, inertials or the geoms' inertias. Hinges,
+/// slides and free joints have range, damping, armature and `ref`. Geoms and contact pairs have exclusions and surfaces
+/// at rest. Motors, position and velocity actuators act on joints (also as `general`).
+///
+/// Unknown names are errors, with the nearest valid name. A part without a counterpart in a description is listed in
+/// [`Imported::warnings`]. It is an error if its omission would make another robot: ball joints, `attach`, `replicate`,
+/// `composite`, `flexcomp`.
 ///
 /// **Rules of translation.**
-/// - *Several joints of a MuJoCo body* make segments between them, called after body and joint, each with a small share of
-///   the body's mass ([`ReadOptions::between`]): a description has one joint a segment, and all that moves has a mass.
-/// - *A joint off its body's origin*: the segment's frame is at the joint; [`Imported::frames`] says where the body's is.
+/// - *Several joints of a MuJoCo body* make segments between them, named after body and joint. Each has a small share
+///   of the body's mass ([`ReadOptions::between`]), because a description has one joint a segment, and every moving
+///   segment a mass.
+/// - *A joint off its body's origin*: the segment's frame is at the joint, and [`Imported::frames`] has the body's
+///   frame.
 /// - *Fixed links* stay segments. Only if a moving one has no mass itself it takes over that of the links fixed to it.
-/// - *Several bodies in the world* are one description; a URDF has one root.
+/// - *Several bodies in the world* are one description. A URDF has one root.
 /// - *Shapes that we lack*: a cylinder becomes the capsule of its radius and length, or a ball of its radius if it is
-///   flatter than that; an ellipsoid the capsule along its longest axis with the radius of the next. In a URDF a cylinder
-///   with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses are those of the true shapes.
-/// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that hold all their points, the
-///   latter two along the mesh's own axes or the principal axes of its surface; meshes that can touch nothing are left out.
-/// - *What is only drawn*: visuals of a URDF, unless a link has one of a mesh, and geoms of an MJCF of group 1 or 2 that can touch
-///   nothing, become [`Visual`](farsa_body::robot::Visual)s with the colours that they have without a texture. Colours of other geoms are
-///   listed: what cameras see is not the look.
-/// - *Bounds*: radii and halves of lengths and edges are below 1e9 m, or an error; ends of ranges and efforts from 1e9 on are
-///   none. What was read is written and read back as the same robot, but for what [`mjcf::write`](crate::mjcf::write()) and
-///   [`urdf::write`](crate::urdf::write()) say that their formats lack.
+///   flatter than that. An ellipsoid the capsule along its longest axis with the radius of the next. In a URDF a
+///   cylinder with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses
+///   are those of the true shapes.
+/// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that contain all their points.
+///   Capsule and box are along the mesh's own axes or the principal axes of its surface. Meshes that can touch nothing
+///   are left out.
+/// - *Visuals*: visuals of a URDF, except those of links with a mesh, become [`Visual`](farsa_body::robot::Visual)s. So
+///   do geoms of an MJCF of group 1 or 2 that can touch nothing. Their colors are those without a texture. Colors of
+///   other geoms are listed, because cameras do not see visuals.
+/// - *Bounds*: radii and halves of lengths and edges of 1e9 m or more are errors. Ends of ranges and efforts from 1e9
+///   on become infinite. The robot is written and read back unchanged, except for the parts that
+///   [`mjcf::write`](crate::mjcf::write()) and [`urdf::write`](crate::urdf::write()) list.
 /// - *Contacts of MuJoCo* are springs and dampers here: stiffness and damping are those at rest at full impedance.
-/// - *Commands* are efforts and joint positions; MuJoCo's, before its gears, are other numbers.
+/// - *Commands* are efforts and joint positions. MuJoCo's, before its gears, are other numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Imported {
-    /// The robot; valid.
+    /// The robot, valid.
     pub robot: Robot,
     /// Where the file's links or bodies are in it, in the file's order.
     pub frames: Vec<Frame>,
-    /// What was left out or replaced, in alphabetical order.
+    /// The omitted and replaced parts, in alphabetical order.
     pub warnings: Vec<Warning>,
 }
 
 impl Imported {
-    /// Reads a URDF or MJCF file; which of them it is its root element says.
+    /// Reads a URDF or MJCF file. The root element decides between the two.
     ///
-    /// The file may be a pipe, which is read to its end or [`Limits::bytes`](crate::Limits::bytes); files that the model names
-    /// must be regular ones.
+    /// The file may be a pipe, which is read to its end or [`Limits::bytes`](crate::Limits::bytes). Files that the
+    /// model names must be regular ones.
     ///
     /// # Errors
-    /// What is wrong, with the line: see [`ReadError`].
+    /// The fault and its line: see [`ReadError`].
     pub fn from_file(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
         let mut files = ModelFiles::new(path.parent(), options)?;
         let text = files.model(path)?;
         Self::read(&path.display().to_string(), &text, files, options)
     }
 
-    /// Reads the text of a URDF or MJCF; without [`ReadOptions::root`] it must name no files.
+    /// Reads the text of a URDF or MJCF. Without [`ReadOptions::root`] it must name no files.
     ///
     /// ```
     /// use farsa_models::{Imported, ReadOptions};
@@ -85,7 +92,7 @@ impl Imported {
     /// ```
     ///
     /// # Errors
-    /// What is wrong, with the line: see [`ReadError`].
+    /// The fault and its line: see [`ReadError`].
     pub fn from_text(text: &str, options: &ReadOptions) -> Result<Self, ReadError> {
         Self::read("text", text, ModelFiles::new(None, options)?, options)
     }

@@ -1,10 +1,11 @@
 #![doc = include_str!("../README.md")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
-/// How large the numbers of a model may be.
+/// Bounds of a model's numbers.
 mod bounds;
-/// What the readers of both formats carry along.
+/// The shared state of both readers.
 mod context;
-/// What can be wrong with a file.
+/// The error of readers.
 mod error;
 /// The files that a model names, found within its folders only.
 mod files;
@@ -12,17 +13,17 @@ mod files;
 mod frame;
 /// The entry: a robot from a file or a text.
 mod imported;
-/// Triangles, the solids that stand for them, and their principal axes.
+/// Triangles, the solids that replace them, and their principal axes.
 mod mesh;
 pub mod mjcf;
-/// How to read: strictly, or with what repairs and limits.
+/// Options of readers: strictness, repairs, limits.
 mod options;
 /// Masses that no body can have.
 mod repair;
 pub mod urdf;
 /// Products and lengths of vectors.
 mod vector;
-/// What was left out or replaced.
+/// Omitted and replaced parts.
 mod warnings;
 /// XML: checked before it is parsed, asked for names and numbers, written.
 mod xml;
@@ -30,6 +31,5 @@ mod xml;
 pub use error::{ReadError, SourceLocation};
 pub use frame::Frame;
 pub use imported::Imported;
-pub use mjcf::{Keyframe, MjcfOptions};
 pub use options::{Limits, Meshes, ReadOptions, Repair};
 pub use warnings::Warning;

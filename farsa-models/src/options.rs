@@ -1,8 +1,8 @@
-//! How a model is to be read.
+//! Options of readers.
 
 use std::path::PathBuf;
 
-/// How much a model may hold, so that reading it takes bounded time and memory.
+/// The largest size of a model, so that reading takes bounded time and memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Limits {
@@ -10,24 +10,24 @@ pub struct Limits {
     pub bytes: usize,
     /// Bytes of all files, a mesh of a URDF counted each time that it is used.
     pub all_bytes: usize,
-    /// Elements of a model, its included files counted. A URDF as we write it has 12 for a segment and a capsule each, and 4
-    /// for another shape: to read a robot of more than 4000 segments back may take more.
+    /// Elements of a model with its included files. Our URDF has 12 for a segment with a capsule and 4 for another
+    /// shape. A robot of more than 4000 segments may therefore exceed it.
     pub elements: usize,
-    /// Elements within each other. Bodies of an MJCF stand in those that carry them: as deep as a chain is long.
+    /// Nested elements. Bodies of an MJCF are within their carriers, so that depth equals the length of a chain.
     pub depth: usize,
-    /// Attributes of an element, and name spaces of a model; all elements together may have eight each.
+    /// Attributes of an element, and name spaces of a model. All elements together may have eight each.
     pub attributes: usize,
     /// Elements in the `default` classes of an MJCF.
     pub defaults: usize,
     /// Geoms of an MJCF that may touch others, each of which is compared with each.
     pub contacts: usize,
-    /// Files that are opened: the model, included ones and meshes; those of a URDF each time that they are used.
+    /// Files that are opened: the model, included ones and meshes. Files of a URDF count at each use.
     pub files: usize,
 }
 
 impl Default for Limits {
-    /// 32 MiB a file and 1 GiB in all, 100 000 elements 30 000 deep with 64 attributes each, 2000 files; 1000 defaults, 2000
-    /// geoms that may touch. A few hundred MiB of memory at most, and seconds.
+    /// 32 MiB a file and 1 GiB in all, 100 000 elements 30 000 deep with 64 attributes each, 2000 files. 1000 defaults,
+    /// 2000 geoms that may touch. A few hundred MiB of memory at most, and seconds.
     fn default() -> Self {
         Self {
             bytes: 32 << 20,
@@ -42,18 +42,19 @@ impl Default for Limits {
     }
 }
 
-/// What becomes of meshes that may touch something.
+/// The treatment of meshes that may touch something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Meshes {
-    /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points; see [`Imported`](crate::Imported).
+    /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points. See
+    /// [`Imported`](crate::Imported).
     #[default]
     Fit,
     /// They are left out, without looking at their files, and noted.
     Leave,
 }
 
-/// What to do about masses that no body can have; by default they are errors.
+/// The treatment of masses that no body can have. By default they are errors.
 ///
 /// MJCF's `compiler` has the same settings (`boundmass`, `boundinertia`, `balanceinertia`), which are obeyed there anyway.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -67,23 +68,24 @@ pub struct Repair {
     pub balance: bool,
 }
 
-/// How to read a model; [`ReadOptions::default`] reads it strictly.
+/// The options of a reader. [`ReadOptions::default`] reads strictly.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReadOptions {
-    /// The folder that all files that the model names must lie in; `None` for the folder of the model itself.
+    /// The folder that all files that the model names must lie in, or `None` for the folder of the model itself.
     pub root: Option<PathBuf>,
     /// Folders that hold packages, for `package://name/...`: each is looked in for a folder `name`.
     pub packages: Vec<PathBuf>,
-    /// Whether a URDF's root moves freely instead of standing fixed in the world; one called `world` is the world anyway.
+    /// True if a URDF's root moves freely instead of standing fixed in the world. One called `world` is the world
+    /// anyway.
     pub floating: bool,
-    /// What becomes of meshes.
+    /// The treatment of meshes.
     pub meshes: Meshes,
-    /// What to do about impossible masses.
+    /// The treatment of impossible masses.
     pub repair: Repair,
     /// The share of a body's mass and inertia that each of the segments between its joints gets, where it has several.
     pub between: f64,
-    /// How much the model may hold.
+    /// The largest size of the model.
     pub limits: Limits,
 }
 

@@ -9,9 +9,10 @@ use crate::mesh::principal_axes::principal_axes;
 use crate::options::Repair;
 use crate::warnings::Warnings;
 
-/// Gives what moves a mass, if the links fixed to it have one or the caller said which, and refuses what no body can have.
+/// Gives each moving segment a mass, if the links fixed to it have one or the caller chose one. Refuses masses that no
+/// body can have.
 ///
-/// `locations` says where each segment is in its file.
+/// `locations` are the places of the segments in their files.
 pub(crate) fn repair_masses(
     robot: &mut Robot,
     locations: &[SourceLocation],
@@ -35,7 +36,7 @@ pub(crate) fn repair_masses(
     Ok(())
 }
 
-/// A body with the least mass and moments, and balanced; `None` if nothing changes.
+/// A body with the least mass and moments, and balanced, or `None` if nothing changes.
 pub(crate) fn repaired(body: &MassProperties, moves: bool, repair: &Repair) -> Option<MassProperties> {
     let mut changed = *body;
     if moves {

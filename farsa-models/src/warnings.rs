@@ -1,20 +1,20 @@
-//! What the file says and the robot does not.
+//! Parts of a file that the robot does not have.
 
 use std::collections::BTreeMap;
 
 use crate::error::SourceLocation;
 
-/// Something that the file says and the robot does not.
+/// A part of a file that the robot does not have.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Warning {
-    /// Where it stands first.
+    /// The first place.
     pub place: SourceLocation,
     /// The element, with the attribute if that alone is meant.
     pub what: String,
-    /// What became of it and why.
+    /// The treatment and its reason.
     pub why: String,
-    /// How often.
+    /// The number of times.
     pub count: usize,
 }
 

@@ -9,7 +9,8 @@ use farsa_body::kinematics::KinematicTree;
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment, Shape, Surface};
 use farsa_body::robots::{ArmAndHand, Tabletop};
-use farsa_models::{Keyframe, MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, Keyframe, MjcfOptions};
+use farsa_models::urdf;
 use serde_json::Value;
 
 /// How far the readers' numbers may be from ours: relative to the largest of a kind, or absolute where that is below 1.

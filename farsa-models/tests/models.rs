@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use farsa_body::Pose;
 use farsa_body::kinematics::KinematicTree;
 use farsa_body::robot::Robot;
-use farsa_models::{Imported, Meshes, MjcfOptions, ReadOptions, Repair, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::{Imported, Meshes, ReadOptions, Repair, urdf};
 use serde_json::Value;
 
 /// How far a body may be from where the other program has it [m, and parts of the unit quaternion].

@@ -2,7 +2,8 @@
 #![cfg(feature = "serde")]
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_models::{Imported, Meshes, MjcfOptions, ReadOptions};
+use farsa_models::mjcf::MjcfOptions;
+use farsa_models::{Imported, Meshes, ReadOptions};
 
 #[test]
 fn options_name_only_what_differs() {

@@ -4,7 +4,7 @@
 use farsa_body::ports::{BodyId, Sight};
 use farsa_body::robots::MobileRobot;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Area, Arena, ArenaError, Convex, Cylinder, FreePlace, Part, Wall, World};
+use farsa_physics::arena::{Area, Arena, ArenaError, Convex, ConvexFault, Cylinder, FreePlace, Part, Wall, World};
 
 fn arena() -> Arena {
     let mut arena = Arena::walled(1.0, 0.8);
@@ -118,20 +118,25 @@ fn what_is_not_convex_is_refused() {
     }
     // A dent, by its corner and depth.
     let dent = of_convex(Convex::prism(&[[0.6, 0.5], [0.8, 0.5], [0.8, 0.7], [0.75, 0.55]], 0.1));
-    let ArenaError::Dent { part: p, corner: 3, depth } = dent else { panic!("{dent:?}") };
+    let ArenaError::Convex { part: p, fault: ConvexFault::Dent { corner: 3, depth } } = dent else {
+        panic!("{dent:?}")
+    };
     assert!(p == part && (depth - 0.05).abs() < 1e-9, "{dent}");
     // Two corners at one place, the polygon closed explicitly.
     let closed = of_convex(Convex::prism(&[square[0], square[1], square[2], square[3], square[0]], 0.1));
-    assert_eq!(closed, ArenaError::SameCorner { part, corners: [0, 4], distance: 0.0 });
+    assert_eq!(closed, ArenaError::Convex { part, fault: ConvexFault::SameCorner { corners: [0, 4], distance: 0.0 } });
     // A bow tie and a five-pointed star: all corners on the hull.
     let tie = of_convex(Convex::prism(&[square[0], square[1], square[3], square[2]], 0.1));
-    assert!(matches!(tie, ArenaError::OutOfTurn { part: p, .. } if p == part), "{tie}");
+    assert!(matches!(tie, ArenaError::Convex { part: p, fault: ConvexFault::OutOfTurn { .. } } if p == part), "{tie}");
     let star: [[f64; 2]; 5] = core::array::from_fn(|i| {
         let (y, x) = farsa_num::sin_cos(2.0 * std::f64::consts::TAU * i as f64 / 5.0);
         [0.8 + 0.1 * x, 0.6 + 0.1 * y]
     });
     let star = of_convex(Convex::prism(&star, 0.1));
-    assert!(matches!(star, ArenaError::OutOfTurn { part: p, .. } if p == part), "{star}");
+    assert!(
+        matches!(star, ArenaError::Convex { part: p, fault: ConvexFault::OutOfTurn { .. } } if p == part),
+        "{star}"
+    );
     for found in [tie, star, closed, dent] {
         assert!(found.to_string().contains("convex obstacle 1"), "{found}");
     }
@@ -176,7 +181,10 @@ fn slab(height: f64) -> Vec<[f64; 3]> {
 #[test]
 fn hulls_name_the_feature_that_they_need() {
     let found = of_convex(Convex::hull(&slab(0.1)));
-    assert_eq!(found, ArenaError::NeedsFeature { part: Part::Convex(1), feature: "parry" });
+    assert_eq!(
+        found,
+        ArenaError::Convex { part: Part::Convex(1), fault: ConvexFault::NeedsFeature { feature: "parry" } }
+    );
     assert!(found.to_string().contains("`parry`"), "{found}");
 }
 
@@ -206,24 +214,24 @@ fn hulls_are_checked() {
 
 #[test]
 fn there_are_robots_but_not_too_many_nor_too_fast() {
-    assert_eq!(error(|arena| arena.robots.clear()), ArenaError::NoRobots);
+    assert_eq!(error(|arena| arena.robots.clear()), ArenaError::Count { what: "robots", count: 0, range: [1, 32_768] });
     let long = error(|arena| arena.time_step = 0.5);
     assert!(matches!(long, ArenaError::StepTooLong { robot: 0, radius: 0.035, .. }), "{long}");
     let many = error(|arena| {
         let one = arena.robots[0].clone();
         arena.robots = vec![one; 40_000];
     });
-    assert_eq!(many, ArenaError::TooMany { what: "robots", count: 40_000, most: 32_768 });
+    assert_eq!(many, ArenaError::Count { what: "robots", count: 40_000, range: [1, 32_768] });
     let many = error(|arena| {
         let one = arena.cylinders[0];
         arena.cylinders = vec![one; 70_000];
     });
-    assert!(matches!(many, ArenaError::TooMany { count: 70_002, most: 65_536, .. }), "{many}");
+    assert!(matches!(many, ArenaError::Count { count: 70_002, range: [0, 65_536], .. }), "{many}");
     let many = error(|arena| {
         let one = farsa_physics::arena::RobotPlacement { robot: MobileRobot::marxbot(), ..arena.robots[0].clone() };
         arena.robots = vec![one; 10_000];
     });
-    assert_eq!(many, ArenaError::TooMany { what: "actuators of robots", count: 70_000, most: 65_536 });
+    assert_eq!(many, ArenaError::Count { what: "actuators of robots", count: 70_000, range: [0, 65_536] });
 }
 
 #[test]

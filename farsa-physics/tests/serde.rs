@@ -77,7 +77,7 @@ fn what_no_world_can_be_made_of_is_refused_with_its_number() {
     let error = refused(&|arena| arena.cylinders[0].radius = -0.1);
     assert!(matches!(error, ArenaError::Range { part: Part::Cylinder(0), value: -0.1, .. }), "{error}");
     let error = refused(&|arena| arena.robots.clear());
-    assert_eq!(error, ArenaError::NoRobots);
+    assert_eq!(error, ArenaError::Count { what: "robots", count: 0, range: [1, 32_768] });
     let error = refused(&|arena| {
         let RobotPlacement { robot, at, .. } = arena.robots[0].clone();
         arena.add_robot(robot, at, 0.0);
@@ -140,7 +140,7 @@ mod rapier {
         let mut scene = scene();
         scene.objects[2].friction = -1.0;
         let error = World::from_scene(&again(&scene), &Options::default()).expect_err("no friction");
-        let expected = RapierError::SceneObject { name: "can".into(), field: "friction", value: -1.0 };
+        let expected = RapierError::SceneObject { name: "can".into(), why: "friction is -1".into() };
         assert_eq!(error, expected);
         // A mass that is misspelt would make an object that does not move.
         let text = serde_json::to_string(&scene).expect("numbers and names").replace("\"mass\":0.1", "\"mas\":0.1");

@@ -2,7 +2,8 @@
 #![no_main]
 
 use farsa_fuzz::{bounded, same_model};
-use farsa_models::{Imported, Limits, MjcfOptions, ReadOptions, mjcf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::{Imported, Limits, ReadOptions};
 use libfuzzer_sys::fuzz_target;
 
 /// The largest number of contacts. Pairs of geoms under the default limit take hundreds of megabytes.

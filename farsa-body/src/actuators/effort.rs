@@ -1,6 +1,6 @@
-//! What an actuator does to its joint.
+//! The effect of an actuator on its joint.
 
-/// What an actuator does to its joint at one instant.
+/// The effect of an actuator on its joint at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Effort<S> {

@@ -64,7 +64,7 @@ pub enum Law<R> {
 impl<R: Real> Servo<R> {
     /// The servo's effort at position `q` and speed `qdot`, with the desired position in `command[0]`.
     ///
-    /// Whether it saturates is decided here; a saturated servo has no stiffness and no damping.
+    /// Returns whether it saturates is decided here. A saturated servo has no stiffness and no damping.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let limit = q.like(self.limit);
@@ -82,10 +82,13 @@ impl<R: Real> Servo<R> {
 }
 
 impl<R: Real> Velocity<R> {
-    /// The motor's effort at speed `qdot`, with the wanted speed in `command[0]`.
+    /// The motor's effort at speed `qdot`, with the desired speed in `command[0]`.
     ///
-    /// The damping of a saturated motor is limit / |lack|, that of the chord from what it exerts to nothing at its speed: so a
-    /// strong motor of a light joint takes a step to its speed and not past it, and never exerts more than the limit.
+    /// The damping of a saturated motor is limit / |lack|. It is the chord between the present effort and zero effort
+    /// at the desired speed.
+    ///
+    /// A strong motor of a light joint therefore reaches its speed in a step and does not pass it, and never exceeds
+    /// the limit.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, qdot: S, command: [S; 2]) -> Effort<S> {
         let (limit, gain) = (qdot.like(self.limit), qdot.like(self.gain));
@@ -118,7 +121,7 @@ impl<R: Real> Law<R> {
         }
     }
 
-    /// The same law in another precision, each number rounded once.
+    /// Returns the law in another precision, each number rounded once.
     pub fn cast<Q: Real>(&self) -> Law<Q> {
         let c = |x: R| Q::from_f64(x.to_f64());
         match self {

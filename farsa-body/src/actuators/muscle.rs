@@ -8,10 +8,10 @@ use crate::actuators::effort::Effort;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MuscleVariant {
-    /// As printed in the thesis: passive tension in full, b = 0.9; see [`MusclePair::thesis`].
+    /// As printed in the thesis: passive tension in full, b = 0.9. See [`MusclePair::thesis`].
     #[default]
     Thesis,
-    /// As in the original program: passive tension times 0.5 and a reduction factor, b = 1.0; see
+    /// As in the original program: passive tension times 0.5 and a reduction factor, b = 1.0. See
     /// [`MusclePair::original`].
     Original,
 }
@@ -21,8 +21,8 @@ pub enum MuscleVariant {
 /// Over the joint's range the agonist's length grows from [`MusclePair::shortest`] to [`MusclePair::longest`] while the
 /// antagonist's shrinks, so the agonist pulls towards the lower end of the range. Lengths have no unit in the source.
 ///
-/// Deviations: a moment arm makes torque of the difference of tensions, which the source uses as the torque itself;
-/// rates follow from the joint's speed instead of backward differences; outside [shortest, longest] the active tension
+/// Deviations: a moment arm makes torque of the difference of tensions, which the source uses as the torque itself.
+/// Rates follow from the joint's speed instead of backward differences. Outside [shortest, longest] the active tension
 /// is 0 and the passive one continues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -53,11 +53,11 @@ pub struct MusclePair<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
-    /// What the activation adds [N].
+    /// The tension from activation [N].
     pub active: S,
-    /// What the length adds, negative (at most 5 % of the largest tension) below the rest length [N].
+    /// The tension from length, negative (at most 5 % of the largest tension) below the rest length [N].
     pub passive: S,
-    /// What the rate adds, negative while the muscle shortens [N].
+    /// The tension from the rate of length, negative while the muscle shortens [N].
     pub viscous: S,
 }
 
@@ -80,7 +80,7 @@ impl<R: Real> MusclePair<R> {
     /// The pair as in the original program: as [`MusclePair::thesis`], but passive tension times 0.5 and `reduction`, b
     /// = 1.0.
     ///
-    /// The value of the original's reduction factor is not known to us, so it has no default here.
+    /// The value of the original's reduction factor is not published, so it has no default here.
     pub fn original(tension: R, moment_arm: R, range: [R; 2], reduction: R) -> Self {
         Self::new(tension, moment_arm, range, R::from_f64(0.5) * reduction, R::from_f64(1.0))
     }
@@ -101,7 +101,7 @@ impl<R: Real> MusclePair<R> {
         }
     }
 
-    /// How much a muscle lengthens per joint position, s [1/rad].
+    /// Returns the change of muscle length per joint position, s [1/rad].
     #[inline(always)]
     pub fn gear(&self) -> R {
         (self.longest - self.shortest) / (self.upper - self.lower)
@@ -140,9 +140,9 @@ impl<R: Real> MusclePair<R> {
     /// The pair's effort at joint position `q` [rad], speed `qdot` [rad/s] and activations [agonist, antagonist] in [0,
     /// 1].
     ///
-    /// With s the [`gear`](MusclePair::gear), r the moment arm and T1, T2 the tensions: torque r (T2 - T1),
-    /// damping 2 r s b, stiffness max(0, -dtorque/dq): where the active tension falls with the length it is negative in
-    /// sum and must not be taken implicitly. Activations are not clamped.
+    /// With s the [`gear`](MusclePair::gear), r the moment arm and T1, T2 the tensions, torque is r (T2 - T1), damping
+    /// 2 r s b, and stiffness max(0, -dtorque/dq). The derivative is negative in sum where the active tension falls
+    /// with length, and must not be integrated implicitly there. Activations are not clamped.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let [x1, x2] = self.lengths(q);
@@ -159,7 +159,7 @@ impl<R: Real> MusclePair<R> {
     }
 
     /// The activations [agonist, antagonist] that hold `torque` [N m] at rest at `q` [rad] with the least
-    /// co-contraction, and whether they are within [0, 1]; those that are not are clamped.
+    /// co-contraction, and whether they are within [0, 1]. Activations outside are clamped.
     ///
     /// One of the two is always 0. At the ends of the range no active tension is left: nothing but the passive torque
     /// is held there.
@@ -171,7 +171,7 @@ impl<R: Real> MusclePair<R> {
         let missing = torque - self.moment_arm * (passive2 - passive1);
         let agonist = missing < zero;
         let wanted = missing.abs() / (self.moment_arm * if agonist { full1 } else { full2 });
-        // 0/0, nothing wanted where nothing is left to give, is held by doing nothing; `clamp` makes 0 of NaN.
+        // 0/0, nothing desired where nothing is left to give, is held by doing nothing. `clamp` makes 0 of NaN.
         let given = wanted.clamp(zero, one);
         (if agonist { [given, zero] } else { [zero, given] }, wanted <= one || missing == zero)
     }
@@ -199,7 +199,7 @@ mod tests {
         assert!((a.to_f64() - b).abs() <= tolerance, "{what}: {a:?} instead of {b}");
     }
 
-    /// What a few rounding errors of numbers around 1 add up to.
+    /// A bound on a few rounding errors of numbers around 1.
     fn eps<R: Real>() -> f64 {
         if R::from_f64(1.0 + 1e-12) > R::from_f64(1.0) { 1e-13 } else { 2e-6 }
     }

@@ -6,14 +6,14 @@ use crate::kinematics::tree::{dot, sub};
 use crate::ports::BodyId;
 use crate::pose::{Pose, cross, norm};
 
-/// How a body shall be turned.
+/// The desired orientation of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Orientation {
     /// In any way.
     Free,
-    /// So that one of its directions points in a given direction; turning about that does not matter. Of any length >
-    /// 0.
+    /// So that one of its directions points in a given direction. Turning about that does not matter. Its length is any
+    /// number > 0.
     Direction {
         /// The direction in the body's axes.
         own: [f64; 3],
@@ -34,11 +34,11 @@ pub struct Goal {
     pub point: [f64; 3],
     /// Where the point shall be, in the world [m].
     pub position: [f64; 3],
-    /// How the body shall be turned.
+    /// The desired orientation of the body.
     pub orientation: Orientation,
 }
 
-/// What is left to do at some joint positions.
+/// The remaining error at some joint positions.
 pub(crate) struct Miss {
     /// Turn [rad, rotation vector] and way [m] to the goal.
     pub(crate) turn: [f64; 3],
@@ -82,7 +82,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|x| x / length)
 }
 
-/// The rotation vector that turns the unit vector `a` into `b` on the shortest way; about any perpendicular if they are
+/// The rotation vector that turns the unit vector `a` into `b` on the shortest way. About any perpendicular if they are
 /// opposite.
 fn turn_between(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let c = cross(a, b);

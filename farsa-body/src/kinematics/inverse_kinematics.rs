@@ -17,7 +17,7 @@ pub struct Solution {
     pub joints: Vec<f64>,
     /// Distance of the point from its place [m].
     pub position_error: f64,
-    /// Angle between the body's orientation, or its direction, and the wanted one [rad].
+    /// Angle between the body's orientation, or its direction, and the desired one [rad].
     pub angle_error: f64,
 }
 
@@ -29,19 +29,19 @@ pub enum InverseKinematicsError {
     Body {
         /// The body's index.
         body: usize,
-        /// How many there are.
+        /// The number available.
         count: usize,
     },
     /// A number of the goal or the start is not finite, a direction has no length or a quaternion is not of length 1.
     Goal,
     /// Fewer or more start positions than joints.
     Start {
-        /// How many were given.
+        /// The number given.
         given: usize,
-        /// How many there are.
+        /// The number available.
         joints: usize,
     },
-    /// No attempt came within the tolerances; the goal may be out of reach.
+    /// No attempt came within the tolerances. The goal may be out of reach.
     NotReached {
         /// The closest that was found.
         closest: Solution,
@@ -66,7 +66,7 @@ impl core::error::Error for InverseKinematicsError {}
 /// Inverse kinematics by damped least squares within joint limits [Wampler1986], from one start and then from others
 /// spread evenly over the joints' ranges.
 ///
-/// Deviations: the damping adapts as in Levenberg-Marquardt; joints that would leave their range are held at its end
+/// Deviations: the damping adapts as in Levenberg-Marquardt. Joints that would leave their range are held at its end
 /// for that step. Only the joints between the body and the world move. The same goal and start give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
@@ -75,7 +75,7 @@ pub struct InverseKinematics {
     pub position_tolerance: f64,
     /// Angle that is near enough [rad].
     pub angle_tolerance: f64,
-    /// Metres that count as much as a radian [m].
+    /// Meters that count as much as a radian [m].
     pub angle_weight: f64,
     /// The middle part of the bounded ranges of the moving joints that may be used, in [0, 1].
     ///
@@ -104,9 +104,9 @@ fn squared(v: &[f64; 6]) -> f64 {
     v.iter().fold(0.0, |sum, x| sum + x * x)
 }
 
-/// Solves a x = b by Cholesky's decomposition; `None` if the symmetric `a` is not positive definite.
+/// Solves a x = b by Cholesky's decomposition, or `None` if the symmetric `a` is not positive definite.
 fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
-    // a = L L^T in its own place, column by column; then L y = b and L^T x = y.
+    // a = L L^T in its own place, column by column. Then L y = b and L^T x = y.
     for j in 0..N {
         for k in 0..j {
             for i in j..N {
@@ -142,7 +142,7 @@ fn roots_of_primes() -> impl Iterator<Item = f64> {
     (2u32..).filter(prime).map(|n| Scalar::sqrt(f64::from(n)))
 }
 
-/// What can be wrong with a question before anything is tried.
+/// Checks the question before the first attempt.
 fn check(tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<(), InverseKinematicsError> {
     if goal.body.index() >= tree.bodies() {
         return Err(InverseKinematicsError::Body { body: goal.body.index(), count: tree.bodies() });
@@ -167,7 +167,7 @@ impl InverseKinematics {
     /// pass the last solution. Joints that do not carry the body keep their start position, brought into the limits.
     ///
     /// # Errors
-    /// [`InverseKinematicsError`]; `NotReached` holds the closest joint positions found.
+    /// [`InverseKinematicsError`]. `NotReached` holds the closest joint positions found.
     pub fn solve(&self, tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<Solution, InverseKinematicsError> {
         check(tree, goal, start)?;
         let moving: Vec<usize> = tree.path(goal.body).map(|(_, c)| c).collect();
@@ -183,7 +183,7 @@ impl InverseKinematics {
             if attempt > 0 {
                 for (c, root) in moving.iter().zip(roots_of_primes()) {
                     let [low, high] = limits[*c];
-                    // Where there is no limit: half a turn (or pi metres) beyond zero or the other end.
+                    // Where there is no limit: half a turn (or pi meters) beyond zero or the other end.
                     let low_end = if low.is_finite() { low } else { high.min(0.0) - core::f64::consts::PI };
                     let high_end = if high.is_finite() { high } else { low.max(0.0) + core::f64::consts::PI };
                     // The fractional part of attempt * sqrt(prime), from one end of the range to the other.
@@ -216,7 +216,7 @@ impl InverseKinematics {
         }
     }
 
-    /// Moves `q` to the nearest minimum of the error; leaves the segments' poses there in `poses`.
+    /// Moves `q` to the nearest minimum of the error. Leaves the segments' poses there in `poses`.
     fn descend(
         &self,
         tree: &KinematicTree,
@@ -240,7 +240,7 @@ impl InverseKinematics {
             let mut free = Vec::new();
             let mut a = [[0.0; 6]; 6];
             for (c, mut angular, linear) in tree.columns(poses, goal.body, at) {
-                // A turn about the wanted direction changes nothing.
+                // A turn about the desired direction changes nothing.
                 if let Some(idle) = miss.idle {
                     let along = dot(angular, idle);
                     angular = [0, 1, 2].map(|k| angular[k] - along * idle[k]);
@@ -312,7 +312,7 @@ mod tests {
         planar_within([range; 2])
     }
 
-    /// The same with a range for each joint.
+    /// Builds the planar chain with a range for each joint.
     fn planar_within(ranges: [[f64; 2]; 2]) -> KinematicTree {
         let mut robot = Robot::new("planar");
         let body = MassProperties::sphere(1.0, 0.1);
@@ -382,7 +382,7 @@ mod tests {
 
     #[test]
     fn metres_are_weighed_against_radians() {
-        // A link of length l that is asked for another angle a than its end is: l^2 (2 - 2 cos q) + (w (a - q))^2 is least.
+        // For a link of length l and a desired angle a, l^2 (2 - 2 cos q) + (w (a - q))^2 is least.
         let (length, wanted, tree) = (0.2, 1.0, planar([-3.0, 3.0]));
         let (sine, cosine) = farsa_num::sin_cos(wanted / 2.0);
         let orientation = Orientation::Full([0.0, 0.0, sine, cosine]);

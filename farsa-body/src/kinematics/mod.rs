@@ -7,7 +7,7 @@
 //! | which torques hold the robot against gravity? | [`KinematicTree::gravity_torques`] |
 //! | which joint positions bring a body to a place? | [`InverseKinematics::solve`] with a [`Goal`] |
 
-/// What a posture is to achieve: a point's position, a body's orientation.
+/// The goal of a posture: a point's position, a body's orientation.
 pub(crate) mod goal;
 /// Damped least squares within joint limits.
 pub(crate) mod inverse_kinematics;

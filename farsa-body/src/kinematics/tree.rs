@@ -11,7 +11,7 @@ use crate::robot::description::{JointKind, Robot};
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::validation::RobotError;
 
-/// One segment with what its joint needs, the axis normalised.
+/// One segment with what its joint needs, the axis normalized.
 #[derive(Clone, Debug, PartialEq)]
 struct Link {
     parent: Option<usize>,
@@ -25,7 +25,7 @@ struct Link {
 /// The kinematics of a robot's description, in double precision.
 ///
 /// Joint positions are slices with one value per joint that turns or slides, in the order of [`KinematicTree::joints`].
-/// Floating segments stay at the placement of their joint. A world has the same answers about its own state; this type
+/// Floating segments stay at the placement of their joint. A world has the same answers about its own state. This type
 /// answers about any state, without a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinematicTree {
@@ -61,7 +61,7 @@ impl KinematicTree {
     /// The kinematics of this robot.
     ///
     /// # Errors
-    /// What [`Robot::validate`] finds.
+    /// The errors of [`Robot::validate`].
     pub fn new(robot: &Robot) -> Result<Self, RobotError> {
         robot.validate()?;
         let joints: Vec<JointId> = robot.joints().collect();
@@ -94,7 +94,7 @@ impl KinematicTree {
         &self.ranges
     }
 
-    /// Where a joint's value stands among the joint positions; `None` for a joint that neither turns nor slides.
+    /// Returns the index of a joint among the joint positions, or `None` for a joint that neither turns nor slides.
     pub fn coordinate(&self, joint: JointId) -> Option<usize> {
         self.links.get(joint.index())?.coordinate
     }
@@ -159,9 +159,9 @@ impl KinematicTree {
         })
     }
 
-    /// The Jacobian of a `point` of `body` [m in its frame], at the `poses` of all segments: a column per joint
-    /// position, each the body's angular velocity and the point's velocity in the world's axes [rad/s, m/s] at unit
-    /// joint speed.
+    /// Returns the Jacobian of a `point` of `body` [m in its frame], at the `poses` of all segments. It has a column
+    /// per joint position: the body's angular velocity and the point's velocity in the world's axes [rad/s, m/s] at
+    /// unit joint speed.
     ///
     /// # Panics
     /// If there are fewer poses than segments or no such body.

@@ -9,9 +9,9 @@ use crate::pose::Pose;
 
 /// Keeps a point of a body in the middle of an eye's image by two servos.
 ///
-/// At each step the desired position of each servo changes by a part of the angle between where the eye looks and where the
-/// point is, to the left for the one and upwards for the other, by so much at most. Of a point that is not in front of the
-/// eye nothing is known, and the servos stay.
+/// At each step the desired position of each servo changes by a share of the angle between the camera's axis and the
+/// target. One servo turns to the left, the other upwards, each by a limited amount. Both servos stay while the target
+/// is not in front of the camera.
 ///
 /// The rule is our own. It is no [`Motor`](crate::ports::Motor): it takes no values of a controller, and moves the servos by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,13 +28,13 @@ pub struct HeadTracking<B = BodyId, A = ActuatorId> {
 impl<B, A: Copy> HeadTracking<B, A> {
     /// A reflex of an eye, the body that it is on and its pose there with x forward, y to the left and z up.
     ///
-    /// The target is a point [m] of a body. The servos are first the one that turns to the left, from its position farthest to
-    /// the right to the one farthest to the left, then the one that turns upwards, from lowest to highest; they start at
-    /// positions `start` [rad]. At each step the part `gain` of the angles is made up for, by at most `most` [rad].
+    /// The target is a point [m] of a body. The first servo turns to the left, with its rightmost and leftmost
+    /// position. The second turns upwards, with its lowest and highest position. They start at positions `start` [rad].
+    /// At each step they correct the share `gain` of the angles, by at most `most` [rad].
     ///
     /// # Errors
-    /// [`ChannelError::Range`] for a range of a servo that is empty or not finite; [`ChannelError::Value`] for a start out of it, a
-    /// `gain` that is not within 0 and 1, or a `most` that is not a finite number > 0.
+    /// [`ChannelError::Range`] for a range of a servo that is empty or not finite. [`ChannelError::Value`] for a start
+    /// out of it, a `gain` that is not within 0 and 1, or a `most` that is not a finite number > 0.
     pub fn new(
         eye: (B, Pose),
         target: (B, [f32; 3]),
@@ -69,7 +69,7 @@ impl<B, A: Copy> HeadTracking<B, A> {
         self.desired = self.start;
     }
 
-    /// Looks, and commands both servos; once before each step of the world.
+    /// Looks, and commands both servos. Once before each step of the world.
     pub fn step<W>(&mut self, world: &mut W)
     where
         B: Copy,
@@ -85,7 +85,8 @@ impl<B, A: Copy> HeadTracking<B, A> {
         }
     }
 
-    /// How far the target is from where the eye looks, to the left and upwards [rad]; `None` for one that is not in front of it.
+    /// Returns the angles from the camera's axis to the target, to the left and upwards [rad], or `None` for a target
+    /// that is not in front.
     pub fn angles<W>(&self, world: &W) -> Option<[f32; 2]>
     where
         B: Copy,

@@ -133,8 +133,8 @@ pub struct VelocityMotor<A = ActuatorId> {
 }
 
 impl<A> VelocityMotor<A> {
-    /// A motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s or m/s], of an actuator
-    /// of this `gain` [N m s/rad or N s/m].
+    /// Builds a motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s or m/s].
+    /// The actuator has this `gain` [N m s/rad or N s/m].
     ///
     /// # Errors
     /// [`ChannelError::Value`] if a number is not finite.

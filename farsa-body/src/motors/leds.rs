@@ -1,4 +1,4 @@
-//! What robots show and say: LEDs and signals.
+//! LEDs and signals of robots.
 //!
 //! As for all motors, a value outside [0, 1] drives like the nearer end, NaN like 0.
 
@@ -35,7 +35,7 @@ impl<A: Copy, const N: usize, W: Actuated<Actuator = A> + ?Sized> Motor<W> for L
     }
 }
 
-/// Sets what a robot signals to robots that hear it with a [`crate::sensors::SignalSensor`], one channel in [0, 1].
+/// Sets the signal of a robot for the [`crate::sensors::SignalSensor`]s of other robots, one channel in [0, 1].
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -9,7 +9,7 @@ use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
 /// Drives the left and the right wheel, one channel each: the speed is (2 y - 1) times the largest.
 ///
-/// Of a shorter slice only the left wheel is driven. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// A shorter slice drives the left wheel only. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelVelocity<A = ActuatorId> {
     wheels: [A; 2],
@@ -17,8 +17,8 @@ pub struct WheelVelocity<A = ActuatorId> {
 }
 
 impl<A> WheelVelocity<A> {
-    /// A motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s]; `wheels` left and
-    /// right.
+    /// A motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s]. `wheels` left
+    /// and right.
     ///
     /// # Errors
     /// [`ChannelError::Value`] if `largest` is not a finite number > 0.
@@ -44,10 +44,12 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for WheelVelocity<A> 
 
 /// Drives both wheels by a speed and a turn, two channels.
 ///
-/// With s = 2 y - 1 of the first channel (backwards at 0, ahead at 1; after [`SpeedAndTurn::forwards`] s = y) and
-/// t = 2 y - 1 of the second (right at 0, left at 1) the left wheel turns at (s - t) and the right at (s + t) times the
-/// largest speed; where one of them is beyond the largest speed, both are slowed down by the same factor, so that the
-/// robot keeps its curve and loses pace. A slice with one value drives straight on.
+/// With s = 2 y - 1 of the first channel and t = 2 y - 1 of the second, the left wheel turns at (s - t) and the right
+/// at (s + t) times the largest speed. The first channel drives backwards at 0 and forwards at 1, or has s = y after
+/// [`SpeedAndTurn::forwards`]. The second turns right at 0 and left at 1.
+///
+/// If a wheel would exceed the largest speed, both are slowed down by the same factor, so that the robot keeps its
+/// curve. A slice with one value drives straight ahead.
 ///
 /// Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +68,7 @@ impl<A> SpeedAndTurn<A> {
         Ok(Self { wheels, largest: positive("largest speed", largest)?, forwards: false })
     }
 
-    /// The same for a robot that never drives backwards: it stands at 0 of the first channel.
+    /// Makes a robot that never drives backwards and rests at 0 of the first channel.
     pub fn forwards(self) -> Self {
         Self { forwards: true, ..self }
     }

@@ -11,7 +11,7 @@ use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robot::visual::Visual;
 
-/// How a segment moves relative to its parent.
+/// The motion of a segment relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum JointKind {
@@ -21,7 +21,7 @@ pub enum JointKind {
     Prismatic,
     /// Does not move.
     Fixed,
-    /// Moves freely in the world; only for a segment without parent.
+    /// Moves freely in the world. Only for a segment without parent.
     Floating,
 }
 
@@ -29,15 +29,15 @@ pub enum JointKind {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// The joint's name, unique in the robot; may be empty for fixed and floating joints.
+    /// The joint's name, unique in the robot. May be empty for fixed and floating joints.
     pub name: String,
-    /// How it moves.
+    /// The kind of motion.
     pub kind: JointKind,
-    /// Axis in the joint's frame; normalised by the reader.
+    /// Axis in the joint's frame, normalized by the reader.
     pub axis: [f64; 3],
     /// The joint's frame in the parent's frame (the world's without parent), at joint position 0.
     pub placement: Pose<f64>,
-    /// Lowest and highest position [rad or m]; infinite for none.
+    /// Lowest and highest position [rad or m], or infinite for none.
     pub range: [f64; 2],
     /// Inertia of the drive, added to the joint's own [kg m2 or kg].
     pub armature: f64,
@@ -45,21 +45,21 @@ pub struct Joint {
     pub damping: f64,
 }
 
-/// A rigid part of the robot with the joint that carries it; its frame is the joint's frame after the motion.
+/// A rigid part of the robot with the joint that carries it. Its frame is the joint's frame after the motion.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Segment {
     /// The segment's name, unique in the robot.
     pub name: String,
-    /// The segment that it hangs on, earlier in the list; `None` for the world.
+    /// The segment that it hangs on, earlier in the list, or `None` for the world.
     pub parent: Option<BodyId>,
-    /// How it moves relative to the parent.
+    /// The joint to the parent.
     pub joint: Joint,
     /// Mass [kg].
     pub mass: f64,
-    /// Centre of mass in the segment's frame [m].
+    /// Center of mass in the segment's frame [m].
     pub centre: [f64; 3],
-    /// Inertia about the centre of mass in the segment's axes [xx, yy, zz, xy, xz, yz; kg m2].
+    /// Inertia about the center of mass in the segment's axes [xx, yy, zz, xy, xz, yz, kg m2].
     pub inertia: [f64; 6],
 }
 
@@ -69,19 +69,20 @@ pub struct Segment {
 pub struct Collider {
     /// The collider's name, unique in the robot.
     pub name: String,
-    /// The segment it moves with; `None` for the world.
+    /// The segment it moves with, or `None` for the world.
     pub body: Option<BodyId>,
     /// Its form.
     pub shape: Shape,
     /// Its frame in the segment's frame.
     pub placement: Pose<f64>,
-    /// What colour it shows to cameras, red, green and blue [0..1]. Without one it is not there for cameras of a plane
-    /// ([`Sight`](crate::ports::Sight)), and hides what is behind it from eyes with an image ([`Vision`](crate::ports::Vision)).
+    /// The color it shows to cameras, red, green and blue [0..1]. Without one it is not there for cameras of a plane
+    /// ([`Sight`](crate::ports::Sight)), and hides what is behind it from eyes with an image
+    /// ([`Vision`](crate::ports::Vision)).
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }
 
-/// How two surfaces act on each other.
+/// The interaction of two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
@@ -101,10 +102,10 @@ pub struct Surface {
 pub struct Pair {
     /// Indices of the two colliders.
     pub colliders: [usize; 2],
-    /// How their surfaces act on each other.
+    /// The interaction of their surfaces.
     pub surface: Surface,
-    /// Pairs that follow each other with the same number may be searched together: only while the spheres around all
-    /// their first colliders and around all their second ones are near each other. It changes no motion.
+    /// Consecutive pairs with the same number may be searched together. They are searched only while the spheres around
+    /// their first and around their second colliders are near each other. Grouping changes no motion.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u16>,
 }
@@ -135,7 +136,7 @@ pub struct Ground {
     pub radius: f64,
 }
 
-/// A robot, or a scene of robots and things, as data; every world is built from one.
+/// A robot, or a scene of robots and things, as data. Every world is built from one.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Robot {
@@ -152,7 +153,7 @@ pub struct Robot {
     /// The ground below bodies that slide.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub grounds: Vec<Ground>,
-    /// What is drawn in place of the colliders of the segments that have some; no world knows them.
+    /// Shapes that views draw instead of the colliders of their segments. Worlds ignore them.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub visuals: Vec<Visual>,
 }
@@ -199,7 +200,7 @@ impl Offsets {
 }
 
 impl JointKind {
-    /// Whether the joint has one degree of freedom: a position, a speed, a range.
+    /// Returns whether the joint has one degree of freedom: a position, a speed, a range.
     pub fn is_single(self) -> bool {
         matches!(self, Self::Revolute | Self::Prismatic)
     }
@@ -230,14 +231,14 @@ impl Joint {
         Self::new("", JointKind::Floating, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
     }
 
-    /// The same joint with this armature [kg m2 or kg].
+    /// Returns the joint with this armature [kg m2 or kg].
     #[must_use]
     pub fn with_armature(mut self, armature: f64) -> Self {
         self.armature = armature;
         self
     }
 
-    /// The same joint with this viscous damping [N m s/rad or N s/m].
+    /// Returns the joint with this viscous damping [N m s/rad or N s/m].
     #[must_use]
     pub fn with_damping(mut self, damping: f64) -> Self {
         self.damping = damping;
@@ -252,7 +253,7 @@ impl Segment {
         Self { name: name.into(), parent, joint, mass, centre, inertia }
     }
 
-    /// Mass, centre of mass and inertia in the segment's frame.
+    /// Mass, center of mass and inertia in the segment's frame.
     pub fn mass_properties(&self) -> MassProperties {
         MassProperties { mass: self.mass, centre: self.centre, inertia: self.inertia }
     }
@@ -264,20 +265,20 @@ impl Collider {
         Self { name: name.into(), body, shape, placement, color: None }
     }
 
-    /// The same collider with a colour that cameras see, red, green and blue [0..1].
+    /// Returns the collider with a color that cameras see, red, green and blue [0..1].
     #[must_use]
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// A capsule whose axis runs from point `a` to point `b` of the body's frame [m], of `radius` [m]; a ball where
-    /// they meet.
+    /// Builds a capsule whose axis runs from point `a` to point `b` of the body's frame [m], of `radius` [m]. It is a
+    /// ball where the points coincide.
     pub fn capsule_between(name: &str, body: Option<BodyId>, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let length = norm(&d);
         let position = [0, 1, 2].map(|i| f64::midpoint(a[i], b[i]));
-        // The shortest turn from z to d: the quaternion (z x d, |d| + z.d), normalised. Its length vanishes for d = -z;
-        // a capsule looks the same with its ends exchanged, so d is turned to the upper half first.
+        // The shortest turn from z to d: the quaternion (z x d, |d| + z.d), normalized. Its length vanishes for d = -z.
+        // A capsule looks the same with its ends exchanged, so d is turned to the upper half first.
         let d = if d[2] < 0.0 { d.map(|x| -x) } else { d };
         let [x, y, w] = [-d[1], d[0], length + d[2]];
         let n = norm(&[x, y, w]);
@@ -297,7 +298,7 @@ impl Robot {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// Appends a segment; its parent must be there already.
+    /// Appends a segment. Its parent must be there already.
     pub fn add_segment(&mut self, segment: Segment) -> BodyId {
         self.segments.push(segment);
         BodyId((self.segments.len() - 1) as u16)
@@ -315,8 +316,9 @@ impl Robot {
         PairId((self.pairs.len() - 1) as u16)
     }
 
-    /// Appends a group of pairs, given by the indices of their colliders: while its first ones and its second ones are
-    /// apart, it costs next to nothing, which pays where they keep together such as the parts of a hand.
+    /// Appends a group of pairs, given by the indices of their colliders. The group costs almost nothing while its
+    /// first and its second colliders are apart. This pays for colliders that keep together, such as the parts of a
+    /// hand.
     pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {
         let group = Some(self.first_group());
         self.pairs.extend(pairs.into_iter().map(|colliders| Pair { colliders, surface, group }));
@@ -370,7 +372,7 @@ impl Robot {
         offsets
     }
 
-    /// The same robot with `prefix` before every name but its own; empty names stay empty.
+    /// Returns the robot with `prefix` before every name but its own. Empty names stay empty.
     #[must_use]
     pub fn prefixed(&self, prefix: &str) -> Self {
         let mut robot = self.clone();

@@ -1,4 +1,4 @@
-//! What is drawn of a robot: visuals, and the colliders that none of them replaces.
+//! Shapes that views draw: visuals, and colliders without a visual.
 
 use alloc::format;
 
@@ -7,7 +7,7 @@ use crate::robot::validation::{Part, RobotError, index};
 use crate::robot::visual::Visual;
 
 impl From<&Collider> for Visual {
-    /// What a collider looks like.
+    /// The look of a collider.
     fn from(collider: &Collider) -> Self {
         let Collider { body, shape, placement, color, .. } = *collider;
         Self { body, shape, placement, color }

@@ -1,19 +1,19 @@
-//! Mass, centre of mass and inertia of solid bodies.
+//! Mass, center of mass and inertia of solid bodies.
 
 use crate::pose::{Pose, cross};
 use crate::robot::shape::Shape;
 
-/// Mass, centre of mass and inertia of a rigid body.
+/// Mass, center of mass and inertia of a rigid body.
 ///
-/// The shapes are solid and homogeneous, centred at the origin, with their axis along z.
+/// The shapes are solid and homogeneous, centerd at the origin, with their axis along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
     /// Mass [kg].
     pub mass: f64,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     pub centre: [f64; 3],
-    /// Inertia about the centre of mass, matrix elements [xx, yy, zz, xy, xz, yz; kg m2].
+    /// Inertia about the center of mass, matrix elements [xx, yy, zz, xy, xz, yz, kg m2].
     pub inertia: [f64; 6],
 }
 
@@ -41,7 +41,7 @@ impl MassProperties {
     }
 
     /// A capsule of `mass` [kg] and `radius` [m] about an axis of `half_length` h [m]: a cylinder and two half balls,
-    /// their masses as their volumes; the half balls have 2/5 m r2 about the axis and m (2/5 r2 + h2 + 3/4 h r) across.
+    /// their masses as their volumes. The half balls have 2/5 m r2 about the axis and m (2/5 r2 + h2 + 3/4 h r) across.
     pub fn capsule(mass: f64, radius: f64, half_length: f64) -> Self {
         let (r2, h) = (radius * radius, half_length);
         let tube = mass * h / (h + 2.0 / 3.0 * radius);
@@ -50,7 +50,7 @@ impl MassProperties {
         Self::diagonal(mass, [across, across, tube * r2 / 2.0 + caps * 0.4 * r2])
     }
 
-    /// A solid of this shape with `mass` [kg]; a plane, which has no volume, gets a mass without inertia.
+    /// A solid of this shape with `mass` [kg]. A plane, which has no volume, gets a mass without inertia.
     pub fn from_shape(shape: &Shape, mass: f64) -> Self {
         match *shape {
             Shape::Sphere { radius } => Self::sphere(mass, radius),
@@ -60,11 +60,11 @@ impl MassProperties {
         }
     }
 
-    /// The same body seen from a frame in which its own frame is at `placement`.
+    /// Returns the body seen from a frame in which its own frame is at `placement`.
     #[must_use]
     pub fn placed(&self, placement: &Pose<f64>) -> Self {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
-        // R I: the columns of I turned; then (R I) R' row by row, I being symmetric.
+        // R I: the columns of I turned. Then (R I) R' row by row, I being symmetric.
         let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|column| placement.rotate(column));
         let row = |i: usize| placement.rotate([columns[0][i], columns[1][i], columns[2][i]]);
         let [x, y, z] = [row(0), row(1), row(2)];
@@ -75,7 +75,7 @@ impl MassProperties {
         }
     }
 
-    /// The two bodies fixed to each other, both given in the same frame; of two massless ones the first's centre.
+    /// The two bodies fixed to each other, both given in the same frame. Two massless parts have the first's center.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
@@ -95,8 +95,8 @@ impl MassProperties {
         Self { mass, centre, inertia }
     }
 
-    /// Whether mass and inertia can be those of a body: finite, mass >= 0, no principal moment negative or larger than
-    /// the sum of the other two. Moments may miss by 1e-7 of their sum.
+    /// Returns whether mass and inertia can be those of a body: finite, mass >= 0, no principal moment negative or
+    /// larger than the sum of the other two. Moments may miss by 1e-7 of their sum.
     ///
     /// With `moving`, mass and all principal moments must be > 0, so that forces give finite accelerations.
     pub fn is_physical(&self, moving: bool) -> bool {
@@ -109,8 +109,8 @@ impl MassProperties {
             return true;
         }
         let trace = xx + yy + zz;
-        // Flat and thin bodies lie on the border of what is possible: rounding may have pushed them over it. Of a rod that lies
-        // obliquely two moments are as small as the slack, whose square has to be larger than rounding.
+        // Flat and thin bodies lie on the border of what is possible: rounding may have pushed them over it. Two
+        // moments of an oblique rod are as small as the slack, whose square has to be larger than rounding.
         let slack = 1e-7 * trace.abs();
         let floor = if moving { 0.0 } else { slack };
         // Half the trace less the inertia is the second moment of the mass, which has no negative eigenvalue.
@@ -120,7 +120,7 @@ impl MassProperties {
     }
 }
 
-/// Whether a symmetric matrix [xx, yy, zz, xy, xz, yz] has positive leading minors.
+/// Returns whether a symmetric matrix [xx, yy, zz, xy, xz, yz] has positive leading minors.
 fn positive_definite([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> bool {
     let last = cross([xx, xy, xz], [xy, yy, yz]);
     xx > 0.0 && xx * yy - xy * xy > 0.0 && last[0] * xz + last[1] * yz + last[2] * zz > 0.0

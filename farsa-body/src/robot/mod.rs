@@ -1,7 +1,7 @@
 //! A robot, or a whole scene, as data: what every world is built from and every model file is read into.
 //!
-//! Begin with [`Robot::new`], add [`Segment`]s with their [`Joint`]s, [`Collider`]s and [`Actuator`]s, say which
-//! [`Pair`]s may touch, and call [`Robot::validate`]. All numbers are `f64`; a world rounds them once.
+//! Begin with [`Robot::new`] and add [`Segment`]s with their [`Joint`]s, [`Collider`]s and [`Actuator`]s. List the
+//! [`Pair`]s that may touch, and call [`Robot::validate`]. All numbers are `f64`. A world rounds them once.
 //!
 //! | you have | take |
 //! |---|---|
@@ -15,11 +15,11 @@
 
 /// The robot, its segments, joints, colliders, pairs and actuators.
 pub(crate) mod description;
-/// What is drawn of a robot: visuals, and the colliders that none of them replaces.
+/// Shapes that views draw: visuals, and colliders without a visual.
 mod drawn;
 /// Joints that are held for good.
 mod locked;
-/// Mass, centre of mass and inertia of solid bodies: computed, moved, joined.
+/// Mass, center of mass and inertia of solid bodies: computed, moved, joined.
 pub(crate) mod mass_properties;
 /// Pairs of colliders that may touch.
 mod pairs;
@@ -27,7 +27,7 @@ mod pairs;
 pub(crate) mod shape;
 /// Bodies that slide in a plane, and the ground below them.
 mod sliding;
-/// What can be wrong with a description, and the search for it.
+/// Errors of a description, and their search.
 pub(crate) mod validation;
 /// A shape that is drawn.
 pub(crate) mod visual;
@@ -35,5 +35,5 @@ pub(crate) mod visual;
 pub use description::{Actuator, Collider, Ground, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
 pub use mass_properties::MassProperties;
 pub use shape::Shape;
-pub use validation::RobotError;
+pub use validation::{PairFault, RobotError};
 pub use visual::Visual;

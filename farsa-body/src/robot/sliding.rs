@@ -34,8 +34,8 @@ impl Robot {
         self.grounds.push(ground);
     }
 
-    /// The joints that a body slides and turns by, if it does so in a plane of the world: on a sliding joint crosswise on
-    /// another one, and no more than a turn beyond.
+    /// Returns the joints of a body that slides in a plane of the world: two crosswise sliding joints, and at most one
+    /// turn on them.
     pub fn sliders(&self, body: BodyId) -> Option<([JointId; 2], Option<JointId>)> {
         let segment = |body: BodyId| self.segments.get(body.index());
         let turn = (segment(body)?.joint.kind == JointKind::Revolute).then_some(JointId(body.0));
@@ -65,7 +65,9 @@ impl Robot {
                 return Err(RobotError::Name { name: segment.name.clone() });
             }
             if self.sliders(ground.body).is_none() {
-                return Err(RobotError::Ground { segment: segment.name.clone() });
+                let name = &segment.name;
+                let why = format!("segment {name}: no body that slides in a plane has ground below it");
+                return Err(RobotError::Structure { why });
             }
         }
         Ok(())

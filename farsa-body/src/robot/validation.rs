@@ -1,6 +1,7 @@
-//! What can be wrong with a robot's description, and the search for it.
+//! Errors of a robot's description, and their search.
 
 use alloc::collections::BTreeSet;
+use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
@@ -9,27 +10,20 @@ use crate::pose::{Pose, norm};
 use crate::robot::description::{JointKind, Robot, Segment, Surface};
 use crate::robot::shape::Shape;
 
-/// What is wrong with a robot's description.
+/// The fault of a robot's description.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RobotError {
-    /// A segment's parent comes later, or not at all.
-    Parent {
-        /// The segment's name.
-        segment: String,
-        /// The parent's index.
-        parent: usize,
-    },
-    /// A number is NaN, infinite or out of its range.
+    /// A number that is NaN, infinite or out of its range.
     Value {
         /// The part's name.
         part: String,
-        /// Which number.
+        /// The field.
         field: &'static str,
-        /// Its value.
+        /// The value.
         value: f64,
     },
-    /// A joint's range is NaN or ends before it begins.
+    /// A joint's range that contains NaN or ends before it begins.
     Range {
         /// The joint's name.
         joint: String,
@@ -40,82 +34,65 @@ pub enum RobotError {
     Inertia {
         /// The segment's name.
         segment: String,
-        /// Its mass [kg].
+        /// The mass [kg].
         mass: f64,
-        /// Its inertia [xx, yy, zz, xy, xz, yz; kg m2].
+        /// The inertia [xx, yy, zz, xy, xz, yz, kg m2].
         inertia: [f64; 6],
     },
-    /// An index points to nothing.
+    /// An index beyond the end of its list.
     Index {
         /// The part's name.
         part: String,
-        /// Which index.
+        /// The field.
         field: &'static str,
-        /// Its value.
+        /// The index.
         index: usize,
-        /// How many there are.
+        /// The length of the list.
         count: usize,
     },
-    /// More parts of one kind than 65535, which is what indices can number.
+    /// More parts of one kind than an index can number, which is 65535.
     Count {
         /// The kind of parts.
         parts: &'static str,
-        /// How many there are.
+        /// The number of parts.
         count: usize,
     },
-    /// Two parts of one kind have the same name.
+    /// A name that two parts of one kind have.
     Name {
         /// The name.
         name: String,
     },
-    /// A part that needs a name has none.
-    Unnamed {
-        /// The kind of part.
-        part: &'static str,
-        /// Its index.
-        index: usize,
+    /// A part at an impossible place in the description.
+    ///
+    /// Examples are a parent that follows its child, a floating joint below another segment, and an actuator on a fixed
+    /// joint. Others are a part without a name, and ground below a body that does not slide in a plane.
+    Structure {
+        /// The part and its fault.
+        why: String,
     },
-    /// A floating joint on a segment that has a parent.
-    Floating {
-        /// The segment's name.
-        segment: String,
-    },
-    /// An actuator on a joint that does not turn or slide.
-    Actuated {
-        /// The actuator's name.
-        actuator: String,
-        /// The name of the segment that the joint carries.
-        segment: String,
-    },
-    /// A pair of shapes that no world can bring into contact.
-    Shapes {
+    /// A pair of colliders that cannot touch.
+    Pair {
         /// The two colliders' names.
         colliders: [String; 2],
+        /// The fault.
+        fault: PairFault,
     },
-    /// A pair of colliders on the same body, or both fixed to the world.
-    SameBody {
-        /// The two colliders' names.
-        colliders: [String; 2],
-    },
-    /// Ground under a body that does not slide in a plane: on two crosswise sliding joints in the world, and a turn on
-    /// them at most.
-    Ground {
-        /// The body's name.
-        segment: String,
-    },
-    /// A pair that is listed twice.
-    Twice {
-        /// The two colliders' names.
-        colliders: [String; 2],
-    },
+}
+
+/// The reason why a pair of colliders cannot touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PairFault {
+    /// No world has contacts between these shapes.
+    Shapes,
+    /// Both colliders are on one body, or both are fixed to the world.
+    SameBody,
+    /// The pair is in the list twice.
+    Twice,
 }
 
 impl fmt::Display for RobotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Parent { segment, parent } => {
-                write!(f, "segment {segment}: parent {parent} is not an earlier segment")
-            }
             Self::Value { part, field, value } => write!(f, "{part}: {field} is {value}"),
             Self::Range { joint, range: [low, high] } => write!(f, "joint {joint}: no range from {low} to {high}"),
             Self::Inertia { segment, mass, inertia } => {
@@ -124,17 +101,12 @@ impl fmt::Display for RobotError {
             Self::Index { part, field, index, count } => write!(f, "{part}: {field} {index} of {count}"),
             Self::Count { parts, count } => write!(f, "{count} {parts} are more than 65535"),
             Self::Name { name } => write!(f, "the name {name} is used twice"),
-            Self::Unnamed { part, index } => write!(f, "{part} {index} has no name"),
-            Self::Floating { segment } => write!(f, "segment {segment}: a floating joint must not have a parent"),
-            Self::Actuated { actuator, segment } => {
-                write!(f, "actuator {actuator}: the joint of segment {segment} neither turns nor slides")
-            }
-            Self::Shapes { colliders: [a, b] } => write!(f, "colliders {a} and {b}: no contact between such shapes"),
-            Self::SameBody { colliders: [a, b] } => write!(f, "colliders {a} and {b} are on one body"),
-            Self::Ground { segment } => {
-                write!(f, "segment {segment}: no body that slides in a plane has ground below it")
-            }
-            Self::Twice { colliders: [a, b] } => write!(f, "colliders {a} and {b} are paired twice"),
+            Self::Structure { why } => f.write_str(why),
+            Self::Pair { colliders: [a, b], fault } => match fault {
+                PairFault::Shapes => write!(f, "colliders {a} and {b}: no contact between such shapes"),
+                PairFault::SameBody => write!(f, "colliders {a} and {b} are on one body"),
+                PairFault::Twice => write!(f, "colliders {a} and {b} are paired twice"),
+            },
         }
     }
 }
@@ -240,7 +212,11 @@ fn unique<'a>(names: impl Iterator<Item = &'a String>) -> Result<(), RobotError>
 }
 
 fn named<'a>(part: &'static str, mut names: impl Iterator<Item = &'a String>) -> Result<(), RobotError> {
-    names.position(String::is_empty).map_or(Ok(()), |index| Err(RobotError::Unnamed { part, index }))
+    names.position(String::is_empty).map_or(Ok(()), |index| Err(unnamed(part, index)))
+}
+
+fn unnamed(part: &str, index: usize) -> RobotError {
+    RobotError::Structure { why: format!("{part} {index} has no name") }
 }
 
 pub(super) fn index(part: &str, field: &'static str, index: usize, count: usize) -> Result<(), RobotError> {
@@ -252,10 +228,13 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
     let joint = &segment.joint;
     if let Some(parent) = segment.parent {
         if parent.index() >= own_index {
-            return Err(RobotError::Parent { segment: segment.name.clone(), parent: parent.index() });
+            let (name, parent) = (&segment.name, parent.index());
+            let why = format!("segment {name}: parent {parent} is not an earlier segment");
+            return Err(RobotError::Structure { why });
         }
         if joint.kind == JointKind::Floating {
-            return Err(RobotError::Floating { segment: segment.name.clone() });
+            let why = format!("segment {}: a floating joint must not have a parent", segment.name);
+            return Err(RobotError::Structure { why });
         }
     }
     part.placement(&joint.placement)?;
@@ -270,7 +249,7 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
     }
     if joint.kind.is_single() {
         if joint.name.is_empty() {
-            return Err(RobotError::Unnamed { part: "joint", index: own_index });
+            return Err(unnamed("joint", own_index));
         }
         part.vector("axis", &joint.axis)?;
         let length = norm(&joint.axis);
@@ -286,10 +265,12 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
 impl Robot {
     /// Looks for anything that keeps a world from being built, and returns the first error.
     ///
-    /// Checked are: indices and the order of parents, at most 65535 parts of a kind, names present and unique within
-    /// their kind, finite numbers, unit quaternions (to 1e-6), axes longer than 1e-6, ordered ranges, floating joints
-    /// only in the world, masses and inertias of moving bodies > 0 and possible, positive shapes, laws and surfaces,
-    /// pairs of different bodies listed once and with at most one plane.
+    /// Structure: indices and the order of parents, at most 65535 parts of a kind, names present and unique within
+    /// their kind, floating joints only in the world. Pairs have different bodies, are listed once and have at most one
+    /// plane.
+    ///
+    /// Numbers: finite numbers, unit quaternions (to 1e-6), axes longer than 1e-6, ordered ranges. Masses and inertias
+    /// of moving bodies are > 0 and possible. Shapes, laws and surfaces are positive.
     ///
     /// # Errors
     /// The first fault, as a [`RobotError`].
@@ -328,7 +309,9 @@ impl Robot {
             index(&actuator.name, "joint", actuator.joint.index(), self.segments.len())?;
             let carried = &self.segments[actuator.joint.index()];
             if !carried.joint.kind.is_single() {
-                return Err(RobotError::Actuated { actuator: actuator.name.clone(), segment: carried.name.clone() });
+                let (name, segment) = (&actuator.name, &carried.name);
+                let why = format!("actuator {name}: the joint of segment {segment} neither turns nor slides");
+                return Err(RobotError::Structure { why });
             }
             Part(&actuator.name).law(&actuator.law)?;
         }
@@ -403,33 +386,38 @@ mod tests {
     #[test]
     fn faults_of_structure() {
         let name = |s: &str| s.to_string();
+        let structure = |why: &str| RobotError::Structure { why: why.into() };
         assert_eq!(
             fault(|r| r.segments[1].parent = Some(BodyId(1))),
-            RobotError::Parent { segment: name("hand"), parent: 1 }
+            structure("segment hand: parent 1 is not an earlier segment")
         );
-        assert_eq!(fault(|r| r.segments[3].parent = Some(BodyId(0))), RobotError::Floating { segment: name("thing") });
+        let floating = structure("segment thing: a floating joint must not have a parent");
+        assert_eq!(fault(|r| r.segments[3].parent = Some(BodyId(0))), floating);
         assert_eq!(fault(|r| r.segments[1].name = name("arm")), RobotError::Name { name: name("arm") });
         assert_eq!(fault(|r| r.segments[1].joint.name = name("hinge")), RobotError::Name { name: name("hinge") });
         assert_eq!(fault(|r| r.colliders[1].name = name("a")), RobotError::Name { name: name("a") });
         assert_eq!(fault(|r| r.actuators[1].name = name("held")), RobotError::Name { name: name("held") });
-        assert_eq!(fault(|r| r.segments[1].name.clear()), RobotError::Unnamed { part: "segment", index: 1 });
-        assert_eq!(fault(|r| r.segments[1].joint.name.clear()), RobotError::Unnamed { part: "joint", index: 1 });
+        assert_eq!(fault(|r| r.segments[1].name.clear()), structure("segment 1 has no name"));
+        assert_eq!(fault(|r| r.segments[1].joint.name.clear()), structure("joint 1 has no name"));
         let body = RobotError::Index { part: name("a"), field: "body", index: 4, count: 4 };
         assert_eq!(fault(|r| r.colliders[0].body = Some(BodyId(4))), body);
         let joint = RobotError::Index { part: name("servo"), field: "joint", index: 9, count: 4 };
         assert_eq!(fault(|r| r.actuators[1].joint = JointId(9)), joint);
         assert_eq!(
             fault(|r| r.actuators[1].joint = JointId(2)),
-            RobotError::Actuated { actuator: name("servo"), segment: name("skin") }
+            structure("actuator servo: the joint of segment skin neither turns nor slides")
         );
         let collider = RobotError::Index { part: name("a pair"), field: "collider", index: 5, count: 5 };
         assert_eq!(fault(|r| r.pairs[0].colliders[1] = 5), collider);
         let colliders = [name("b"), name("a")];
-        assert_eq!(fault(|r| r.pairs[1].colliders = [1, 0]), RobotError::Twice { colliders });
+        assert_eq!(fault(|r| r.pairs[1].colliders = [1, 0]), RobotError::Pair { colliders, fault: PairFault::Twice });
         let colliders = [name("a"), name("a")];
-        assert_eq!(fault(|r| r.pairs[0].colliders = [0, 0]), RobotError::SameBody { colliders });
+        assert_eq!(
+            fault(|r| r.pairs[0].colliders = [0, 0]),
+            RobotError::Pair { colliders, fault: PairFault::SameBody }
+        );
         let colliders = [name("d"), name("e")];
-        assert_eq!(fault(|r| r.pairs[0].colliders = [3, 4]), RobotError::Shapes { colliders });
+        assert_eq!(fault(|r| r.pairs[0].colliders = [3, 4]), RobotError::Pair { colliders, fault: PairFault::Shapes });
         let many = fault(|r| r.pairs = alloc::vec![r.pairs[0]; 65536]);
         assert_eq!(many, RobotError::Count { parts: "pairs", count: 65536 });
     }

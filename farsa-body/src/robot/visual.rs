@@ -1,4 +1,4 @@
-//! What a robot looks like where its colliders are not what is to be drawn.
+//! Shapes that views draw instead of colliders.
 
 use crate::ports::BodyId;
 use crate::pose::Pose;
@@ -8,13 +8,13 @@ use crate::robot::shape::Shape;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Visual {
-    /// The segment it moves with; `None` for the world.
+    /// The segment it moves with, or `None` for the world.
     pub body: Option<BodyId>,
     /// Its form.
     pub shape: Shape,
     /// Its frame in the segment's frame.
     pub placement: Pose<f64>,
-    /// Its colour, red, green and blue [0..1]; without one views choose it.
+    /// Its color, red, green and blue [0..1]. Without one views choose it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }
@@ -25,7 +25,7 @@ impl Visual {
         Self { body, shape, placement, color: None }
     }
 
-    /// The same shape in a colour, red, green and blue [0..1].
+    /// Returns the shape in a color, red, green and blue [0..1].
     #[must_use]
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color: Some(color), ..self }

@@ -56,16 +56,18 @@ const MUSCLE_LABELS: [[&str; 2]; 7] = [
 /// The right arm and hand of [Ferrauto2010] with the sizes of the iCub, every number a field.
 ///
 /// At joint positions 0 the arm points straight forward (+X of the world), horizontal, palm down, thumb to the left
-/// (+Y); all segments' axes are then those of the world. The palm's frame lies in the wrist: x to the fingertips, y to
+/// (+Y). All segments' axes are then those of the world. The palm's frame lies in the wrist: x to the fingertips, y to
 /// the thumb, z out of the *back* of the hand. The arm hangs in the world, not on a torso.
 ///
-/// Joints, segments and actuators are numbered alike: joint Jn carries segment n - 1 and is driven by actuator n - 1.
-/// Deviations from the source: it does not say where the axes lie, so the geometry, the masses, the limits of the arm
-/// but the elbow's, joint damping and armature are our own choice, found by trial in another simulator.
+/// Joints, segments and actuators have the same numbers: joint Jn carries segment n - 1 and is driven by actuator n -
+/// 1.
+///
+/// Deviations: the source does not give the axes' places. The geometry, the masses, the limits of the arm except the
+/// elbow's, joint damping and armature are our own choice, found by trial in another simulator.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArmAndHand {
-    /// Where the axes of J1 to J3 meet, in the world [m].
+    /// The point in which the axes of J1 to J3 cross, in the world [m].
     pub shoulder: [f64; 3],
     /// From the shoulder to the elbow [m].
     pub upper_arm_length: f64,
@@ -79,10 +81,11 @@ pub struct ArmAndHand {
     pub moment_arm: f64,
     /// Which reading of the muscle model.
     pub muscle_variant: MuscleVariant,
-    /// The reduction factor of [`MuscleVariant::Original`] on the passive tension, beside its 0.5; the other ignores
-    /// it.
+    /// The reduction factor of [`MuscleVariant::Original`] on the passive tension, in addition to its 0.5. The other
+    /// variant ignores it.
     pub passive_reduction: f64,
-    /// Viscous damping of the arm's joints divided by the muscles' largest active torque, r Tmax [s/rad]; 0 for none.
+    /// Viscous damping of the arm's joints divided by the muscles' largest active torque, r Tmax [s/rad], or 0 for
+    /// none.
     pub damping_per_torque: f64,
     /// Armature of the arm's joints [kg m2].
     pub arm_armature: f64,
@@ -106,11 +109,11 @@ pub struct ArmAndHand {
     pub forearm_axis: f64,
     /// Half the palm's edge lengths [m].
     pub palm_half: [f64; 3],
-    /// Centre of the palm's box in the palm's frame [m].
+    /// Center of the palm's box in the palm's frame [m].
     pub palm_box: [f64; 3],
-    /// The point on the palm's inner face that counts as its centre, in the palm's frame [m].
+    /// The point on the palm's inner face that counts as its center, in the palm's frame [m].
     pub palm_centre: [f64; 3],
-    /// Radii of the phalanges' capsules, from the palm outwards; their axes run from joint to joint, or to the tip [m].
+    /// Radii of the phalanges' capsules, from the palm outwards. Their axes run from joint to joint, or to the tip [m].
     pub phalange_radii: [f64; 3],
     /// Lengths of the phalanges, from the palm outwards, for the fingers from the thumb to the little one [m].
     pub phalange_lengths: [[f64; 3]; 5],
@@ -183,7 +186,7 @@ impl ArmAndHand {
     pub const PALM: BodyId = BodyId(6);
     /// The outward normal of the palm's inner face, in the palm's frame.
     pub const PALM_NORMAL: [f64; 3] = [0.0, 0.0, -1.0];
-    /// Indices of the colliders of upper arm, forearm and palm; those of the phalanges follow.
+    /// Indices of the colliders of upper arm, forearm and palm. The phalanges follow.
     pub const ARM_COLLIDERS: [usize; 3] = [0, 1, 2];
 
     /// J1 to J27.
@@ -191,19 +194,21 @@ impl ArmAndHand {
         core::array::from_fn(|i| JointId(i as u16))
     }
 
-    /// What J1 to J27 are called in anatomy, all names different.
+    /// Returns the anatomical names of J1 to J27, all different.
     ///
-    /// Those of the arm say what a positive rotation does at joint positions 0: J1 adducts the arm in the horizontal
-    /// plane, J2 flexes the shoulder (up), J3 rotates the humerus inwards, J4 extends the elbow, J5 supinates the
-    /// forearm, J6 flexes the wrist towards the palm and J7 abducts it towards the thumb. Those of the hand name the
-    /// motion, or the phalange that flexes; opposition and flexion are negative, and abduction joints turn towards the
-    /// thumb when positive: index and middle finger abduct, ring and little finger adduct.
+    /// The names of the arm describe a positive rotation at joint positions 0. J1 adducts the arm in the horizontal
+    /// plane, J2 flexes the shoulder (up), J3 rotates the humerus inwards, and J4 extends the elbow. J5 supinates the
+    /// forearm, J6 flexes the wrist towards the palm, and J7 abducts it towards the thumb.
+    ///
+    /// The names of the hand are the motion, or the phalange that flexes. Opposition and flexion are negative.
+    /// Abduction joints turn towards the thumb when positive: index and middle finger abduct, ring and little finger
+    /// adduct.
     pub const fn joint_labels() -> [&'static str; 27] {
         JOINT_LABELS
     }
 
-    /// What the muscles of J1 to J7 are called in anatomy, each \[agonist, antagonist\]: the agonist turns its joint in
-    /// the negative direction, the antagonist in the positive one, which names the joint in
+    /// Returns the anatomical names of the muscles of J1 to J7, each \[agonist, antagonist\]. The agonist turns its
+    /// joint in the negative direction, the antagonist in the positive one, which names the joint in
     /// [`ArmAndHand::joint_labels`].
     pub const fn muscle_labels() -> [[&'static str; 2]; 7] {
         MUSCLE_LABELS
@@ -260,15 +265,15 @@ impl ArmAndHand {
     }
 
     /// The robot: segments `shoulder_base`, `shoulder`, `upper_arm`, `elbow`, `forearm`, `wrist`, `palm`, then per
-    /// finger `thumb_knuckle`, `thumb_proximal`, `thumb_middle`, `thumb_distal`; colliders named as their segments.
+    /// finger `thumb_knuckle`, `thumb_proximal`, `thumb_middle`, `thumb_distal`. Colliders named as their segments.
     ///
-    /// Upper arm, forearm, palm and phalanges have their collider's inertia as solids; the other segments that of balls
-    /// as thick as their neighbours. The pairs are the thumb's two outer phalanges with the other fingers' two outer
-    /// ones, neighbouring fingers' distal ones, and the palm with the thumb's two outer phalanges and the others'
-    /// distal ones; use [`crate::robots::Tabletop`] or [`Robot::add_pair`] for others.
+    /// Upper arm, forearm, palm and phalanges have their collider's inertia as solids, the other segments that of balls
+    /// as thick as their neighbors. Three kinds of pairs may touch: the thumb's two outer phalanges with the other
+    /// fingers' two outer ones, neighboring fingers' distal ones, and the palm with the thumb's two outer phalanges and
+    /// the others' distal ones. Use [`crate::robots::Tabletop`] or [`Robot::add_pair`] for others.
     ///
     /// # Errors
-    /// What [`Robot::validate`] finds with the numbers given.
+    /// The errors of [`Robot::validate`] for the given numbers.
     pub fn robot(&self) -> Result<Robot, RobotError> {
         let mut robot = Robot::new("arm_and_hand");
         let (hand, wrist) = (self.hand(), Wrist { palm: Self::PALM, prefix: "", mirrored: false });

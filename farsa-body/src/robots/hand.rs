@@ -59,7 +59,7 @@ pub(crate) struct Wrist<'a> {
     pub(crate) palm: BodyId,
     /// Before each name.
     pub(crate) prefix: &'a str,
-    /// Whether the hand is a left one.
+    /// True if the hand is a left one.
     pub(crate) mirrored: bool,
 }
 
@@ -75,9 +75,10 @@ impl Wrist<'_> {
 
 /// The hand of [Ferrauto2010]: five fingers of four joints driven by servos in nine groups, every number a field.
 ///
-/// All numbers are those of the right hand in the palm's frame: it lies in the wrist, x to the fingertips, y to the
-/// thumb, z out of the *back* of the hand. The left hand is its mirror image, y away from the thumb. Joints are named
-/// J8 to J27, with a prefix on a robot of two hands. Deviations from the source: [`crate::robots::ArmAndHand`].
+/// All numbers are those of the right hand in the palm's frame. Its origin is in the wrist, x points to the fingertips,
+/// y to the thumb, and z out of the *back* of the hand. The left hand is its mirror image, y away from the thumb.
+/// Joints are named J8 to J27, with a prefix on a robot of two hands. Deviations from the source:
+/// [`crate::robots::ArmAndHand`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Hand {
@@ -85,9 +86,9 @@ pub struct Hand {
     pub palm_mass: f64,
     /// Half the palm's edge lengths [m].
     pub palm_half: [f64; 3],
-    /// Centre of the palm's box in the palm's frame [m].
+    /// Center of the palm's box in the palm's frame [m].
     pub palm_box: [f64; 3],
-    /// The point on the palm's inner face that counts as its centre, in the palm's frame [m].
+    /// The point on the palm's inner face that counts as its center, in the palm's frame [m].
     pub palm_centre: [f64; 3],
     /// Armature of the joints [kg m2].
     pub armature: f64,
@@ -99,7 +100,7 @@ pub struct Hand {
     pub knuckle_mass: f64,
     /// Masses of the phalanges, from the palm outwards [kg].
     pub phalange_masses: [f64; 3],
-    /// Radii of the phalanges' capsules, from the palm outwards; their axes run from joint to joint, or to the tip [m].
+    /// Radii of the phalanges' capsules, from the palm outwards. Their axes run from joint to joint, or to the tip [m].
     pub phalange_radii: [f64; 3],
     /// Lengths of the phalanges, from the palm outwards, for the fingers from the thumb to the little one [m].
     pub phalange_lengths: [[f64; 3]; 5],
@@ -176,12 +177,21 @@ impl Hand {
         if finger == Finger::Thumb { [0.0, tip, 0.0] } else { [tip, 0.0, 0.0] }
     }
 
-    /// The nine groups of servos that each follow one output, of a hand whose servo on J8 is `first`, with their
-    /// positions at output 0 (extended, fingers together) and 1 (flexed, spread).
+    /// Returns the nine groups of servos, each for one output, of a hand whose servo on J8 is `first`. Positions at
+    /// output 0 are extended with fingers together, and at 1 flexed and spread.
     ///
-    /// In this order: J8; J9; J10, J11; J13; J14, J15; J17; J18, J19; J12, J16, J20, J24 (abduction: index and middle
-    /// from the lower to the upper limit, ring and little the other way); J21 to J23, J25 to J27 [Ferrauto2010, chapter
-    /// 2].
+    /// The groups in order are [Ferrauto2010, chapter 2]:
+    ///
+    /// 1. J8
+    /// 2. J9
+    /// 3. J10 and J11
+    /// 4. J13
+    /// 5. J14 and J15
+    /// 6. J17
+    /// 7. J18 and J19
+    /// 8. J12, J16, J20 and J24: abduction, index and middle from the lower to the upper limit, ring and little the
+    ///    other way
+    /// 9. J21 to J23 and J25 to J27
     pub fn servo_groups(&self, first: ActuatorId) -> [Vec<ServoRange>; 9] {
         let servo = |n: u16, from: f64, to: f64| ServoRange {
             servo: ActuatorId(first.0 + n - FIRST),
@@ -268,9 +278,9 @@ impl Hand {
         }
     }
 
-    /// The pairs of the hand's colliders that may touch, with the palm's index and that of the first phalange: the
-    /// thumb's two outer phalanges with the other fingers' two outer ones, neighbouring fingers' distal ones, and the
-    /// palm with the thumb's two outer phalanges and the others' distal ones.
+    /// Returns the pairs of the hand's colliders that may touch, with the palm's index and that of the first phalange.
+    /// They are the thumb's two outer phalanges with the other fingers' two outer ones, neighboring fingers' distal
+    /// ones, and the palm with the thumb's two outer phalanges and the others' distal ones.
     pub(crate) fn pairs(palm: usize, first: usize) -> Vec<[usize; 2]> {
         let phalanges = |finger: Finger| [0, 1, 2].map(|i| first + 3 * finger as usize + i);
         let mut pairs = Vec::new();

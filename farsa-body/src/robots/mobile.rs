@@ -1,4 +1,4 @@
-//! Wheeled robots as data, and by which numbers a world of the plane knows their parts.
+//! Wheeled robots as data, and the numbers of their parts in a planar world.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -12,7 +12,7 @@ use crate::ports::{ActuatorId, BodyId, JointId};
 pub struct InfraredRing {
     /// Where the sensors sit on the hull and look to, counter-clockwise from ahead [rad].
     pub angles: Vec<f64>,
-    /// How far they see from the hull [m].
+    /// The range of the sensors from the hull [m].
     pub range: f64,
     /// Half the angle of the cone that each sees [rad].
     pub aperture: f64,
@@ -20,11 +20,12 @@ pub struct InfraredRing {
     pub rays: usize,
 }
 
-/// A round robot on two wheels as data; frame: x ahead, y to the left, z up, the origin on the ground between the wheels.
+/// A round robot on two wheels as data. Frame: x ahead, y to the left, z up, the origin on the ground between the
+/// wheels.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileRobot {
-    /// What it is called.
+    /// The name.
     pub name: String,
     /// Radius of the hull [m].
     pub radius: f64,
@@ -38,15 +39,15 @@ pub struct MobileRobot {
     pub max_wheel_speed: f64,
     /// The infrared sensors around it.
     pub infrared: InfraredRing,
-    /// Where the sensors of the ground's colour are, in the robot's frame [m].
+    /// Where the sensors of the ground's color are, in the robot's frame [m].
     pub ground: Vec<[f64; 2]>,
-    /// Colour of the hull, where no LED shines: red, green and blue [0..1].
+    /// Color of the hull, where no LED shines: red, green and blue [0..1].
     pub color: [f64; 3],
-    /// Whether it has LEDs: three actuators, red, green and blue.
+    /// True if it has LEDs: three actuators, red, green and blue.
     pub leds: bool,
-    /// Whether it can signal: an actuator.
+    /// True if it can signal: an actuator.
     pub signal: bool,
-    /// How far from the hull its attachment device reaches [m], if it has one: an actuator.
+    /// The reach of its attachment device from the hull [m], if it has one. The device is an actuator.
     pub attachment: Option<f64>,
 }
 
@@ -57,7 +58,7 @@ fn degrees(angles: &[f64]) -> Vec<f64> {
 impl MobileRobot {
     /// The Khepera: 35 mm, wheels of 15 mm 55 mm apart, 1.1 turns/s, eight infrared sensors.
     ///
-    /// Numbers: FARSA2's. Ours: height, colour, aperture as half the cone's angle.
+    /// Numbers: FARSA2's. Ours: height, color, aperture as half the cone's angle.
     pub fn khepera() -> Self {
         Self {
             name: "Khepera".into(),
@@ -83,7 +84,7 @@ impl MobileRobot {
 
     /// The e-puck: hull of 35 mm, wheels of 20.5 mm 53 mm apart, 144 mm/s, eight infrared sensors, three of the ground, LEDs.
     ///
-    /// Numbers: FARSA2's. Ours: height, colour, aperture and rays of the infrared sensors, places of the ground sensors.
+    /// Numbers: FARSA2's. Ours: height, color, aperture and rays of the infrared sensors, places of the ground sensors.
     pub fn e_puck() -> Self {
         Self {
             name: "e-puck".into(),
@@ -109,7 +110,7 @@ impl MobileRobot {
     /// The `MarXbot`: 85 mm, wheels of 27 mm 126.5 mm apart, 10 rad/s, 24 infrared sensors, twelve of the ground, LEDs, an
     /// attachment device.
     ///
-    /// Numbers: FARSA2's. Ours: height, colour, places of the ground sensors (four within, eight around), reach of the
+    /// Numbers: FARSA2's. Ours: height, color, places of the ground sensors (four within, eight around), reach of the
     /// attachment device.
     pub fn marxbot() -> Self {
         let around = |count: usize, radius: f64, first: f64| {
@@ -162,7 +163,7 @@ impl MobileRobot {
     }
 }
 
-/// By which numbers a world knows the parts of a [`MobileRobot`].
+/// The numbers of a [`MobileRobot`]'s parts in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileParts {
@@ -170,13 +171,13 @@ pub struct MobileParts {
     pub body: BodyId,
     /// The wheels, left and right.
     pub wheels: [JointId; 2],
-    /// What drives the wheels, left and right; commands are speeds [rad/s].
+    /// The motors of the wheels, left and right. Commands are speeds [rad/s].
     pub motors: [ActuatorId; 2],
-    /// The LEDs, red, green and blue; commands are brightnesses [0..1].
+    /// The LEDs, red, green and blue, commands are brightnesses [0..1].
     pub leds: Option<[ActuatorId; 3]>,
-    /// What it signals [0..1].
+    /// The signal [0..1].
     pub signal: Option<ActuatorId>,
-    /// Whether it holds what is in front of it (above 0.5).
+    /// The attachment device, which holds above 0.5.
     pub attachment: Option<ActuatorId>,
 }
 

@@ -17,7 +17,7 @@ pub(crate) mod hand;
 pub(crate) mod icub;
 /// The mirror image of a right side.
 pub(crate) mod mirror;
-/// Wheeled robots, and the numbers by which a planar world knows their parts.
+/// Wheeled robots, and the numbers of their parts in a planar world.
 pub(crate) mod mobile;
 /// The table and the sphere of `reach-grasp-lift`.
 pub(crate) mod tabletop;

@@ -9,9 +9,9 @@ use crate::robot::validation::RobotError;
 use crate::robots::arm_and_hand::ArmAndHand;
 use crate::robots::hand::Finger;
 
-/// A table before the arm and hand, with a sphere on it; every number a field.
+/// A table before the arm and hand, with a sphere on it. Every number a field.
 ///
-/// The table's top is at z = 0. All numbers are our own choice; the source gives the sphere's radius.
+/// The table's top is at z = 0. All numbers are our own choice. The source gives the sphere's radius.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Tabletop {
@@ -19,7 +19,7 @@ pub struct Tabletop {
     pub table_x: [f64; 2],
     /// Extent of the table along Y [m].
     pub table_y: [f64; 2],
-    /// How far the solid table goes down [m].
+    /// The thickness of the solid table [m].
     pub table_depth: f64,
     /// Radius of the sphere [m].
     pub sphere_radius: f64,
@@ -58,12 +58,11 @@ impl Tabletop {
 
     /// Arm and hand, sphere and table in one robot, the arm's parts first.
     ///
-    /// After the arm's own pairs come those of the `sphere` with the palm and the fifteen phalanges (finger by finger),
-    /// then those of the
-    /// `table` with the sphere, forearm, palm and phalanges.
+    /// Pairs in order: the arm's own, those of the `sphere` with the palm and the fifteen phalanges (finger by finger),
+    /// those of the `table` with the sphere, forearm, palm and phalanges.
     ///
     /// # Errors
-    /// What [`Robot::validate`] finds with the numbers given.
+    /// The errors of [`Robot::validate`] for the given numbers.
     pub fn scene(&self, arm: &ArmAndHand) -> Result<Robot, RobotError> {
         let mut robot = arm.robot()?;
         let [x, y] = self.sphere_start;
@@ -101,7 +100,8 @@ mod tests {
         assert_eq!(robot.segments.len(), 28);
         assert_eq!(robot.body("sphere"), Some(Tabletop::SPHERE));
         assert_eq!(robot.colliders.len(), 20);
-        // Thumb with the others' outer phalanges, neighbours, palm with the outer ones; sphere with palm and phalanges; table.
+        // Thumb with the others' outer phalanges, neighbors, palm with the outer ones. Sphere with palm and phalanges,
+        // table.
         assert_eq!(robot.pairs.len(), (2 * 8 + 3 + 6) + 16 + 18);
         assert!(robot.pair("sphere", "little_distal").is_some());
         assert!(robot.pair("table", "sphere").is_some());

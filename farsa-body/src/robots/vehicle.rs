@@ -14,10 +14,10 @@ use crate::robots::mobile::MobileRobot;
 /// Boxes whose faces are the sides of the hull: a polygon of twice as many.
 const FACES: usize = 8;
 
-/// How far the skids are above the ground, by the radius of a wheel.
+/// The height of the skids above the ground, in radii of a wheel.
 const CLEARANCE: f64 = 0.02;
 
-/// How deep the robot's weight presses a wheel into the ground \[m\].
+/// The depth to which the robot's weight presses a wheel into the ground \[m\].
 const SINK: f64 = 1e-4;
 
 impl MobileRobot {
@@ -32,18 +32,19 @@ impl MobileRobot {
         Self::DENSITY * (PI * self.radius * self.radius * self.height)
     }
 
-    /// The robot as a description: a hull that floats, wheels on joints without end, two skids, and a segment without mass at
-    /// every infrared and ground sensor, whose x axis is where it looks; below it the ground.
+    /// Returns the robot as a description: a floating hull, wheels on endless joints, two skids, and the ground. A
+    /// segment without mass marks every infrared and ground sensor, and its x axis is the sensor's direction.
     ///
-    /// Segments are `hull`, `left wheel`, `right wheel`, `infrared 1`..., `ground 1`...; the frame of `hull` is that of the
-    /// robot, on the ground between the wheels. Of a solid cylinder are the inertias of the hull, whose centre is at the height
-    /// of the axle, and of each wheel. A motor of a wheel has a quarter of the robot's weight times the wheel's radius as its
-    /// largest torque.
+    /// Segments are `hull`, `left wheel`, `right wheel`, `infrared 1`..., `ground 1`.... The frame of `hull` is that of
+    /// the robot, on the ground between the wheels. The hull has the inertias of a solid cylinder, whose center is at
+    /// the height of the axle, and of each wheel. A motor of a wheel has a quarter of the robot's weight times the
+    /// wheel's radius as its largest torque.
     ///
     /// Deviations from the robots of the plane: the hull is a polygon of 16 sides, since a description has no cylinder,
-    /// within 2 % of its circle; it ends above the ground at half a wheel's radius, or half its height; wheels are balls, which
-    /// touch the ground in one point. Friction is 0.8 below the wheels and 0 below the skids, contacts are damped critically
-    /// and 0.1 mm deep under the robot's weight: all chosen. LEDs, signals and attachment devices have no body.
+    /// within 2 % of its circle. It ends above the ground at half a wheel's radius, or half its height. Wheels are
+    /// balls, which touch the ground in one point. Friction is 0.8 below the wheels and 0 below the skids, contacts are
+    /// damped critically and 0.1 mm deep under the robot's weight: all chosen. LEDs, signals and attachment devices
+    /// have no body.
     pub fn description(&self) -> Robot {
         let mut robot = Robot::new(&self.name);
         let own = (1.0 - Self::WHEEL_SHARE) * self.mass();
@@ -86,7 +87,7 @@ impl MobileRobot {
         }
     }
 
-    /// A wheel at this distance to the left; its collider.
+    /// A wheel at this distance to the left. Its collider.
     fn add_wheel(&self, robot: &mut Robot, hull: BodyId, name: &str, left: f64) -> usize {
         let radius = self.wheel_radius;
         let mass = 0.5 * Self::WHEEL_SHARE * self.mass();
@@ -152,7 +153,7 @@ mod tests {
             }
             assert_eq!(robot.segments.len(), 3 + mobile.infrared.angles.len() + mobile.ground.len());
         }
-        // What the real ones weigh, within a tenth: 80 g and 150 g.
+        // The real robots weigh 80 g and 150 g. A tenth of tolerance.
         for (mobile, mass) in [(MobileRobot::khepera(), 0.08), (MobileRobot::e_puck(), 0.15)] {
             assert!((mobile.mass() / mass - 1.0).abs() < 0.1, "{}: {} kg", mobile.name, mobile.mass());
         }

@@ -20,7 +20,8 @@ impl Beam {
     /// from ahead.
     ///
     /// All rays of a cone start at the same point of the hull. The first and the last lie `aperture` [rad] to the right
-    /// and to the left of `angle`, the others evenly between them; a single ray lies in the middle. Without an allocator:
+    /// and to the left of `angle`, the others evenly between them. A single ray lies in the middle. Without an
+    /// allocator:
     ///
     /// ```
     /// use farsa_body::sensors::Beam;
@@ -58,8 +59,8 @@ impl Beam {
     }
 }
 
-/// How far within the hull a ray starts [m], so that a robot which touches a wall sees it; also how far outside it
-/// starts where the world shows the hull from within.
+/// The depth within the hull at which a ray starts [m], so that a robot that touches a wall detects it. It is also the
+/// distance outside at which a ray starts where the world shows the hull from within.
 const WITHIN: f32 = 1e-3;
 
 /// The plane of a robot's beams in a world.
@@ -83,8 +84,8 @@ impl<B: Copy + PartialEq> BeamFrame<B> {
         }
     }
 
-    /// How far from the hull a beam meets something [m], at least 0; `None` if nothing within `range` [m], or if `asked`
-    /// about the beam from its start to its end [m] says that there is nothing.
+    /// Returns the distance from the hull to the first surface on a beam [m], at least 0, or `None` without a surface
+    /// within `range` [m]. `asked` receives the beam's start and end [m] and may report that nothing is between them.
     #[inline]
     pub(crate) fn distance<W: Rays<Body = B> + ?Sized>(
         &self,

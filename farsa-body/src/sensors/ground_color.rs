@@ -4,7 +4,7 @@ use crate::channel::{ChannelError, finite, groups, unit};
 use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
 use crate::sensors::stance::Stance;
 
-/// Reads the colour of the ground under places of a robot, in [0, 1]: one channel a place, the mean of red, green and
+/// Reads the color of the ground under places of a robot, in [0, 1]: one channel a place, the mean of red, green and
 /// blue.
 ///
 /// After [`GroundColor::rgb`] three a place, red, green and blue. The places are any list of points of the robot's frame.
@@ -17,7 +17,7 @@ pub struct GroundColor<L, B = BodyId> {
 }
 
 impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
-    /// Sensors of grey at these places [m] in the frame of `body`.
+    /// Sensors of gray at these places [m] in the frame of `body`.
     ///
     /// # Errors
     /// [`ChannelError::Groups`] if there are no places, [`ChannelError::Value`] if one is not finite.
@@ -29,7 +29,7 @@ impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
         Ok(Self { body, places, colors: 1 })
     }
 
-    /// The same with three channels a place: red, green and blue.
+    /// Reads three channels a place: red, green and blue.
     pub fn rgb(self) -> Self {
         Self { colors: 3, ..self }
     }

@@ -7,8 +7,8 @@ use crate::sensors::beam::{Beam, BeamFrame};
 /// Reads how far each beam of a fan reaches, one channel each in [0, 1]: distance / range, 1 where nothing is within the
 /// range.
 ///
-/// Distances are from the hull. The beams are any list; [`Beam::in_cone`] makes a fan. Wrap it in [`crate::wrappers::Noisy`] for
-/// noise.
+/// Distances are from the hull. The beams are any list. [`Beam::in_cone`] makes a fan. Wrap it in
+/// [`crate::wrappers::Noisy`] for noise.
 #[doc(alias = "lidar")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserDistance<L, B = BodyId> {

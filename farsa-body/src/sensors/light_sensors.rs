@@ -14,11 +14,11 @@ use crate::sensors::stance::Stance;
 
 /// Reads how brightly lamps shine on a ring of sensors, one channel each in [0, 1].
 ///
-/// Every lamp that is not hidden adds intensity cos(a) (reference / d)^2: d is the distance from the sensor to the lamp's
-/// centre, a the angle between that way and the sensor's direction. Behind a sensor (a beyond 90 degrees) it adds nothing,
-/// and all together are cut at 1. A lamp is hidden when the first thing on the way from the sensor to its centre is
-/// another body or a wall; the own body hides only what is behind the sensor, and a lamp that one carries oneself is not
-/// seen.
+/// Every visible lamp adds intensity cos(a) (reference / d)^2. The distance d is that from the sensor to the lamp's
+/// center, and a the angle between that way and the sensor's direction. Behind a sensor (a beyond 90 degrees) a lamp
+/// adds nothing, and the sum is cut at 1. A lamp is hidden when the first thing on the way from the sensor to its
+/// center is another body or a wall. The robot's own body hides only lamps behind the sensor, and a lamp on the robot
+/// itself is invisible.
 ///
 /// The sensors are any list of [`Beam`]s: where they sit and where they look to. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl<B> LightSensors<Vec<Beam>, B> {
     /// Sensors where a robot has its infrared sensors, as those of the Khepera measure both.
     ///
     /// # Errors
-    /// Those of [`LightSensors::new`].
+    /// The errors of [`LightSensors::new`].
     pub fn for_robot(robot: &MobileRobot, body: B, reference: f32) -> Result<Self, ChannelError> {
         let sensor = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1);
         Self::new(body, robot.infrared.angles.iter().map(sensor).collect(), reference)

@@ -9,7 +9,7 @@ use crate::pose::Pose;
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
-/// The colours that a pixel answers to: those whose red, green and blue each lie in a range.
+/// The colors that a pixel answers to: those whose red, green and blue each lie in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorBand {
@@ -20,7 +20,7 @@ pub struct ColorBand {
 }
 
 impl ColorBand {
-    /// All colours whose red, green and blue each differ by at most `tolerance` from those of `color`.
+    /// All colors whose red, green and blue each differ by at most `tolerance` from those of `color`.
     pub fn around(color: [f32; 3], tolerance: f32) -> Self {
         Self { low: color.map(|x| x - tolerance), high: color.map(|x| x + tolerance) }
     }
@@ -33,17 +33,17 @@ impl ColorBand {
         })
     }
 
-    /// Whether a colour is in the band.
+    /// Returns whether a color is in the band.
     pub fn shows(&self, color: [f32; 3]) -> bool {
         (0..3).all(|i| self.low[i] <= color[i] && color[i] <= self.high[i])
     }
 }
 
-/// Reads how much of each sector of a robot's view shows each of some colours, sectors x colours channels in [0, 1],
+/// Reads how much of each sector of a robot's view shows each of some colors, sectors x colors channels in [0, 1],
 /// those of the leftmost sector first.
 ///
 /// Each sector is searched by rays. Every ray sees the nearest surface and nothing behind it, also where that hides the
-/// farther one in part only; a channel is the share of its sector's rays that see its colour. Colours are never averaged:
+/// farther one in part only. A channel is the share of its sector's rays that see its color. Colors are never averaged:
 /// a ray that sees magenta counts for bands that hold magenta, not for red and blue. The own body is not seen.
 ///
 /// The rays and bands are any lists. Wrap it in [`crate::wrappers::Noisy`] for noise. Red and blue robots to the left and to the
@@ -79,13 +79,13 @@ pub struct LinearCamera<R, C, B = BodyId> {
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
-    /// A camera on `body` with `per_sector` rays in each sector, which sees as far as `range` [m]; [`Beam::in_view`] makes
-    /// its rays.
+    /// A camera on `body` with `per_sector` rays in each sector, which sees as far as `range` [m]. [`Beam::in_view`]
+    /// makes its rays.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if the rays are none or no whole sectors or there are no bands, [`ChannelError::Range`] if
-    /// a band runs backwards or is not finite, [`ChannelError::Value`] if a ray's direction is no unit vector, its place is
-    /// not finite or `range` is not a finite number > 0.
+    /// [`ChannelError::Groups`] if the rays do not form whole sectors or there are no bands, [`ChannelError::Range`] if
+    /// a band runs backwards or is not finite. [`ChannelError::Value`] if a ray's direction is no unit vector, its
+    /// place is not finite or `range` is not a finite number > 0.
     pub fn new(body: B, rays: R, per_sector: usize, bands: C, range: f32) -> Result<Self, ChannelError> {
         groups("rays", rays.as_ref().len(), per_sector)?;
         groups("colours", bands.as_ref().len(), 1)?;
@@ -98,8 +98,8 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
 
 #[cfg(feature = "alloc")]
 impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
-    /// A camera at the origin of `body` that looks ahead, with a field of view [rad] in equal sectors of `per_sector` rays
-    /// each; of 2 pi it sees all around.
+    /// A camera at the origin of `body` that looks ahead, with a field of view [rad] in equal sectors of `per_sector`
+    /// rays each. With 2 pi it sees all around.
     ///
     /// # Errors
     /// [`ChannelError::Value`] if the field of view is not within 0 and 2 pi, and those of [`LinearCamera::new`].
@@ -116,7 +116,7 @@ impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
             return Err(ChannelError::Value { field: "field of view", value: field_of_view as f32 });
         }
         let rays = sectors.saturating_mul(per_sector);
-        if rays > MOST_RAYS {
+        if rays > MAX_RAYS {
             return Err(ChannelError::Groups { field: "rays", count: rays, size: per_sector });
         }
         let rays = (0..rays).map(|ray| Beam::in_view([0.0; 2], field_of_view, ray, rays)).collect();
@@ -126,7 +126,7 @@ impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
 
 /// More rays than this are not needed, and a mistake could run out of memory.
 #[cfg(feature = "alloc")]
-const MOST_RAYS: usize = 1 << 20;
+const MAX_RAYS: usize = 1 << 20;
 
 /// By how much 2 pi in single precision is beyond 2 pi, and a little more [rad].
 #[cfg(feature = "alloc")]
@@ -139,7 +139,7 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> Channels for LinearCamera<R, C,
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B: Copy + PartialEq> LinearCamera<R, C, B> {
-    /// Reads what the camera sees from a pose of its body that is known already; `out` [sectors x colours].
+    /// Reads the camera's channels from a given pose of its body. `out` [sectors x colors].
     pub fn read_from<W: Sight<Body = B> + ?Sized>(&self, world: &W, pose: &Pose, out: &mut [f32]) {
         let (stance, bands) = (Stance::from_pose(pose), self.bands.as_ref());
         let (own, wedge, range) = (self.body, &self.wedge, self.range);
@@ -174,13 +174,13 @@ where
     }
 }
 
-/// The part of the plane that the rays of a camera cross, in the robot's frame: all within an angle to both sides of straight
-/// ahead, and a little more.
+/// The part of the plane that the rays of a camera cross, in the robot's frame. It contains all within an angle to both
+/// sides of straight ahead, and a little more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wedge {
-    /// Cosine and sine of the angle; both 0 for one beyond a right angle, whose wedge has no line beside it.
+    /// Cosine and sine of the angle. Both are 0 for an angle beyond 90 degrees, whose wedge has no edge.
     edge: [f32; 2],
-    /// How far from the robot's origin rays begin at most [m].
+    /// The largest distance of a ray's start from the robot's origin [m].
     aside: f32,
 }
 
@@ -192,21 +192,21 @@ impl Wedge {
         Self { edge, aside: rays.iter().map(|ray| ray.from[0].abs() + ray.from[1].abs()).fold(0.0, f32::max) }
     }
 
-    /// Whether something round may reach into it; sometimes also if it does not.
+    /// Returns whether something round may reach into it. Sometimes also if it does not.
     #[inline]
     fn may_hold(&self, Round { centre: [x, y], room }: &Round) -> bool {
         let [cosine, sine] = self.edge;
-        // Beyond the edge of its own side by more than the radius: the edge's line has all rays on its other side.
+        // Beyond the near edge by more than the radius. All rays are on the other side of the edge's line.
         let outside = y.abs() * cosine - x * sine > room + self.aside;
         !outside
     }
 }
 
-/// What a camera's bands show of what is around: only a ray that may meet some of it can change what the camera reads.
+/// Surfaces with colors of the camera's bands. Only a ray that may hit one of them can change the reading.
 struct Shown {
-    rounds: [Round; MOST_SHOWN],
+    rounds: [Round; MAX_SHOWN],
     count: usize,
-    /// A wall is shown, or more bodies than there is room for: every ray may meet something.
+    /// True if a wall has such a color, or if there are more bodies than room. Every ray may then hit something.
     anywhere: bool,
 }
 
@@ -218,8 +218,8 @@ struct Round {
     room: f32,
 }
 
-/// As many bodies as there usually are; of more it does not pay to try each before every ray.
-const MOST_SHOWN: usize = 16;
+/// As many bodies as there usually are. With more it does not pay to try each before every ray.
+const MAX_SHOWN: usize = 16;
 
 impl Shown {
     #[inline]
@@ -231,12 +231,12 @@ impl Shown {
         shows: impl Fn(&NearbySurface<W::Body>) -> bool,
     ) -> Self {
         let nothing = Round { centre: [0.0; 2], room: 0.0 };
-        let mut shown = Self { rounds: [nothing; MOST_SHOWN], count: 0, anywhere: false };
+        let mut shown = Self { rounds: [nothing; MAX_SHOWN], count: 0, anywhere: false };
         world.query_near(stance.at, wedge.aside + range, &mut |near| {
             if shown.anywhere || !shows(&near) {
                 return;
             }
-            // The middle lies a radius behind the nearest point, which cannot be known from close by.
+            // The middle is a radius behind the nearest point, and undefined from close by.
             let round = near.body.is_some() && near.radius > 0.0;
             if !(round && near.distance > 0.5 * near.radius) {
                 shown.anywhere = true;
@@ -260,7 +260,7 @@ impl Shown {
         shown
     }
 
-    /// Whether a ray of unit direction may meet something shown; sometimes also if it does not.
+    /// Returns whether a ray of unit direction may hit such a surface. It may be true for a ray that does not.
     #[inline]
     fn may_meet(&self, ray: &Beam) -> bool {
         let (from, direction) = (ray.from, ray.direction);
@@ -268,7 +268,7 @@ impl Shown {
             || self.rounds[..self.count].iter().any(|Round { centre, room }| {
                 let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
                 let (along, across) = (x * direction[0] + y * direction[1], x * direction[1] - y * direction[0]);
-                // Never "no" for a number that is none.
+                // NaN is never "no".
                 !(along < -room || across.abs() > *room)
             })
     }

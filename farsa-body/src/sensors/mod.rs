@@ -29,7 +29,7 @@ pub(crate) mod beam;
 /// Cameras with an image, on any body.
 #[cfg(feature = "alloc")]
 pub(crate) mod camera;
-/// The colour of the ground.
+/// The color of the ground.
 pub(crate) mod ground_color;
 pub mod infrared;
 /// A fan of laser range finders.
@@ -44,13 +44,13 @@ pub(crate) mod place;
 pub(crate) mod proprioception;
 /// Channels that the experiment sets.
 pub(crate) mod signal;
-/// What robots hear of each other.
+/// Signals of other robots.
 pub(crate) mod signal_sensor;
-/// Where a mobile robot stands and where it looks to; what the sensors of the plane share.
+/// The place and heading of a mobile robot, shared by the sensors of the plane.
 pub(crate) mod stance;
 /// Contacts and their forces.
 pub(crate) mod touch;
-/// What a robot feels of its wheels.
+/// Speeds of wheels and forces on them.
 pub(crate) mod wheel_speed;
 
 pub use crate::motors::attachment::AttachmentSensor;

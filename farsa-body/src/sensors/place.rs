@@ -29,10 +29,10 @@ impl<B: Copy> Point<B> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Axes {
-    /// Those of the body that senses.
+    /// The body of the sensor.
     #[default]
     Body,
-    /// Those of the world.
+    /// The world.
     World,
 }
 
@@ -46,7 +46,7 @@ pub struct TargetPosition<B = BodyId> {
 }
 
 impl<B> TargetPosition<B> {
-    /// A sensor of `scale` times the way from `from` to `target`; `scale` 1 reads metres, 100 centimetres.
+    /// A sensor of `scale` times the way from `from` to `target`. `scale` 1 reads meters, 100 centimeters.
     ///
     /// [`Axes::Body`] are those of the body of `from`.
     ///
@@ -111,7 +111,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Height<B> {
 
 /// Reads a body's position in the world [m] and its orientation as a unit quaternion x, y, z, w: seven channels.
 ///
-/// Of the two quaternions of an orientation the one with w >= 0 is read, so that equal orientations read alike.
+/// The quaternion with w >= 0 is read, so that equal orientations have equal readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyPose<B = BodyId> {

@@ -40,7 +40,7 @@ impl<J: Copy, W: Joints<Joint = J> + ?Sized> Sensor<W> for JointPosition<J> {
     }
 }
 
-/// Reads one joint's speed [rad/s or m/s], one channel; wrap it in [`crate::wrappers::Scaled`] for other units.
+/// Reads one joint's speed [rad/s or m/s], one channel. Wrap it in [`crate::wrappers::Scaled`] for other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointSpeed<J = JointId> {

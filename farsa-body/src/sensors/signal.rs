@@ -20,14 +20,14 @@ impl<const N: usize> Signal<N> {
         Self { values }
     }
 
-    /// A label: `amplitude` on one channel and 0 on the others; 0 everywhere if there is no such channel.
+    /// A label: `amplitude` on one channel and 0 on the others. 0 everywhere if there is no such channel.
     pub fn one_hot(channel: usize, amplitude: f32) -> Self {
         let mut signal = Self { values: [0.0; N] };
         signal.set_one_hot(channel, amplitude);
         signal
     }
 
-    /// What the signal reads.
+    /// Returns the channels of the signal.
     pub fn values(&self) -> [f32; N] {
         self.values
     }
@@ -37,7 +37,7 @@ impl<const N: usize> Signal<N> {
         self.values = values;
     }
 
-    /// Sets one channel to `amplitude` and the others to 0; all to 0 if there is no such channel.
+    /// Sets one channel to `amplitude` and the others to 0. All to 0 if there is no such channel.
     pub fn set_one_hot(&mut self, channel: usize, amplitude: f32) {
         self.values = [0.0; N];
         if let Some(value) = self.values.get_mut(channel) {

@@ -1,4 +1,4 @@
-//! What robots hear of each other.
+//! Signals of other robots.
 
 use farsa_num::{Scalar, atan2};
 
@@ -10,10 +10,9 @@ use crate::sensors::stance::Stance;
 /// signal.
 ///
 /// After [`SignalSensor::mean`] the mean over the robots of a sector. 0 where no robot is heard. The first sector lies
-/// around
-/// straight ahead, the others follow counter-clockwise; of four they are ahead, left, behind and right. A robot is heard
-/// as loudly at every distance within the range, and through everything; it belongs to the sector of its centre. Wrap it
-/// in [`crate::wrappers::Noisy`] for noise.
+/// around straight ahead, the others follow counter-clockwise. Four sectors are ahead, left, behind and right. A robot
+/// is heard as loudly at every distance within the range, and through everything. It belongs to the sector of its
+/// center. Wrap it in [`crate::wrappers::Noisy`] for noise.
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalSensor<const SECTORS: usize, B = BodyId> {
@@ -32,7 +31,7 @@ impl<const SECTORS: usize, B> SignalSensor<SECTORS, B> {
         Ok(Self { body, range: positive("range", range)?, mean: false })
     }
 
-    /// The same for the mean of the signals instead of the strongest.
+    /// Reads the mean of the signals instead of the strongest.
     pub fn mean(self) -> Self {
         Self { mean: true, ..self }
     }
@@ -48,7 +47,7 @@ impl<const SECTORS: usize, B> Channels for SignalSensor<SECTORS, B> {
 fn sector([x, y]: [f32; 2], sectors: usize) -> usize {
     const FULL: f32 = 2.0 * core::f32::consts::PI;
     let turns = atan2(y, x) / FULL;
-    // Half a sector more, because the first lies on both sides of straight ahead; the cast takes NaN for 0.
+    // Half a sector more, because the first lies on both sides of straight ahead. The cast takes NaN for 0.
     let number = libm::floorf(turns * sectors as f32 + 0.5);
     let number = if number < 0.0 { number + sectors as f32 } else { number };
     number as usize % sectors.max(1)

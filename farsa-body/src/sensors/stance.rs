@@ -1,11 +1,11 @@
-//! Where a mobile robot stands in the plane and where it looks to.
+//! The place and heading of a mobile robot in the plane.
 
 use farsa_num::Scalar;
 
 use crate::ports::{Kinematics, NearbySurface};
 use crate::pose::Pose;
 
-/// The pose of a robot in the plane; a tilted one is seen from above.
+/// The pose of a robot in the plane. A tilted one is seen from above.
 #[derive(Clone, Copy)]
 pub(crate) struct Stance {
     /// Where its origin is [m].
@@ -24,7 +24,7 @@ impl Stance {
     pub(crate) fn from_pose(pose: &Pose) -> Self {
         let [x, y, _] = pose.rotate([1.0, 0.0, 0.0]);
         let length = Scalar::sqrt(x * x + y * y);
-        // One that stands on its head or its tail looks along the world's x axis, for want of better.
+        // A robot whose x axis is vertical has no heading, and gets the world's x axis.
         let ahead = if length > 0.0 { [x / length, y / length] } else { [1.0, 0.0] };
         Self { at: [pose.position[0], pose.position[1]], ahead }
     }
@@ -52,7 +52,7 @@ impl Stance {
 
     /// The unit vector towards the nearest point of a surface, in the robot's frame.
     ///
-    /// Within a round body that is the way out of it turned round, so that it points to the body's centre all the same.
+    /// Within a round body that is the way out of it turned round, so that it points to the body's center all the same.
     /// Straight ahead where the point is the origin itself.
     #[inline]
     pub(crate) fn bearing<B>(&self, near: &NearbySurface<B>) -> [f32; 2] {

@@ -42,7 +42,8 @@ impl<L: AsRef<[PairId]>, W: Contacts + ?Sized> Sensor<W> for Touch<L> {
     }
 }
 
-/// Reads the sum of the normal forces of a group of pairs [N], one channel; wrap it in [`crate::wrappers::Scaled`] for other units.
+/// Reads the sum of the normal forces of a group of pairs [N], one channel. Wrap it in [`crate::wrappers::Scaled`] for
+/// other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce<L> {
     pairs: L,

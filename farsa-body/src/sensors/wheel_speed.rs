@@ -1,4 +1,4 @@
-//! What a robot feels of its wheels.
+//! Speeds of wheels and forces on them.
 
 use crate::channel::{ChannelError, positive, signed_unit, unit, write};
 use crate::ports::{BodyId, Channels, JointId, Joints, Kinematics, Sensor};
@@ -23,7 +23,7 @@ impl<J, const N: usize> WheelSpeed<J, N> {
         Ok(Self { wheels, largest: positive("largest speed", largest)?, signed: false })
     }
 
-    /// The same with readings in [-1, 1] and 0 at rest.
+    /// Makes readings in [-1, 1], with 0 at rest.
     pub fn signed(self) -> Self {
         Self { signed: true, ..self }
     }
@@ -46,9 +46,10 @@ impl<J: Copy, const N: usize, W: Joints<Joint = J> + ?Sized> Sensor<W> for Wheel
 
 /// Reads where a robot on two wheels is pulled to, two channels in [-1, 1]: ahead and to the left.
 ///
-/// It is the robot's velocity less that which its wheels would give it if they rolled freely, in the robot's frame, over
-/// a largest speed: (v - radius (left + right) / 2) / largest and sideways / largest. 0 where nothing pushes it; a robot
-/// that drives against a wall reads -v / largest ahead. NaN reads as 0. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// It is the robot's velocity less the velocity of freely rolling wheels, in the robot's frame, over a largest speed:
+/// (v - radius (left + right) / 2) / largest and sideways / largest. It is 0 where nothing pushes the robot. A robot
+/// that drives against a wall reads -v / largest ahead. NaN reads as 0. Wrap it in [`crate::wrappers::Noisy`] for
+/// noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traction<B = BodyId, J = JointId> {
     body: B,
@@ -58,8 +59,8 @@ pub struct Traction<B = BodyId, J = JointId> {
 }
 
 impl<B, J> Traction<B, J> {
-    /// A sensor of a robot with these wheels, left and right, of `wheel_radius` [m]; a difference of `largest` [m/s] reads
-    /// 1.
+    /// A sensor of a robot with these wheels, left and right, of `wheel_radius` [m]. A difference of `largest` [m/s]
+    /// reads 1.
     ///
     /// # Errors
     /// [`ChannelError::Value`] if a number is not finite or not > 0.

@@ -27,7 +27,7 @@ mod point_world;
 mod probe;
 /// The promises, and the error that names a broken one.
 mod promise;
-/// What a world did, as bits, and how two runs compare.
+/// Runs of a world as bits, and their comparison.
 mod trace;
 
 pub use checks::{

@@ -11,14 +11,14 @@ use crate::ports::{
 use crate::pose::{Pose, Twist};
 use crate::robots::mobile::{MobileParts, MobileRobot};
 
-/// Walls, discs, lamps, coloured ground and robots, found by loops over all of them: the naive counterpart of a world
+/// Walls, discs, lamps, colored ground and robots, found by loops over all of them: the naive counterpart of a world
 /// that is fast.
 ///
-/// Bodies are numbered in the order in which they are added; the wheels of the robots, left and right, and their actuators
-/// likewise. For rays everything is infinitely high. Robots drive exact arcs through everything: nothing collides. An
-/// attachment device that is switched on holds the nearest disc or robot within its reach of the hull. What the ground is
-/// not painted with is black. The time step is 50 ms. A handle that does not exist reads as 0 and takes commands without
-/// effect.
+/// Bodies are numbered in the order in which they are added. The wheels of the robots, left and right, and their
+/// actuators likewise. For rays everything is infinitely high. Robots drive exact arcs through everything: nothing
+/// collides. An attachment device that is switched on holds the nearest disc or robot within its reach of the hull.
+/// Unpainted ground is black. The time step is 50 ms. A handle that does not exist reads as 0 and takes commands
+/// without effect.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics, World};
@@ -82,7 +82,7 @@ struct Painted {
     color: [f32; 3],
 }
 
-/// What an actuator of a robot is.
+/// The kind of a robot's actuator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Device {
     Wheel(usize, usize),
@@ -103,7 +103,7 @@ fn length(v: [f32; 2]) -> f32 {
     Scalar::sqrt(dot(v, v))
 }
 
-/// What a line meets: how far along it, the outward normal, the colour and the body.
+/// The first surface on a line: the distance, the outward normal, the color and the body.
 struct Met {
     distance: f32,
     normal: [f32; 2],
@@ -125,7 +125,7 @@ impl PlaneWorld {
         self.walls.push(Wall { ends, color });
     }
 
-    /// Adds a disc or an upright cylinder; centre and radius [m].
+    /// Adds a disc or an upright cylinder, center and radius [m].
     pub fn add_disc(&mut self, centre: [f32; 2], radius: f32, color: [f32; 3]) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color, intensity: None, robot: None })
     }
@@ -188,7 +188,7 @@ impl PlaneWorld {
         round.robot.and_then(|index| self.robots.get(index))
     }
 
-    /// The colour that a body shows.
+    /// The color that a body shows.
     fn color(&self, round: &Round) -> [f32; 3] {
         match self.robot_of(round).and_then(|robot| robot.leds) {
             Some(leds) if leds.iter().any(|&led| led > 0.0) => leds,
@@ -317,7 +317,7 @@ impl Rays for PlaneWorld {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
         let [x, y, _] = direction;
         let flat = length([x, y]);
-        // A vertical ray meets nothing.
+        // A vertical ray hits nothing.
         if flat < 1e-6 {
             return None;
         }
@@ -387,7 +387,7 @@ impl Planar for PlaneWorld {
     }
 }
 
-/// Words of a snapshot for a body and for a robot beside its body.
+/// Words of a snapshot for a body, and further words for a robot.
 const WORDS: [usize; 2] = [3, 9];
 
 impl Snapshot for PlaneWorld {

@@ -12,11 +12,11 @@ use crate::pose::{Pose, Twist};
 
 /// Points of 1 kg on vertical screws above a floor, with an explicit dynamics of a few lines.
 ///
-/// Point i hangs on joint i, whose position is its height q [m]; it is body i, at (0.1 i, 0, q), and turns about the
-/// vertical by 10 rad for every metre it rises. Actuator i pushes it up with `command[0] - command[1]` [N]. Below height 0
-/// the floor, pair i with the point as its first body, pushes back. Rays and eyes meet the floor and green balls of
-/// 2 cm about the points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and takes
-/// commands without effect.
+/// Point i is on joint i, whose position is its height q [m]. It is body i, at (0.1 i, 0, q), and turns about the
+/// vertical by 10 rad for every meter of height. Actuator i pushes it up with `command[0] - command[1]` [N]. Below
+/// height 0 the floor, pair i with the point as its first body, pushes back. Rays hit the floor and green balls of 2 cm
+/// about the points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and
+/// takes commands without effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointWorld {
     points: Vec<Point>,
@@ -37,13 +37,13 @@ const WORDS: usize = 4;
 impl PointWorld {
     /// The control step [s].
     pub const TIME_STEP: f32 = 0.01;
-    /// How far a point turns for every metre that it rises [rad/m].
+    /// The turn of a point for every meter of height [rad/m].
     pub const TURN: f32 = 10.0;
     /// The distance between two screws [m].
     pub const SPACING: f32 = 0.1;
-    /// Radius of the balls that rays meet [m].
+    /// Radius of the balls for rays [m].
     pub const RADIUS: f32 = 0.02;
-    /// The colour of the balls; the floor has none.
+    /// The color of the balls. The floor has none.
     pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];
     /// Acceleration downwards [m/s2].
     const GRAVITY: f32 = 9.81;
@@ -57,7 +57,7 @@ impl PointWorld {
         Self { points: vec![Point::default(); points] }
     }
 
-    /// The command that an actuator has; 0 for one that does not exist.
+    /// The command that an actuator has, or 0 for one that does not exist.
     pub fn commanded(&self, actuator: ActuatorId) -> [f32; 2] {
         self.point(actuator.index()).command
     }
@@ -165,7 +165,7 @@ impl Rays for PointWorld {
 }
 
 impl PointWorld {
-    /// The first surface on a ray, other than that of `but`.
+    /// The first surface on a ray, except that of `but`.
     fn first(&self, origin: [f32; 3], direction: [f32; 3], range: f32, but: Option<BodyId>) -> Option<Hit<BodyId>> {
         let mut nearest: Option<Hit<BodyId>> = None;
         let mut meet = |hit: Hit<BodyId>| {

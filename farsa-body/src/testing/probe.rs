@@ -1,4 +1,4 @@
-//! What the kit looks at and moves in a world.
+//! The parts of a world that the checks read and move.
 
 use alloc::vec::Vec;
 
@@ -21,7 +21,7 @@ pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
     pub actuators: Vec<(A, [[f32; 2]; 2])>,
     /// Number of steps of a run, at least 16.
     pub steps: usize,
-    /// How far the mean speed over a step may lie outside what the speeds at its ends allow [m/s or rad/s].
+    /// The tolerance of the mean speed over a step outside of the speeds at its ends [m/s or rad/s].
     pub slack: f32,
 }
 

@@ -1,15 +1,15 @@
-//! What the kit holds worlds, sensors and motors to, and the error that names a broken promise.
+//! The promises of worlds, sensors and motors, and the error that names a broken one.
 
 use alloc::string::String;
 use core::fmt;
 
-/// What a world, a sensor or a motor promises.
+/// A promise of a world, a sensor or a motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Promise {
     /// The time step is finite and > 0.
     TimeStep,
-    /// What the ports report is finite.
+    /// The ports report finite numbers.
     Finite,
     /// Rotations are unit quaternions.
     UnitRotation,
@@ -21,25 +21,25 @@ pub enum Promise {
     JointSpeed,
     /// A pair has a body, and each of its bodies is one of the world's.
     PairBodies,
-    /// A pair that does not touch has no force and no point; one that touches has a normal force > 0.
+    /// A pair that does not touch has no force and no point. One that touches has a normal force > 0.
     Contact,
     /// A pair that does not exist reads as zero.
     NoSuchPair,
-    /// The same commands give the same bits.
+    /// Equal commands give equal bits.
     Deterministic,
     /// Saving writes every word of the snapshot.
     SnapshotFilled,
     /// Restoring brings back what the ports reported.
     SnapshotRestores,
-    /// What follows a restored snapshot has the same bits.
+    /// A run from a restored snapshot repeats its bits.
     SnapshotReplays,
-    /// A snapshot goes on in another world with the same bits.
+    /// A snapshot continues in another world with the same bits.
     SnapshotTravels,
     /// A command holds until the next.
     CommandHolds,
     /// A command has an effect.
     CommandActs,
-    /// Clearing forgets what was.
+    /// Clearing discards the past.
     ClearForgets,
     /// A joint is where it was placed.
     JointPlaced,
@@ -49,15 +49,15 @@ pub enum Promise {
     Arranged,
     /// A force from outside acts on its body in the next step alone.
     ForceActs,
-    /// A ray meets the nearest surface within its range, and reports how.
+    /// A ray reports the nearest surface within its range.
     Ray,
-    /// What is near in the plane is reported, where it is.
+    /// Near surfaces of the plane are reported at their place.
     Near,
     /// The nearest surface in a direction of the plane is seen.
     Look,
-    /// The rays of an eye meet the nearest surfaces, together as alone.
+    /// The rays of a camera hit the nearest surfaces, together as alone.
     Vision,
-    /// Colours, signals and lamps are numbers of their ranges.
+    /// Colors, signals and lamps are numbers of their ranges.
     Shown,
     /// A sensor writes all its channels.
     SensorFills,
@@ -80,7 +80,7 @@ pub enum Promise {
 pub struct ConformanceError {
     /// The promise.
     pub promise: Promise,
-    /// What was seen.
+    /// The observation.
     pub detail: String,
 }
 
@@ -92,7 +92,7 @@ impl fmt::Display for ConformanceError {
 
 impl core::error::Error for ConformanceError {}
 
-/// Ok where the promise is kept; the detail is only written where it is not.
+/// Ok where the promise is kept. The detail is only written where it is not.
 pub(crate) fn ensure(kept: bool, promise: Promise, detail: impl FnOnce() -> String) -> Result<(), ConformanceError> {
     if kept { Ok(()) } else { Err(ConformanceError { promise, detail: detail() }) }
 }

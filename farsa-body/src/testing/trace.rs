@@ -1,4 +1,4 @@
-//! What a world did, as bits: the kit's runs and their comparison.
+//! Runs of a world as bits, and their comparison.
 
 use alloc::{format, string::String, vec, vec::Vec};
 use core::ops::Range;
@@ -52,7 +52,7 @@ impl Instant {
         Self { readings, snapshot, joints: probe.joints.len(), bodies: probe.bodies.len() }
     }
 
-    /// The first difference between the ports' readings; `None` if there is none.
+    /// Returns the first difference between the ports' readings, or `None` for equal ones.
     pub(crate) fn other_readings(&self, other: &Self) -> Option<String> {
         if self.readings.len() != other.readings.len() {
             return Some(format!("{} readings and {}", self.readings.len(), other.readings.len()));
@@ -70,7 +70,7 @@ impl Instant {
         Some(format!("{part} {}, word {}: {a:e} and {b:e}", index / words, index % words))
     }
 
-    /// The first difference; `None` if there is none.
+    /// Returns the first difference, or `None` for equal runs.
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
         if let Some(difference) = self.other_readings(other) {
             return Some(difference);
@@ -111,7 +111,7 @@ fn recommand<W: Actuated>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Act
     }
 }
 
-/// Lets a world live through some ticks of the script; one instant after each.
+/// Runs a world through some ticks of the script. Returns one instant after each.
 pub(crate) fn trace<W>(
     world: &mut W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,
@@ -134,7 +134,7 @@ where
         .collect()
 }
 
-/// Where two runs part; `None` if they have the same bits.
+/// Where two runs part, or `None` if they have the same bits.
 pub(crate) fn parting(a: &[Instant], b: &[Instant]) -> Option<String> {
     let steps = a.iter().zip(b).enumerate();
     steps.into_iter().find_map(|(step, (a, b))| Some(format!("step {step}: {}", a.difference(b)?)))

@@ -9,8 +9,8 @@ use crate::wrappers::wrap::room;
 
 /// Passes values on a number of ticks later.
 ///
-/// Until the first value of an episode has come through, a sensor repeats that first value, and a motor is not driven:
-/// the world keeps the commands that it has.
+/// Until the first value of an episode has passed, a sensor repeats that first value. A motor is not driven, and the
+/// world keeps its commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delayed<T, M> {
     inner: T,
@@ -20,13 +20,13 @@ pub struct Delayed<T, M> {
     memory: M,
     /// The row that comes out next, and is then overwritten.
     row: usize,
-    /// How many rows hold values of this episode.
+    /// The number of rows with values of this episode.
     filled: usize,
 }
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Delayed<T, Vec<f32>> {
-    /// Wraps a sensor or motor; 0 ticks do not delay.
+    /// Wraps a sensor or motor. 0 ticks do not delay.
     ///
     /// # Panics
     /// If there is no memory for `ticks` values of every channel.
@@ -47,7 +47,7 @@ impl<T: Channels, M: AsMut<[f32]>> Delayed<T, M> {
         Ok(Self { inner, ticks, channels, memory, row: 0, filled: 0 })
     }
 
-    /// The row that comes out next, as far as `len` values go; `None` without delay or channels.
+    /// The row that comes out next, as far as `len` values go, or `None` without delay or channels.
     fn row(&mut self, len: usize) -> Option<&mut [f32]> {
         let start = self.row * self.channels;
         let row = self.memory.as_mut().get_mut(start..start + self.channels.min(len))?;
@@ -88,7 +88,7 @@ impl<W: ?Sized, T: Sensor<W>, M: AsMut<[f32]>> Sensor<W> for Delayed<T, M> {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         self.inner.read(world, out);
         if self.filled == 0 {
-            // The first reading stands for all that came before it.
+            // The first reading replaces all earlier ones.
             for row in self.memory.as_mut().chunks_exact_mut(self.channels.max(1)) {
                 for (value, &o) in row.iter_mut().zip(&*out) {
                     *value = o;

@@ -56,7 +56,7 @@ impl<T: Channels, M: AsMut<[f32]>> Lesioned<T, M> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum StuckAt {
-    /// At its value in the last tick before it got stuck; at the episode's first if it is stuck from the beginning.
+    /// At its value in the last tick before it got stuck. At the episode's first if it is stuck from the beginning.
     Last,
     /// At a given value.
     Value(f32),

@@ -10,7 +10,7 @@
 //! | let channels get stuck | [`Stuck`] at a [`StuckAt`] |
 //! | look at the last values without disturbing the sensor | [`Recorded`] |
 //!
-//! A wrapper works around sensors and motors alike, and around other wrappers; the innermost acts first on a sensor's
+//! A wrapper works around sensors and motors alike, and around other wrappers. The innermost acts first on a sensor's
 //! values, last on a motor's.
 
 /// Values passed on later.
@@ -21,7 +21,7 @@ pub(crate) mod faulty;
 pub(crate) mod noisy;
 /// Gain and offset, saturation, a threshold, and nothing but a record.
 pub(crate) mod scaled;
-/// What the wrappers share.
+/// Code that the wrappers share.
 pub(crate) mod wrap;
 
 pub use delayed::Delayed;

@@ -22,7 +22,7 @@ pub enum Noise {
 /// Adds to every value an independent random number.
 ///
 /// The numbers come in the order of ticks and channels from one stream. A reset rewinds the stream: episodes that
-/// should differ in their noise are each given their own with [`Noisy::reseed`]. Noise is never clamped; wrap in
+/// should differ in their noise are each given their own with [`Noisy::reseed`]. Noise is never clamped. Wrap in
 /// [`crate::wrappers::Saturated`] what has to stay in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noisy<T, M>(Wrapped<T, Source, M>);

@@ -52,7 +52,7 @@ impl<T: Channels, M: AsMut<[f32]>> Scaled<T, M> {
     }
 }
 
-/// Passes on the value in [low, high] nearest to what a sensor reads or a motor is given; `low` for NaN.
+/// Passes on the value in [low, high] nearest to what a sensor reads or a motor is given. `low` for NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saturated<T, M>(Wrapped<T, Saturation, M>);
 

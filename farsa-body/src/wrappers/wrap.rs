@@ -1,13 +1,13 @@
-//! What the wrappers share: an inner sensor's or motor's values on their way through a filter.
+//! The values of an inner sensor or motor on their way through a filter.
 
 use core::ops::{Bound, Range, RangeBounds};
 
 use crate::channel::ChannelError;
 use crate::ports::{Channels, Motor, Sensor};
 
-/// What a wrapper does to the values on their way.
+/// The effect of a wrapper on values.
 pub(crate) trait Filter {
-    /// Computes one tick's `passed` from its `values`, both of the same length; `passed` still holds the last tick's.
+    /// Computes one tick's `passed` from its `values`, both of the same length. `passed` still holds the last tick's.
     fn pass(&mut self, values: &[f32], passed: &mut [f32]);
     /// Back to the beginning of an episode.
     fn rewind(&mut self) {}
@@ -15,7 +15,7 @@ pub(crate) trait Filter {
 
 /// A sensor or motor behind a filter, with memory for the values passed on.
 ///
-/// A motor needs the memory because the values it is given are only borrowed; a sensor has it too, so that one
+/// A motor needs the memory because the values it is given are only borrowed. A sensor has it too, so that one
 /// constructor serves both and the last values stay readable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Wrapped<T, F, M> {
@@ -109,7 +109,7 @@ macro_rules! wrapper {
         }
 
         impl<T: $crate::ports::Channels, M: AsRef<[f32]>> $wrapper<T, M> {
-            /// The values passed on in the last tick, one per channel; 0 before the first.
+            /// The values passed on in the last tick, one per channel, 0 before the first.
             pub fn values(&self) -> &[f32] {
                 self.0.values()
             }

@@ -170,7 +170,8 @@ fn ground_lies_below_what_slides_and_once() {
     let again = puck.grounds[0];
     assert_eq!(with(again), Err(RobotError::Name { name: "puck".into() }));
     let bead = Ground { body: BodyId(0), ..again };
-    assert_eq!(with(bead), Err(RobotError::Ground { segment: "bead 0".into() }));
+    let why = "segment bead 0: no body that slides in a plane has ground below it".into();
+    assert_eq!(with(bead), Err(RobotError::Structure { why }));
     for wrong in [Ground { friction: -0.1, ..bead }, Ground { load: f64::NAN, ..bead }, Ground { radius: -1.0, ..bead }]
     {
         assert!(matches!(with(wrong), Err(RobotError::Value { .. })), "{wrong:?}");

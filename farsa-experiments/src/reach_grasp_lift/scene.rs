@@ -10,7 +10,7 @@ use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
 use farsa_body::sensors::{JointPosition, Point, Signal, TargetPosition, Touch};
 use farsa_body::{ChannelError, Pose, Twist};
 use farsa_lab::{EpisodeId, Error};
-use farsa_models::{Keyframe, MjcfOptions};
+use farsa_models::mjcf::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics};
-use farsa_models::MjcfOptions;
+use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::LeakyNetwork;
 
 use crate::reach_grasp_lift::config::TRIALS;

@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
-use farsa_models::MjcfOptions;
+use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::{Leak, LeakyLayout};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};

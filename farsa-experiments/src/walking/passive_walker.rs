@@ -9,7 +9,7 @@ pub use crate::worlds::Engine;
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
-use farsa_models::MjcfOptions;
+use farsa_models::mjcf::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 

@@ -3,7 +3,7 @@
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
 use farsa_evo::ObservationStatistics;
-use farsa_models::MjcfOptions;
+use farsa_models::mjcf::MjcfOptions;
 use farsa_view::Schema;
 
 use crate::error::Error;

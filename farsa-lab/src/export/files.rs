@@ -1,7 +1,8 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
 use farsa_evo::ObservationStatistics;
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 use serde::Serialize;
 
 use crate::error::Error;

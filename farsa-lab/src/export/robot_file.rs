@@ -6,7 +6,8 @@ use std::path::Path;
 
 use farsa_body::actuators::{Law, Servo};
 use farsa_body::robot::JointKind;
-use farsa_models::{Imported, MjcfOptions, ReadError, ReadOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::{Imported, ReadError, ReadOptions, urdf};
 use serde::Serialize;
 
 use crate::error::Error;

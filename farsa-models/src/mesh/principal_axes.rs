@@ -17,8 +17,8 @@ pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [
             if m[i][j] == 0.0 {
                 continue;
             }
-            // cot(2 a) of the angle a that clears m[i][j]; t = tan(a) is the smaller root of t^2 + 2 slope t - 1 = 0, so
-            // that no turn exceeds 45 degrees, without which the sweeps need not converge.
+            // With slope = cot(2 a) of the angle a that clears m[i][j], t = tan(a) is the smaller root of t^2 + 2 slope
+            // t - 1 = 0. No turn then exceeds 45 degrees, without which the sweeps may not converge.
             let slope = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
             let t = slope.signum() / (slope.abs() + Scalar::sqrt(slope * slope + 1.0));
             let c = 1.0 / Scalar::sqrt(t * t + 1.0);
@@ -64,7 +64,7 @@ pub(crate) fn rotation_of_axes([x, y, z]: [[f64; 3]; 3]) -> [f64; 4] {
     q.map(|part| part / n)
 }
 
-/// The shortest rotation [x, y, z, w] from z to a direction of any length; half a turn about x to the opposite.
+/// The shortest rotation [x, y, z, w] from z to a direction of any length. Half a turn about x to the opposite.
 pub(crate) fn rotation_to(direction: [f64; 3]) -> [f64; 4] {
     let length = norm(&direction);
     let [x, y, z] = direction.map(|part| part / length);

@@ -3,10 +3,10 @@
 use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};
 
-use crate::bounds::{LARGEST, has_size};
+use crate::bounds::{MAX_SIZE, has_size};
 use crate::mesh::triangles::{Mesh, z_to_axis};
 
-/// What stands for a mesh.
+/// The shape that replaces a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeshFit {
     /// The shape that holds all points, and its place.
@@ -17,11 +17,11 @@ pub(crate) struct MeshFit {
 }
 
 impl MeshFit {
-    /// What stands for a mesh, or why nothing can.
+    /// Fits a shape to a mesh, or returns the reason why none fits.
     pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
         let (shape, place) = mesh.fitted();
         if !has_size(&shape) {
-            return Err(format!("what holds it has sizes that are not below {LARGEST:e}: {shape:?}"));
+            return Err(format!("what holds it has sizes that are not below {MAX_SIZE:e}: {shape:?}"));
         }
         Ok(Self { shape, place, solid: mesh.solid(1.0) })
     }
@@ -104,7 +104,7 @@ impl Solid {
         }
     }
 
-    /// What to call it in messages.
+    /// Returns the name for messages.
     pub(crate) fn label(&self) -> String {
         let name = match self {
             Self::Native(Shape::Sphere { .. }) => "sphere",
@@ -119,7 +119,7 @@ impl Solid {
     }
 }
 
-/// The same body with mass and inertia times `by`.
+/// Returns the body with mass and inertia times `by`.
 pub(crate) fn scaled(body: &MassProperties, by: f64) -> MassProperties {
     MassProperties { mass: body.mass * by, centre: body.centre, inertia: body.inertia.map(|x| x * by) }
 }

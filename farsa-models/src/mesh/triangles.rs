@@ -4,7 +4,7 @@ use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};
 use farsa_num::Scalar;
 
-use crate::bounds::LARGEST;
+use crate::bounds::MAX_SIZE;
 use crate::mesh::principal_axes::principal_axes;
 use crate::vector::{cross, dot, norm, sub};
 
@@ -19,7 +19,7 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// Reads STL, binary or text, or OBJ; which of them the name's ending says.
+    /// Reads STL, binary or text, or OBJ. The name's ending decides between them.
     pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Self, String> {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
         let mesh = match ending.as_str() {
@@ -30,8 +30,8 @@ impl Mesh {
         if mesh.points.is_empty() {
             return Err("there is no point in it".into());
         }
-        if mesh.points.iter().flatten().any(|x| x.is_nan() || x.abs() >= LARGEST) {
-            return Err(format!("a coordinate is no number below {LARGEST:e}"));
+        if mesh.points.iter().flatten().any(|x| x.is_nan() || x.abs() >= MAX_SIZE) {
+            return Err(format!("a coordinate is no number below {MAX_SIZE:e}"));
         }
         Ok(mesh)
     }
@@ -112,7 +112,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// The same mesh with every point changed.
+    /// Returns the mesh with every point changed.
     pub(crate) fn map(mut self, change: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         for point in &mut self.points {
             *point = change(*point);
@@ -122,9 +122,9 @@ impl Mesh {
 
     /// The smallest by volume of a ball, a capsule and a box around all points, and where it is.
     ///
-    /// Capsule and box lie along the mesh's own axes or the principal axes of its surface (of its points, if it has no
-    /// triangles), the capsule along the longest edge of the box; all are about the middle of the box, but the capsule's
-    /// ends move as far in as the points let them. Of equal ones the first counts: own axes, box.
+    /// Capsule and box are along the mesh's own axes or the principal axes of its surface (of its points, if it has no
+    /// triangles), the capsule along the longest edge of the box. Both have the center of the box, but the capsule's
+    /// ends move inwards as far as the points permit. The first of equal ones wins: own axes, box.
     pub(crate) fn fitted(&self) -> (Shape, Pose<f64>) {
         let mut spread = self.surface();
         if spread.iter().all(|x| *x == 0.0) {
@@ -138,7 +138,7 @@ impl Mesh {
         (shape, place)
     }
 
-    /// The second moment of the surface about its middle [xx, yy, zz, xy, xz, yz; m4].
+    /// The second moment of the surface about its middle [xx, yy, zz, xy, xz, yz, m4].
     fn surface(&self) -> [f64; 6] {
         let (mut area, mut middle) = (0.0, [0.0; 3]);
         for [a, b, c] in self.corners() {
@@ -193,11 +193,11 @@ impl Mesh {
         best
     }
 
-    /// The mass properties of a solid of this `density` [kg/m3]; `None` unless the triangles make a volume.
+    /// The mass properties of a solid of this `density` [kg/m3]. `None` unless the triangles make a volume.
     ///
-    /// As MuJoCo does unless told otherwise: a sum over tetrahedra, none of them negative, from an apex within to each
-    /// triangle; the apex is first the middle of the surface, then the centre of mass found with it. Exact for what can be
-    /// seen whole from there, too heavy for other meshes, and blind to triangles that face the wrong way.
+    /// MuJoCo's default: a sum over tetrahedra, none of them negative, from an apex within to each triangle. The apex
+    /// is first the middle of the surface, then the center of mass found with it. The sum is exact for a solid that is
+    /// visible from the apex in full, and too heavy for other meshes. It ignores the direction of triangles.
     pub(crate) fn solid(&self, density: f64) -> Option<MassProperties> {
         let (mut area, mut apex) = (0.0, [0.0; 3]);
         for [a, b, c] in self.corners() {

@@ -22,7 +22,7 @@ struct Gains {
     speed: f64,
 }
 
-/// Adds the actuators on joints whose law a description has; the others are noted.
+/// Adds the actuators on joints whose law a description has. The others are noted.
 pub(crate) fn actuators<'t>(
     model: Element<'t>,
     robot: &mut Robot,
@@ -98,7 +98,7 @@ fn check(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError>
         "dyntype",
         "timeconst",
     ];
-    // Attributes of some kinds only; that others do not have them is for MuJoCo to say.
+    // Attributes of some kinds only. MuJoCo checks that other kinds do not have them.
     let ignored = [
         ("tendon site refsite slidersite cranksite cranklength body", "actuators act on joints"),
         ("group user", "only for show"),
@@ -114,7 +114,7 @@ fn check(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError>
     element.check(&read, &ignored, warnings)
 }
 
-/// The law of an actuator; `None` if there is none like it.
+/// Returns the law of an actuator, or `None` if a description has no such law.
 fn law(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) -> Result<Option<Law<f64>>, ReadError> {
     let element = classed.element;
     let number = |name: &'static str, default: f64| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(default));
@@ -157,8 +157,8 @@ fn law(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) 
     if let Some(force) = largest(classed, "forcelimited", "forcerange", compiler, warnings)? {
         limit = force * gear.abs();
     }
-    // An actuator's length is gear x q and its force is multiplied by the gear: from q to the joint's torque takes the
-    // gear twice, from the control once.
+    // An actuator's length is gear x q, and its force is multiplied by the gear. So the gear acts twice between q and
+    // the joint's torque, and once between the control and the torque.
     let (stiffness, damping) = (-gains.position * gear * gear, -gains.speed * gear * gear);
     let sound = [stiffness, damping, gear, gains.gain].iter().all(|x| x.is_finite());
     if !sound || stiffness < 0.0 || damping < 0.0 {

@@ -20,7 +20,7 @@ use crate::mjcf::names::Names;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
-/// One body of the file; the first is the world.
+/// One body of the file. The first is the world.
 pub(crate) struct Body {
     pub(crate) segment: Option<BodyId>,
     pub(crate) parent: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Geom<'t, 'c> {
     pub(crate) collider: usize,
 }
 
-/// What the bodies are made of and what other sections ask about them.
+/// The sources of the bodies, and lookups for other sections.
 pub(crate) struct Bodies<'t, 'c> {
     model: Element<'t>,
     compiler: &'c Compiler,
@@ -58,7 +58,7 @@ struct Waiting<'t> {
     element: Element<'t>,
     parent: usize,
     class: usize,
-    /// The frame that it stands in, in the parent's.
+    /// The enclosing frame, in the parent's.
     within: Pose<f64>,
 }
 
@@ -68,7 +68,7 @@ struct Piece<'n, 't> {
     name: &'n str,
     /// The segment that it hangs on.
     carrying: Option<BodyId>,
-    /// Where it stands in that segment's frame.
+    /// The frame in that segment's frame.
     placement: Pose<f64>,
     mass: MassProperties,
 }
@@ -106,7 +106,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         })
     }
 
-    /// Reads all bodies into the robot; `locations` gets the line of each segment.
+    /// Reads all bodies into the robot. `locations` gets the line of each segment.
     pub(crate) fn read(
         &mut self,
         robot: &mut Robot,
@@ -148,7 +148,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             if let Some(kind) = kind {
                 self.names.declare(kind, element)?;
             }
-            // The last of the stack is the next: children go on it backwards.
+            // The top of the stack is the next element, so children are pushed in reverse.
             let children: Vec<_> = element.children().collect();
             open.extend(children.into_iter().rev());
         }
@@ -161,7 +161,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         bodies.map(|&(element, within, class)| Waiting { element, parent, class, within }).collect()
     }
 
-    /// Reads one body and tells its number and items.
+    /// Reads one body and returns its number and items.
     fn body(
         &mut self,
         robot: &mut Robot,
@@ -205,11 +205,11 @@ impl<'t, 'c> Bodies<'t, 'c> {
         Ok((index, items))
     }
 
-    /// Adds a segment for each joint of a body; tells the last, and where the body's frame is in it.
+    /// Adds a segment for each joint of a body. Returns the last segment, and the body's frame in it.
     ///
-    /// A MuJoCo body may have several joints, which act one after the other; a description has one joint a segment, so
-    /// all but the last joint carry a segment that stands for no body of the file. It gets a small share of the mass,
-    /// because what moves must have one.
+    /// A MuJoCo body may have several joints, which act one after the other. A description has one joint a segment, so
+    /// all joints except the last carry a segment without a body of the file. It gets a small share of the mass,
+    /// because a moving segment must have one.
     fn jointed(
         &mut self,
         robot: &mut Robot,
@@ -220,7 +220,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
     ) -> (Option<BodyId>, Pose<f64>) {
         let Piece { element, name, carrying, placement, mass } = *piece;
         let (count, share) = (joints.len(), context.options.between);
-        // The body's frame in that of the last segment; before the first joint that is where it stands.
+        // The body's frame in that of the last segment. Before the first joint it is the body's place.
         let (mut last, mut frame) = (carrying, placement);
         for (i, (joint, anchor)) in joints.into_iter().enumerate() {
             // A segment's frame is at its joint: the anchor is the origin, and the body's frame is off by minus the anchor.
@@ -309,7 +309,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let classed = self.classes.with(*element, *class)?;
             let number = self.geom_number;
             self.geom_number += 1;
-            // The checks of a geom's numbers come with its pairs; here any bit will do.
+            // The checks of a geom's numbers come with its pairs. Here any bit will do.
             let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
             let touches = bits("contype")? | bits("conaffinity")?;
             let own = element.attribute("name").filter(|name| !name.is_empty());
@@ -355,7 +355,7 @@ fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadE
     element.check(&read, &ignored, warnings)
 }
 
-/// Refuses a free joint where MuJoCo's format has none: on a body within another, or beside other joints.
+/// Refuses a free joint on a body within another or next to other joints, which MuJoCo's format excludes.
 fn check_free(body: Element<'_>, parent: usize, joints: &[(Joint, [f64; 3])]) -> Result<(), ReadError> {
     if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
         if parent != 0 {

@@ -1,4 +1,4 @@
-//! MJCF's classes of defaults, and elements that ask them for what they do not say.
+//! MJCF's classes of defaults, and the lookup of missing attributes.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::error::ReadError;
 use crate::xml::tree::Element;
 
-/// The elements in which a class may give defaults, beside actuators.
+/// The elements in which a class may give defaults, apart from actuators.
 const DEFAULTS: [&str; 12] = [
     "mesh", "material", "joint", "geom", "site", "camera", "light", "pair", "equality", "tendon", "texture", "default",
 ];
@@ -33,14 +33,14 @@ pub(crate) struct Classes<'t> {
     parents: Vec<Option<usize>>,
     /// The elements of each.
     elements: Vec<Vec<Element<'t>>>,
-    /// What was asked for before. A model with many elements and many defaults would take long otherwise.
+    /// Cached answers. Without them, a model with many elements and many defaults would take long.
     answers: RefCell<BTreeMap<Question<'t>, Option<Answer<'t>>>>,
 }
 
 /// A class, a kind of element and an attribute.
 type Question<'t> = (usize, &'t str, &'static str);
 
-/// The default that says an attribute, behind its class and its place there: of two the larger comes first.
+/// The default with an attribute, after its class and its place there. The larger of two comes first.
 type Answer<'t> = ((usize, usize), Element<'t>);
 
 /// An element with the class that completes it.
@@ -107,14 +107,14 @@ impl<'t> Classes<'t> {
         self.elements.iter().flatten().copied()
     }
 
-    /// The class of a name that stands in an element.
+    /// Returns the class with a name in an element.
     pub(crate) fn find(&self, element: Element<'t>, name: &str) -> Result<usize, ReadError> {
         let known = self.names.get(name).copied();
         known.ok_or_else(|| element.unknown("class", name, self.names.keys().map(String::as_str)))
     }
 
-    /// The default that says an attribute of a kind of element: that of the nearest class, and of it the last, which
-    /// overrides those before it.
+    /// Returns the default with an attribute for a kind of element. It is that of the nearest class, and in this class
+    /// the last one, which overrides earlier ones.
     fn answer(&self, class: usize, tag: &'t str, attribute: &'static str) -> Option<Answer<'t>> {
         let kind = kind(tag);
         let mut answers = self.answers.borrow_mut();
@@ -127,7 +127,7 @@ impl<'t> Classes<'t> {
             unasked.push(current);
             next = self.parents[current];
         }
-        // Down again from the outermost; a class comes after that in which it stands.
+        // Back from the outermost class. A class follows its enclosing class.
         for current in unasked.into_iter().rev() {
             let says =
                 |element: &Element<'t>| kind == self::kind(element.tag()) && element.attribute(attribute).is_some();
@@ -146,18 +146,18 @@ impl<'t> Classes<'t> {
     }
 }
 
-/// What to look for an element's defaults among.
+/// Returns the tag under which an element's defaults are listed.
 fn kind(tag: &str) -> &str {
     if ACTUATORS.contains(&tag) { ACTUATORS[0] } else { tag }
 }
 
 impl<'t> Classed<'t, '_> {
-    /// The element or default that says the attribute: the element itself, else the nearest class.
+    /// Returns the element or default with the attribute: the element itself, else the nearest class.
     pub(crate) fn source(&self, attribute: &'static str) -> Option<Element<'t>> {
         self.source_of(&[attribute])
     }
 
-    /// The nearest that says one of the attributes.
+    /// Returns the nearest one with any of the attributes.
     pub(crate) fn source_of(&self, attributes: &[&'static str]) -> Option<Element<'t>> {
         if attributes.iter().any(|name| self.element.attribute(name).is_some()) {
             return Some(self.element);
@@ -206,7 +206,8 @@ impl<'t> Classed<'t, '_> {
         self.source(attribute).map_or(Ok(None), |element| element.word(attribute, valid))
     }
 
-    /// Whether a range holds: as the attribute `limited` says, else if there is a range and ranges hold of themselves.
+    /// Returns whether a range applies: by the attribute `limited`, else if there is a range and ranges apply by
+    /// default.
     pub(crate) fn limited(
         &self,
         limited: &'static str,

@@ -10,11 +10,11 @@ use crate::options::Repair;
 use crate::vector::{cross, norm};
 use crate::xml::tree::Element;
 
-/// Why the attributes that are not read are not, for each element; MuJoCo's schema says which there are.
+/// The reasons why attributes are ignored, for each element. The attributes are those of MuJoCo's schema.
 pub(crate) const SHOW: &str = "only for show";
 pub(crate) const MUJOCO: &str = "how MuJoCo computes";
 
-/// The attributes that say a rotation.
+/// The attributes for a rotation.
 pub(crate) const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// The settings in `compiler` elements.
@@ -23,7 +23,7 @@ pub(crate) struct Compiler {
     pub(crate) angle: f64,
     sequence: Vec<u8>,
     pub(crate) automatic_limits: bool,
-    /// Whether inertias come from geoms: always, never, or where there is no `inertial`.
+    /// True if inertias come from geoms: always, never, or where there is no `inertial`.
     pub(crate) inertia_from_geom: Option<bool>,
     pub(crate) inertia_groups: [f64; 2],
     pub(crate) repair: Repair,
@@ -48,7 +48,7 @@ impl Compiler {
         for element in model.all("compiler") {
             settings.add(element, context)?;
         }
-        // Of the file's bounds and the caller's the stricter hold.
+        // The stricter of the file's bounds and the caller's apply.
         let asked = context.options.repair;
         settings.repair.least_mass = settings.repair.least_mass.max(asked.least_mass);
         settings.repair.least_inertia = settings.repair.least_inertia.max(asked.least_inertia);
@@ -118,7 +118,7 @@ impl Compiler {
         Ok(())
     }
 
-    /// The place of an element: `pos` and one of the five ways to say a rotation.
+    /// Returns the place of an element: `pos` and one of the five forms of a rotation.
     pub(crate) fn pose(
         &self,
         position: Option<Element<'_>>,
@@ -143,7 +143,7 @@ impl Compiler {
         let none = || element.wrong(name, element.attribute(name).unwrap_or_default(), "but must be a direction");
         let unit = |q: [f64; 4]| {
             let n = norm(&q);
-            // What is a unit already keeps its digits.
+            // A unit quaternion keeps its digits.
             let q = if (n - 1.0).abs() <= 1e-12 { q } else { q.map(|x| x / n) };
             if n > 1e-10 && n.is_finite() { Ok(Some(q)) } else { Err(none()) }
         };

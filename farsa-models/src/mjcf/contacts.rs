@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use farsa_body::robot::{Robot, Shape};
 
 use crate::context::Context;
-use crate::error::ReadError;
+use crate::error::{ReadError, repeated};
 use crate::mjcf::bodies::{Bodies, Geom};
 use crate::mjcf::classes::Classes;
 use crate::mjcf::inverse_weight::inverse_weights;
@@ -24,11 +24,11 @@ struct Touching<'b, 't, 'c> {
     contact: Contact,
 }
 
-/// What the `contact` sections declare.
+/// The declarations of the `contact` sections.
 #[derive(Default)]
 struct Declared {
     pairs: Vec<PairContact>,
-    /// The line of each `pair`, by its colliders in ascending order; those that cannot be described are here as well.
+    /// The line of each `pair`, by its colliders in ascending order. Pairs that cannot be described are included.
     lines: BTreeMap<[usize; 2], usize>,
     /// Bodies whose geoms do not touch, in ascending order.
     excluded: BTreeSet<[usize; 2]>,
@@ -118,7 +118,7 @@ impl Declared {
         let colliders = [a.collider, b.collider];
         if let Some(first) = self.lines.insert(ascending(colliders), element.place().line) {
             let name = [element.needed("geom1")?, element.needed("geom2")?].join("` and `");
-            return Err(ReadError::Twice { place: element.place(), what: "pair of".into(), name, first });
+            return Err(repeated(element.place(), "pair of", &name, first));
         }
         let contact = overridden(&classes.with(element, 0)?, &mixed(&contact_of(a)?, &contact_of(b)?))?;
         if possible(robot, colliders) {
@@ -134,7 +134,7 @@ fn ascending([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The geom that an end of a `pair` names; `None` if it was left out, which has been warned about already.
+/// The geom that an end of a `pair` names, or `None` if it was left out, which has been warned about already.
 fn named_geom<'b, 't, 'c>(
     pair: Element<'t>,
     end: &str,
@@ -171,8 +171,9 @@ fn touching<'b, 't, 'c>(bodies: &'b Bodies<'t, 'c>, most: usize) -> Result<Vec<T
     Ok(touching)
 }
 
-/// The pairs that MuJoCo makes of the geoms' bits: two geoms touch if one's `contype` and the other's `conaffinity` have
-/// a bit in common, unless the pair is declared, their bodies are excluded, or share their motion or are parent and child.
+/// Returns the pairs that MuJoCo makes of the geoms' bits. Two geoms touch if the `contype` of one and the
+/// `conaffinity` of the other have a common bit. Declared pairs are excepted, and bodies that are excluded, share their
+/// motion, or are parent and child.
 fn generated(
     robot: &Robot,
     bodies: &Bodies<'_, '_>,
@@ -229,17 +230,17 @@ fn check_pair(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadE
     element.check(&read, &ignored, warnings)
 }
 
-/// Whether two colliders can be a pair of a description.
+/// Returns whether two colliders can be a pair of a description.
 fn possible(robot: &Robot, [a, b]: [usize; 2]) -> bool {
     let (a, b) = (&robot.colliders[a], &robot.colliders[b]);
     a.body != b.body && (a.shape != Shape::Plane || b.shape != Shape::Plane)
 }
 
-/// Whether MuJoCo lets the geoms of two bodies touch: not if they move as one, nor if one carries the other.
+/// Returns whether MuJoCo lets the geoms of two bodies touch: not if they move as one, nor if one carries the other.
 ///
-/// Bodies without joints count as part of what carries them ("welded" in MuJoCo's documentation). Parent and child are
-/// kept apart because their geoms overlap at the joint by design; the world as a parent is the exception, or nothing
-/// could stand on the ground.
+/// Bodies without joints count as part of their carrier ("welded" in MuJoCo's documentation). Parent and child are kept
+/// apart because their geoms overlap at the joint by design. The world as a parent is the exception, or nothing could
+/// rest on the ground.
 fn apart(bodies: &Bodies<'_, '_>, a: usize, b: usize) -> bool {
     let carrier = |body: usize| bodies.list[body].carrier;
     let (a, b) = (carrier(a), carrier(b));

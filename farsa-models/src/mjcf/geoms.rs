@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use farsa_body::Pose;
 use farsa_body::robot::Shape;
 
-use crate::bounds::LARGEST;
+use crate::bounds::MAX_SIZE;
 use crate::context::Context;
-use crate::error::ReadError;
+use crate::error::{ReadError, repeated};
 use crate::mesh::principal_axes::rotation_to;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
@@ -24,7 +24,7 @@ pub(crate) struct MeshAssets<'t, 'c> {
     all: BTreeMap<String, MeshAsset<'t, 'c>>,
 }
 
-/// A mesh, which is read when the first geom asks for it.
+/// A mesh, which is read when the first geom requests it.
 struct MeshAsset<'t, 'c> {
     classed: Classed<'t, 'c>,
     fit: Cell<Option<MeshFit>>,
@@ -56,7 +56,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
                 let asset = MeshAsset { classed: classes.with(element, 0)?, fit: Cell::new(None) };
                 if let Some(first) = all.insert(name.into(), asset) {
                     let (place, first) = (element.place(), first.classed.element.place().line);
-                    return Err(ReadError::Twice { place, what: "mesh".into(), name: name.into(), first });
+                    return Err(repeated(place, "mesh", name, first));
                 }
             }
         }
@@ -104,15 +104,15 @@ impl MeshAsset<'_, '_> {
             if points.is_empty() {
                 return Err(element.unsupported("a mesh without file or vertices"));
             }
-            if points.iter().flatten().any(|x| x.abs() >= LARGEST) {
-                return Err(element.wrong("vertex", "...", format!("but must be of numbers below {LARGEST:e}")));
+            if points.iter().flatten().any(|x| x.abs() >= MAX_SIZE) {
+                return Err(element.wrong("vertex", "...", format!("but must be of numbers below {MAX_SIZE:e}")));
             }
             let corner = |x: f64| x as usize;
             let triangles =
                 numbers("face")?.chunks_exact(3).map(|f| [corner(f[0]), corner(f[1]), corner(f[2])]).collect();
             Mesh { points, triangles }
         };
-        // `refpos` and `refquat` say where the origin of the mesh is in its file: what is subtracted, before it is scaled.
+        // `refpos` and `refquat` are the origin of the mesh in its file, which is subtracted before scaling.
         let from = element.array::<3>("refpos")?.unwrap_or([0.0; 3]);
         let turn = match element.array::<4>("refquat")? {
             Some([w, x, y, z]) if norm(&[w, x, y, z]) > 1e-10 => {
@@ -166,7 +166,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
     element.check(&read, &ignored, warnings)
 }
 
-/// The solid of a geom and its place in the body; `None` if it is left out.
+/// The solid of a geom and its place in the body, or `None` if it is left out.
 pub(crate) fn geom<'t>(
     classed: &Classed<'t, '_>,
     within: &Pose<f64>,
@@ -216,7 +216,7 @@ pub(crate) fn geom<'t>(
         }
         sizes.push(length / 2.0);
     }
-    // How many of `size` each kind uses; a plane's are only how it is drawn.
+    // The number of sizes of each kind. A plane's are for drawing only.
     let needed = match kind {
         "plane" => 0,
         "sphere" => 1,
@@ -231,9 +231,9 @@ pub(crate) fn geom<'t>(
     }
     // A capsule without length is a ball.
     let least = if kind == "capsule" { 1 } else { needed };
-    if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < LARGEST) {
+    if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < MAX_SIZE) {
         let text = source.attribute("size").unwrap_or_default();
-        return Err(source.wrong("size", text, format!("but must be positive, below {LARGEST:e}")));
+        return Err(source.wrong("size", text, format!("but must be positive, below {MAX_SIZE:e}")));
     }
     let solid = match kind {
         "plane" => Solid::Native(Shape::Plane),

@@ -4,7 +4,7 @@ use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};
 
 use crate::context::Context;
-use crate::error::ReadError;
+use crate::error::{ReadError, repeated};
 use crate::mesh::solid::Solid;
 use crate::mjcf::classes::Classes;
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
@@ -25,7 +25,7 @@ pub(crate) fn body_mass<'t>(
     let inertial = given.next();
     if let (Some((first, ..)), Some((second, ..))) = (inertial, given.next()) {
         let (name, first) = (body.label(), first.place().line);
-        return Err(ReadError::Twice { place: second.place(), what: "inertial of".into(), name, first });
+        return Err(repeated(second.place(), "inertial of", &name, first));
     }
     let none = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
     // `inertiafromgeom`: "true" overrides an `inertial`, "false" makes do with it, "auto" infers what is not given.
@@ -36,7 +36,7 @@ pub(crate) fn body_mass<'t>(
             let mut sum = none;
             for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
                 let classed = classes.with(*element, *class)?;
-                // `inertiagrouprange` selects by group; a geom of no mass is for collisions only.
+                // `inertiagrouprange` selects by group. A geom of no mass is for collisions only.
                 let group = classed.number("group")?.unwrap_or(0.0);
                 let [low, high] = compiler.inertia_groups;
                 let mass = classed.not_negative("mass")?;

@@ -1,4 +1,4 @@
-//! How easily a force moves each segment: what another simulator's contact parameters are relative to.
+//! The inverse weights of segments, to which MuJoCo's contact parameters are relative.
 
 use farsa_body::Pose;
 use farsa_body::kinematics::KinematicTree;
@@ -8,7 +8,7 @@ use farsa_num::Scalar;
 
 use crate::vector::{cross, dot, sub};
 
-/// Angular and linear part of a motion, or torque and force, at a centre of mass in the world's axes.
+/// Angular and linear part of a motion, or torque and force, at a center of mass in the world's axes.
 type Spatial = ([f64; 3], [f64; 3]);
 
 /// A symmetric map from motions to forces or back.
@@ -20,20 +20,21 @@ struct Freedom {
     axis: Spatial,
     /// The force that accelerates the segment so, while what hangs on it is free.
     force: Spatial,
-    /// The effort that this takes; with the armature.
+    /// The effort that this takes. With the armature.
     effort: f64,
 }
 
-/// For every segment the acceleration of its centre of mass per force on it [1/kg], mean over the three directions, with
-/// all joints at 0, armatures included and nothing else acting; 0 for a segment that cannot move.
+/// Returns for every segment the acceleration of its center of mass per force on it [1/kg], as the mean over the three
+/// directions. All joints are at 0, armatures are included, and nothing else acts. It is 0 for a segment that cannot
+/// move.
 ///
-/// MuJoCo's `body_invweight0`, first component. Time and memory are proportional to the number of segments: from the ends
-/// of the trees to their roots go articulated-body inertias ([Featherstone2008] section 7.3), and back what a force on each
-/// segment alone does to it. MuJoCo factorises the mass matrix instead (section 6.5), which takes as much time as the cube
-/// of a chain's length.
+/// MuJoCo's `body_invweight0`, first component. Time and memory are proportional to the number of segments.
+/// Articulated-body inertias pass from the ends of the trees to their roots ([Featherstone2008] section 7.3). Responses
+/// to a force on each segment alone pass back. MuJoCo factorizes the mass matrix instead (section 6.5), which takes
+/// time cubic in a chain's length.
 ///
 /// # Errors
-/// What [`Robot::validate`] finds.
+/// The errors of [`Robot::validate`].
 pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
     let tree = KinematicTree::new(robot)?;
     let poses = tree.poses(&vec![0.0; tree.joints().len()]);
@@ -80,12 +81,12 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
         }
         yields.push(own);
     }
-    // What is lighter than numbers can say has no weight either: `max` drops NaN.
+    // A segment below the smallest number has no weight either, because `max` drops NaN.
     let mean = |own: &Matrix| ((own[3].1[0] + own[4].1[1] + own[5].1[2]) / 3.0).max(0.0);
     Ok(yields.iter().map(mean).collect())
 }
 
-/// The inertia of a segment about its centre of mass.
+/// The inertia of a segment about its center of mass.
 fn own_inertia(segment: &Segment, pose: &Pose<f64>) -> Matrix {
     let [xx, yy, zz, xy, xz, yz] = segment.inertia;
     let mut inertia = Matrix::default();
@@ -100,7 +101,7 @@ fn own_inertia(segment: &Segment, pose: &Pose<f64>) -> Matrix {
     inertia
 }
 
-/// What the degrees of freedom of a segment's joint do to its centre of mass.
+/// Returns the effect of a joint's degrees of freedom on the segment's center of mass.
 fn axes(segment: &Segment, pose: &Pose<f64>, centre: [f64; 3]) -> Vec<Spatial> {
     let joint = &segment.joint;
     let length = Scalar::sqrt(dot(joint.axis, joint.axis));
@@ -139,7 +140,7 @@ fn applied(matrix: &Matrix, to: Spatial) -> Spatial {
 
 /// The matrix F M F' of a linear map F.
 fn mapped(matrix: &Matrix, map: impl Fn(Spatial) -> Spatial) -> Matrix {
-    // The rows mapped are M F'; as M is symmetric, its columns mapped in turn are F M F'.
+    // The rows mapped are M F'. As M is symmetric, its columns mapped in turn are F M F'.
     let rows = matrix.map(&map);
     let column = |k: usize| if k < 3 { rows.map(|row| row.0[k]) } else { rows.map(|row| row.1[k - 3]) };
     [0, 1, 2, 3, 4, 5].map(|k| {
@@ -212,7 +213,7 @@ mod tests {
         }
     }
 
-    /// The same by definition: tr(J M^-1 J') / 3 with J of the centre of mass, and M = L L' the mass matrix, all of it.
+    /// The definition: tr(J M^-1 J') / 3 with J of the center of mass, and M = L L' the full mass matrix.
     fn dense(robot: &Robot) -> Vec<f64> {
         let tree = KinematicTree::new(robot).expect("a valid robot");
         let poses = tree.poses(&vec![0.0; tree.joints().len()]);
@@ -278,7 +279,7 @@ mod tests {
         prop::collection::vec(one, 1..most)
     }
 
-    /// A robot of such segments; `on` tells the parent from the draw and the segment's number.
+    /// Builds a robot of such segments. `on` returns the parent for the draw and the segment's number.
     fn drawn(draws: &[Draw], on: impl Fn(&prop::sample::Index, usize) -> Option<usize>) -> Robot {
         let mut robot = Robot::new("drawn");
         for (i, (parent, kind, armature, at, turn, (centre, mass))) in draws.iter().enumerate() {
@@ -318,8 +319,8 @@ mod tests {
         }
     }
 
-    /// Against the definition in decimal numbers of 40 digits; in doubles it is off by 6e-8 here, as the mass matrix of a long
-    /// chain is nearly singular.
+    /// Against the definition in decimal numbers of 40 digits. In doubles it is off by 6e-8 here, as the mass matrix of
+    /// a long chain is nearly singular.
     #[test]
     fn a_long_chain_loses_no_digits() {
         let mut robot = Robot::new("chain");

@@ -39,7 +39,7 @@ pub(crate) fn check_joint(element: Element<'_>, warnings: &mut Warnings) -> Resu
     element.check(&read, &ignored, warnings)
 }
 
-/// A joint with its placement relative to its anchor, which is beside it.
+/// A joint with its placement relative to its anchor, next to it.
 pub(crate) fn joint(
     classed: &Classed<'_, '_>,
     name: &str,
@@ -82,7 +82,7 @@ pub(crate) fn joint(
             context.warnings.add(element.place(), format!("joint `{name}`"), why);
         }
     }
-    // What follows the first number is of the higher powers of the speed.
+    // Numbers after the first belong to higher powers of the speed.
     let damping = classed.list("damping", 1, 3)?.unwrap_or_else(|| vec![0.0]);
     if damping.iter().skip(1).any(|x| *x != 0.0) {
         context.warnings.add(element.place(), "joint `damping`", "only what is proportional to the speed is described");
@@ -94,8 +94,8 @@ pub(crate) fn joint(
     let mut joint = Joint::revolute(name, axis, Pose::identity(), range).with_damping(damping);
     joint.kind = kind;
     joint.armature = classed.not_negative("armature")?.unwrap_or(0.0);
-    // `ref` is the joint's position in the configuration that the file describes. Positions mean the same here, so at
-    // position 0 the segment stands back from there by `ref`, about or along the axis.
+    // `ref` is the joint's position in the configuration of the file. Positions have this meaning here, too. At
+    // position 0 the segment is therefore moved back by `ref`, about or along the axis.
     let reference = classed.number("ref")?.unwrap_or(0.0) * unit;
     if reference != 0.0 {
         let length = norm(&axis);

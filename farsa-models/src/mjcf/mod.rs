@@ -1,4 +1,4 @@
-//! MJCF, MuJoCo's own format: [`write`](write()) makes it; [`Imported`](crate::Imported) reads it.
+//! MJCF, MuJoCo's own format: [`write`](write()) makes it. [`Imported`](crate::Imported) reads it.
 //!
 //! A model is read in this order, a file each.
 
@@ -8,7 +8,7 @@ pub(crate) mod read;
 /// The settings of `compiler` elements, and the places and rotations that depend on them.
 mod compiler;
 
-/// The classes of defaults, and elements that ask them for what they do not say.
+/// The classes of defaults, and the lookup of missing attributes.
 mod classes;
 
 /// The names that bodies, joints and geoms have or get.
@@ -35,10 +35,10 @@ mod actuators;
 /// Which colliders may touch.
 mod contacts;
 
-/// How two surfaces act on each other.
+/// The interaction of two surfaces.
 mod surface;
 
-/// How easily a force moves each body, which contact parameters are relative to.
+/// The inverse weights of bodies, to which contact parameters are relative.
 mod inverse_weight;
 
 /// From a robot to the text of a file.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::ReadError;
+use crate::error::{ReadError, repeated};
 use crate::xml::tree::Element;
 
 /// The names of bodies, joints and geoms: declared in the file, or generated from the kind and a number, with `_` appended
@@ -13,19 +13,17 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Takes the name that an element declares, of which there may be no second; `None` if it declares none.
+    /// Takes the name that an element declares, of which there may be no second, or `None` if it declares none.
     pub(crate) fn declare(&mut self, kind: &'static str, element: Element<'_>) -> Result<Option<String>, ReadError> {
         let Some(name) = element.attribute("name").filter(|name| !name.is_empty()) else { return Ok(None) };
         let line = element.place().line;
         match self.taken.insert((kind, name.to_owned()), line) {
             None => Ok(Some(name.to_owned())),
-            Some(first) => {
-                Err(ReadError::Twice { place: element.place(), what: kind.into(), name: name.into(), first })
-            }
+            Some(first) => Err(repeated(element.place(), kind, name, first)),
         }
     }
 
-    /// A name that nothing has; all declared names must be taken already.
+    /// A name that nothing has. All declared names must be taken already.
     pub(crate) fn generate(&mut self, kind: &'static str, wanted: String) -> String {
         let mut name = wanted;
         while self.taken.contains_key(&(kind, name.clone())) {
@@ -35,7 +33,7 @@ impl Names {
         name
     }
 
-    /// Whether something of the kind has the name.
+    /// Returns whether something of the kind has the name.
     pub(crate) fn has(&self, kind: &'static str, name: &str) -> bool {
         self.taken.contains_key(&(kind, name.to_owned()))
     }

@@ -1,4 +1,4 @@
-//! How two surfaces act on each other: from MuJoCo's numbers of geoms and pairs to springs and dampers.
+//! The interaction of two surfaces: from MuJoCo's numbers of geoms and pairs to springs and dampers.
 
 use farsa_body::robot::Surface;
 
@@ -6,7 +6,7 @@ use crate::error::ReadError;
 use crate::mjcf::bodies::Geom;
 use crate::mjcf::classes::Classed;
 
-/// What MuJoCo knows of a contact.
+/// MuJoCo's parameters of a contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Contact {
     /// Friction along the surface, about its normal, and against rolling.
@@ -20,7 +20,7 @@ pub(crate) struct Contact {
     mix: f64,
 }
 
-/// The numbers of one geom, MuJoCo's defaults where it says nothing.
+/// Returns the numbers of one geom, with MuJoCo's defaults where it has none.
 pub(crate) fn contact_of(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
     let start = Contact {
         friction: [1.0, 0.005, 0.0001],
@@ -42,7 +42,7 @@ pub(crate) fn contact_of(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
     Ok(contact)
 }
 
-/// The list `friction`, of at most so many.
+/// Returns the list `friction`, of at most `most` numbers.
 fn friction(classed: &Classed<'_, '_>, most: usize) -> Result<Option<Vec<f64>>, ReadError> {
     let list = classed.list("friction", 1, most)?;
     match (&list, classed.source("friction")) {
@@ -85,9 +85,8 @@ fn solver_numbers(classed: &Classed<'_, '_>, mut contact: Contact) -> Result<Con
 
 /// MuJoCo's rules for two geoms: the higher priority, else the larger friction and the weighted mean of the rest.
 ///
-/// "Computation, Collision detection, Contact parameters" in its documentation. A `solref` of negative numbers (a
-/// stiffness and a damping) has no mean with one of positive numbers (a time constant and a damping ratio): the smaller
-/// of each number is taken.
+/// "Computation, Collision detection, Contact parameters" in its documentation. A negative `solref` (a stiffness and a
+/// damping) and a positive one (a time constant and a damping ratio) have no mean. The smaller of each number is taken.
 pub(crate) fn mixed(a: &Contact, b: &Contact) -> Contact {
     if a.priority != b.priority {
         return if a.priority > b.priority { *a } else { *b };
@@ -116,7 +115,7 @@ impl Contact {
         // mjMINIMP and mjMAXIMP.
         let d = self.impedance.clamp(0.0001, 0.9999);
         let [tau, ratio] = self.solref;
-        // What stands over (1 - d) w in the force, with d in k and b cancelled: x times the first, v times the second.
+        // The factor of (1 - d) w in the force, with d in k and b canceled: x times the first, v times the second.
         let (stiffness, damping) = if tau > 0.0 && ratio > 0.0 {
             (1.0 / (tau * tau * ratio * ratio), 2.0 / tau)
         } else {

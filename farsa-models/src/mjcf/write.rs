@@ -15,7 +15,7 @@ use crate::xml::write::{
     GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, visuals_by_body,
 };
 
-/// What a MuJoCo model says beside the robot.
+/// The parts of a MuJoCo model that are not in the robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct MjcfOptions {
@@ -23,7 +23,7 @@ pub struct MjcfOptions {
     pub time_step: f64,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
-    /// How much stiffer friction is than the normal: what creeps is inversely proportional to it.
+    /// The ratio of friction's stiffness to that of the normal, inversely proportional to creep.
     pub impedance_ratio: f64,
     /// Postures to start from.
     pub keyframes: Vec<Keyframe>,
@@ -41,9 +41,9 @@ impl Default for MjcfOptions {
 pub struct Keyframe {
     /// Its name.
     pub name: String,
-    /// Joint positions in the order of [`Robot::joints`]; what is missing is 0 [rad or m].
+    /// Joint positions in the order of [`Robot::joints`]. Missing numbers are 0 [rad or m].
     pub joints: Vec<f64>,
-    /// Where floating segments are; the others are where their joint places them.
+    /// Where floating segments are. The others are where their joint places them.
     pub bodies: Vec<(BodyId, Pose<f64>)>,
 }
 
@@ -60,10 +60,10 @@ const TIME_CONSTANTS: [f64; 2] = [1e-150, 1e150];
 
 /// Time constant [s] and impedance of a contact that yields by force / `stiffness` at rest, for a step of `h` [s].
 ///
-/// MuJoCo's contact force is `(aref - a) d / ((1 - d) w)` with `aref = -b v - k d x`, `k = 1 / (d tau)^2`: at rest a spring
-/// of `1 / (tau^2 (1 - d) w)`, in motion one that also acts like a mass of `d / ((1 - d) w)`. `w` is the sum of the two
-/// bodies' inverse weights. The time constant is the shortest that MuJoCo accepts; the impedance then makes the spring
-/// ours. Where a time constant so short asks for less than 0.5, it is lengthened instead.
+/// MuJoCo's contact force is `(aref - a) d / ((1 - d) w)` with `aref = -b v - k d x`, `k = 1 / (d tau)^2`: at rest a
+/// spring of `1 / (tau^2 (1 - d) w)`, in motion one that also acts like a mass of `d / ((1 - d) w)`. `w` is the sum of
+/// the two bodies' inverse weights. The time constant is the shortest that MuJoCo accepts. The impedance then makes the
+/// spring ours. Where a time constant so short requests less than 0.5, it is lengthened instead.
 fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
     let kw = stiffness * w;
     if kw <= 0.0 {
@@ -75,23 +75,23 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 
 /// The robot as a model in MuJoCo's own format, MJCF.
 ///
-/// Segments, joints, inertias and shapes are the description's to the last digit. Only the pairs of the description
-/// may touch. What MuJoCo does not have is replaced:
-/// - muscle pairs and laws of a user's own are `motor`s that exert what they are told: the law is the caller's;
-/// - position servos are position actuators with a force range, torque motors motors with a control range;
-/// - a contact point's stiffness is ours at rest; its damping is critical instead of ours, and it moves as if the
-///   touching bodies were heavier: MuJoCo's contacts are stable at steps of this size only so;
-/// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio);
-/// - friction on the ground is `frictionloss` of each sliding joint by itself, and a comment says so;
-/// - visuals are geoms of group 2, and the colliders that they are drawn for are of group 3, which MuJoCo does not show;
+/// Segments, joints, inertias and shapes are the description's to the last digit. Only the pairs of the description may
+/// touch. Replacements of parts that MuJoCo does not have:
+/// - muscle pairs and custom laws are `motor`s with the commanded effort, and the caller evaluates the law
+/// - position servos are position actuators with a force range, torque motors motors with a control range
+/// - a contact point has our stiffness at rest, but critical damping, and the mass of heavier bodies, without which
+///   MuJoCo's contacts are unstable at steps of this size
+/// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio)
+/// - friction on the ground is `frictionloss` of each sliding joint by itself, with a comment in the file
+/// - visuals are geoms of group 2, and the colliders behind them geoms of group 3, which MuJoCo does not show
 /// - joint stops are MuJoCo's, as stiff as the step allows.
 ///
-/// A plane on a segment that moves is written, and refused by MuJoCo; so are chains of more than 496 bodies (4.0.0). A segment
-/// called `world` gets a `_` appended.
+/// A plane on a segment that moves is written, and refused by MuJoCo. So are chains of more than 496 bodies (4.0.0). A
+/// segment called `world` gets a `_` appended.
 ///
 /// # Errors
-/// What [`Robot::validate`] finds, and [`RobotError::Value`] for options that are not finite, a step or ratio <= 0, or a
-/// shape of 1e9 m or more, which is not read.
+/// The errors of [`Robot::validate`]. [`RobotError::Value`] for options that are not finite, a step or ratio <= 0, or a
+/// shape of 1e9 m or more, which no reader accepts.
 pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError> {
     check(options)?;
     let weights = inverse_weights(robot)?;
@@ -217,7 +217,7 @@ fn state(robot: &Robot, nested: &[(usize, usize)], keyframe: &Keyframe) -> Vec<f
     for (joint, q) in robot.joints().zip(&keyframe.joints) {
         joints[joint.index()] = *q;
     }
-    // Of a body that is given twice the first counts.
+    // The first of two poses of a body counts.
     let given: BTreeMap<usize, Pose<f64>> =
         keyframe.bodies.iter().rev().map(|(body, at)| (body.index(), *at)).collect();
     let mut state = Vec::new();
@@ -237,7 +237,7 @@ fn state(robot: &Robot, nested: &[(usize, usize)], keyframe: &Keyframe) -> Vec<f
 
 /// The segments with how deep they are nested, in depth-first order, in which MuJoCo counts bodies.
 fn nested(robot: &Robot) -> Vec<(usize, usize)> {
-    // Of the world and of each segment, the last first: what is last on the stack comes next.
+    // The children of the world and of each segment in reverse, because the top of the stack comes next.
     let mut children = vec![Vec::new(); robot.segments.len() + 1];
     for (i, segment) in robot.segments.iter().enumerate().rev() {
         children[segment.parent.map_or(0, |parent| parent.index() + 1)].push(i);
@@ -341,7 +341,7 @@ fn geom(shape: &Visual, name: &str, group: &str) -> String {
         Shape::Sphere { radius } => ("sphere", vec![radius]),
         Shape::Capsule { radius, half_length } => ("capsule", vec![radius, half_length]),
         Shape::Box { half } => ("box", half.to_vec()),
-        // Infinite; the third number is the distance of the lines drawn on it.
+        // Infinite. The third number is the distance of the lines drawn on it.
         Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
     };
     let at = placed(&shape.placement);

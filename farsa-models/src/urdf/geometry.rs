@@ -4,7 +4,7 @@ use farsa_body::Pose;
 use farsa_body::robot::Shape;
 use farsa_num::sin_cos;
 
-use crate::bounds::{LARGEST, has_size};
+use crate::bounds::{MAX_SIZE, has_size};
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
 use crate::mesh::solid::{MeshFit, Solid};
@@ -41,7 +41,8 @@ pub(super) fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<P
 /// A solid with its name and the place and line that it has.
 pub(super) type Placed = (String, Solid, Pose<f64>, SourceLocation);
 
-/// Our shapes for solids, each with the index of its first solid and its place; a cylinder and two balls at its ends are one capsule.
+/// Our shapes for solids, each with the index of its first solid and its place. A cylinder and two balls at its ends
+/// are one capsule.
 pub(super) fn joined(solids: &[Placed], kind: &str, context: &mut Context<'_>) -> Vec<(usize, Shape, Pose<f64>)> {
     let mut shapes = Vec::new();
     let mut next = 0;
@@ -72,7 +73,7 @@ fn capsule(tube: &Solid, at: &Pose<f64>, a: &Placed, b: &Placed) -> Option<Shape
     pair.then_some(Shape::Capsule { radius, half_length })
 }
 
-/// The shape in a `geometry` element; `None` if it is left out.
+/// The shape in a `geometry` element, or `None` if it is left out.
 pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
     let kinds = ["box", "cylinder", "capsule", "sphere", "mesh"];
     let mut shapes = geometry.children();
@@ -82,8 +83,8 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
     let positive = |name: &'static str| -> Result<f64, ReadError> {
         let value = shape.number(name)?.ok_or_else(|| shape.missing(name))?;
         let text = shape.attribute(name).unwrap_or_default();
-        let wrong = || shape.wrong(name, text, format!("but must be positive, below {LARGEST:e}"));
-        if value > 0.0 && value < LARGEST { Ok(value) } else { Err(wrong()) }
+        let wrong = || shape.wrong(name, text, format!("but must be positive, below {MAX_SIZE:e}"));
+        if value > 0.0 && value < MAX_SIZE { Ok(value) } else { Err(wrong()) }
     };
     let solid = match shape.tag() {
         "sphere" => {
@@ -95,7 +96,7 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
             let size = shape.array::<3>("size")?.ok_or_else(|| shape.missing("size"))?;
             let cuboid = Shape::Box { half: size.map(|x| x / 2.0) };
             if !has_size(&cuboid) {
-                let why = format!("but must be positive, below {:e}", 2.0 * LARGEST);
+                let why = format!("but must be positive, below {:e}", 2.0 * MAX_SIZE);
                 return Err(shape.wrong("size", shape.needed("size")?, why));
             }
             Solid::Native(cuboid)
@@ -105,8 +106,8 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
             let (radius, length) =
                 (positive("radius")?, shape.number("length")?.ok_or_else(|| shape.missing("length"))?);
             let half_length = length / 2.0;
-            if !(0.0..LARGEST).contains(&half_length) {
-                let why = format!("but must not be negative, and below {:e}", 2.0 * LARGEST);
+            if !(0.0..MAX_SIZE).contains(&half_length) {
+                let why = format!("but must not be negative, and below {:e}", 2.0 * MAX_SIZE);
                 return Err(shape.wrong("length", shape.needed("length")?, why));
             }
             match kind {

@@ -1,10 +1,10 @@
-//! URDF, the format of ROS: [`write`](write()) makes it; [`Imported`](crate::Imported) reads it.
+//! URDF, the format of ROS: [`write`](write()) makes it. [`Imported`](crate::Imported) reads it.
 
 /// Places and shapes in elements of a file.
 mod geometry;
 /// From a file's links and joints to a robot.
 pub(crate) mod read;
-/// What is drawn of links.
+/// The visuals of links.
 mod visuals;
 /// From a robot to the text of a file.
 mod write;

@@ -9,7 +9,7 @@ use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segme
 
 use crate::bounds::{ENDLESS, range_from_file};
 use crate::context::Context;
-use crate::error::ReadError;
+use crate::error::{ReadError, repeated};
 use crate::frame::Frame;
 use crate::repair::repair_masses;
 use crate::urdf::geometry::{Placed, joined, origin, solid};
@@ -17,7 +17,7 @@ use crate::urdf::visuals::{colors, visuals};
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
-/// The root link that stands for the world itself.
+/// The name of a root link that is the world itself.
 const WORLD: &str = "world";
 
 /// Why elements of a URDF are not read.
@@ -31,7 +31,7 @@ const NOTED: [(&str, &str); 3] = [
 struct Links<'t> {
     names: BTreeMap<&'t str, usize>,
     elements: Vec<Element<'t>>,
-    /// Of every link.
+    /// The joint of every link.
     joints: Vec<Option<Element<'t>>>,
     parents: Vec<Option<usize>>,
 }
@@ -114,8 +114,10 @@ impl<'t> Links<'t> {
             [] => Err(all.cycle(0)),
             [_] => Ok(all),
             [_, second, ..] => {
-                let names = roots.iter().map(|root| all.name(*root)).collect();
-                Err(ReadError::Roots { place: all.elements[*second].place(), names })
+                let names: Vec<_> = roots.iter().map(|root| all.name(*root)).collect();
+                let why =
+                    format!("{} links hang on nothing ({}); a robot has one root", names.len(), first_names(&names));
+                Err(ReadError::Malformed { place: all.elements[*second].place(), why })
             }
         }
     }
@@ -138,7 +140,8 @@ impl<'t> Links<'t> {
             names.push(self.name(parent));
             link = parent;
         }
-        ReadError::Cycle { place: self.elements[first].place(), names }
+        let why = format!("links carry each other: {}", first_names(&names));
+        ReadError::Malformed { place: self.elements[first].place(), why }
     }
 
     /// The links in the file's order, but parents before their children.
@@ -166,12 +169,18 @@ impl<'t> Links<'t> {
     }
 }
 
-fn twice(what: &str, second: &Element<'_>, first: &Element<'_>) -> ReadError {
-    let name = first.attribute("name").unwrap_or_default().to_owned();
-    ReadError::Twice { place: second.place(), what: what.into(), name, first: first.place().line }
+/// The first names of a list.
+fn first_names(names: &[String]) -> String {
+    let shown: Vec<&str> = names.iter().take(8).map(String::as_str).collect();
+    let rest = if names.len() > shown.len() { ", ..." } else { "" };
+    format!("{}{rest}", shown.join(", "))
 }
 
-/// A link's mass in its frame, and whether it says any.
+fn twice(what: &str, second: &Element<'_>, first: &Element<'_>) -> ReadError {
+    repeated(second.place(), what, first.attribute("name").unwrap_or_default(), first.place().line)
+}
+
+/// Returns a link's mass in its frame, and whether the file has one.
 fn inertial(link: Element<'_>, context: &mut Context<'_>) -> Result<(MassProperties, bool), ReadError> {
     link.check_open(&["name"], &mut context.warnings)?;
     link.check_children(&["inertial", "collision", "visual"], &NOTED, &mut context.warnings)?;
@@ -305,9 +314,9 @@ fn collisions(
     Ok(())
 }
 
-/// Gives colliders without name, or with one that another has, a name of their own.
+/// Gives new names to colliders without a name, or with the name of another.
 fn names(robot: &mut Robot) {
-    // Each with how often it was wanted.
+    // Each with how often it was desired.
     let mut taken: BTreeMap<String, usize> = BTreeMap::new();
     for i in 0..robot.colliders.len() {
         let collider = &robot.colliders[i];

@@ -1,4 +1,4 @@
-//! What is drawn of the links of a URDF.
+//! The visuals of a URDF's links.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::error::ReadError;
 use crate::urdf::geometry::{Placed, joined, origin, solid};
 use crate::xml::tree::Element;
 
-/// The colours of the materials that have one, by name, red, green and blue [0..1].
+/// The colors of the materials that have one, by name, red, green and blue [0..1].
 pub(super) fn colors(model: Element<'_>) -> BTreeMap<&str, [f64; 3]> {
     model.all("material").filter_map(|material| Some((material.attribute("name")?, own_color(material)?))).collect()
 }
@@ -46,14 +46,14 @@ pub(super) fn visuals(
         context.warnings.add(visual.place(), "visual", why);
         return;
     }
-    // Of the three elements of a capsule the first one's colour counts.
+    // The color of the first of the three elements of a capsule counts.
     for (first, shape, placement) in joined(&solids, "visual", context) {
         let color = shades.get(first).copied().flatten();
         robot.add_visual(Visual { color, ..Visual::new(body, shape, placement) });
     }
 }
 
-/// A visual's solid and place; `None` for a mesh.
+/// A visual's solid and place, or `None` for a mesh.
 fn placed(visual: Element<'_>, context: &mut Context<'_>) -> Result<Option<Placed>, ReadError> {
     let placement = origin(visual, context)?;
     let geometry = visual.one("geometry")?.ok_or_else(|| visual.missing("geometry"))?;

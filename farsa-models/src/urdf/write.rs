@@ -14,27 +14,29 @@ use crate::xml::write::{
     visuals_by_body,
 };
 
-/// The name of the link that stands for the world.
+/// The name of the link that represents the world.
 const WORLD: &str = "world";
 
-/// URDF wants a largest speed, and a description has none [rad/s or m/s].
-const FASTEST: f64 = 1000.0;
+/// URDF requires a largest speed, which a description does not have [rad/s or m/s].
+const MAX_SPEED: f64 = 1000.0;
 
-/// Half the edge length of the block that stands for a plane [m].
+/// Half the edge length of the block that represents a plane [m].
 const PLANE: f64 = 50.0;
 
 /// The robot as a URDF file: links, inertias, joints, collision shapes.
 ///
-/// One link, `world`, is the root of everything (a segment of that name gets a `_` appended); what floats hangs on it by a
-/// joint of type `floating`, which some readers do not know. A capsule is a cylinder with a sphere at either end, a
-/// plane a block of 100 m. A joint without name is called after its segment. The visuals of a link are
-/// its own; where colliders have colours, those of links without any are visuals too.
-/// Friction on the ground becomes friction of each sliding joint by itself, and a comment says so. Lost are armatures, pairs, surfaces,
-/// and the laws of actuators but for their largest effort (of a muscle pair: moment arm times largest active
-/// tension); a largest speed, which URDF wants, is 1000.
+/// One link, `world`, is the root of everything (a segment of that name gets a `_` appended). A floating segment is on
+/// it by a joint of type `floating`, which some readers reject. A capsule is a cylinder with a sphere at either end, a
+/// plane a block of 100 m. A joint without name gets the name of its segment.
+///
+/// Visuals of a link are its own. Where colliders have colors, those of links without visuals are visuals too. Friction
+/// on the ground becomes friction of each sliding joint by itself, with a comment in the file.
+///
+/// Lost are armatures, pairs, surfaces, and the laws of actuators except for their largest effort (of a muscle pair:
+/// moment arm times largest active tension). A largest speed, which URDF requires, is 1000.
 ///
 /// # Errors
-/// What [`Robot::validate`] finds, and [`RobotError::Value`] for a shape of 1e9 m or more, which is not read.
+/// The errors of [`Robot::validate`]. [`RobotError::Value`] for a shape of 1e9 m or more, which no reader accepts.
 pub fn write(robot: &Robot) -> Result<String, RobotError> {
     robot.validate()?;
     check_sizes(robot)?;
@@ -61,7 +63,8 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     Ok(out.text)
 }
 
-/// A link with its mass, its colliders, which are `shown` or not where it has no visuals, and those; the world's without segment.
+/// A link with its mass, its colliders, which are `shown` or not where it has no visuals, and those. The world's
+/// without segment.
 fn link(
     out: &mut Lines,
     name: &str,
@@ -126,7 +129,7 @@ fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], [effo
             let [low, high] = range_in_file(joint.range);
             format!("lower=\"{:?}\" upper=\"{:?}\" ", low + 0.0, high + 0.0)
         };
-        out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{FASTEST:?}\"/>"));
+        out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{MAX_SPEED:?}\"/>"));
         out.line(&format!("<dynamics damping=\"{:?}\" friction=\"{friction:?}\"/>", joint.damping));
     }
     out.close("joint");

@@ -6,8 +6,8 @@ use crate::options::Limits;
 /// Refuses text with more or deeper elements or more attributes than the limits allow, or with a document type, which
 /// alone can define entities.
 ///
-/// One pass over the bytes. It finds where tags begin and end and believes nothing else; whether the text is XML is for
-/// the parser to say. `elements` is how many there were before, in files that belong together.
+/// Makes one pass over the bytes. It finds the beginnings and ends of tags and trusts nothing else. The parser checks
+/// the syntax. `elements` is the number of elements in earlier files of the model.
 pub(crate) fn check(file: &str, text: &str, elements: &mut usize, limits: &Limits) -> Result<(), ReadError> {
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -69,7 +69,7 @@ fn find(bytes: &[u8], close: &[u8], from: usize) -> usize {
     rest.windows(close.len()).position(|window| window == close).map_or(bytes.len(), |at| from + at + close.len())
 }
 
-/// What can be seen of a tag from outside.
+/// The outline of a tag.
 struct Tag {
     length: usize,
     attributes: usize,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::context::Context;
-use crate::error::{ReadError, SourceLocation, nearest};
+use crate::error::{ReadError, SourceLocation, nearest, repeated};
 use crate::warnings::Warnings;
 use crate::xml::check::check;
 
@@ -42,11 +42,11 @@ impl Tree {
         Ok(tree)
     }
 
-    /// Appends the elements of a text and tells the root's index.
+    /// Appends the elements of a text and returns the root's index.
     fn add(&mut self, file: &str, text: &str, context: &mut Context<'_>) -> Result<usize, ReadError> {
         let limits = &context.options.limits;
         check(file, text, &mut context.elements, limits)?;
-        // Elements have been counted; the rest are comments and the text between them.
+        // Elements have been counted. The rest are comments and the text between them.
         let nodes_limit = u32::try_from(limits.elements.saturating_mul(8)).unwrap_or(u32::MAX);
         let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| {
@@ -110,7 +110,7 @@ impl Tree {
                 let file = element.needed("file")?.to_owned();
                 let (path, text) = context.files.text(&place, &file)?;
                 if let Some((_, line)) = included.iter().find(|(other, _)| *other == path) {
-                    return Err(ReadError::Twice { place, what: "include of".into(), name: file, first: *line });
+                    return Err(repeated(place, "include of", &file, *line));
                 }
                 included.push((path, place.line));
                 let root = self.add(&file, &text, context)?;
@@ -165,9 +165,7 @@ impl<'t> Element<'t> {
         let first = found.next();
         match (first, found.next()) {
             (Some(first), Some(second)) => {
-                let name = self.label();
-                let (what, first) = (format!("{tag} of"), first.node().line);
-                Err(ReadError::Twice { place: second.place(), what, name, first })
+                Err(repeated(second.place(), &format!("{tag} of"), &self.label(), first.node().line))
             }
             _ => Ok(first),
         }
@@ -182,7 +180,7 @@ impl<'t> Element<'t> {
         self.attribute(name).ok_or_else(|| self.missing(name))
     }
 
-    /// What to call the element in messages.
+    /// Returns the element's name for messages.
     pub(crate) fn label(&self) -> String {
         match self.attribute("name") {
             Some(name) => format!("{} `{name}`", self.tag()),
@@ -191,7 +189,7 @@ impl<'t> Element<'t> {
     }
 
     pub(crate) fn missing(&self, what: &str) -> ReadError {
-        ReadError::Missing { place: self.place(), element: self.label(), what: what.into() }
+        ReadError::Malformed { place: self.place(), why: format!("{} has no {what}", self.label()) }
     }
 
     pub(crate) fn unsupported(&self, why: impl Into<String>) -> ReadError {
@@ -199,8 +197,8 @@ impl<'t> Element<'t> {
     }
 
     pub(crate) fn wrong(&self, attribute: &'static str, value: &str, why: impl Into<String>) -> ReadError {
-        let (place, element) = (self.place(), self.label());
-        ReadError::Value { place, element, attribute, value: value.into(), why: why.into() }
+        let (element, why) = (self.label(), why.into());
+        ReadError::Malformed { place: self.place(), why: format!("{element}: {attribute} is {value:?}, {why}") }
     }
 
     pub(crate) fn unknown<'a>(
@@ -209,8 +207,10 @@ impl<'t> Element<'t> {
         name: &str,
         valid: impl IntoIterator<Item = &'a str>,
     ) -> ReadError {
-        let nearest = nearest(name, valid).map(|(name, _)| name.to_owned());
-        ReadError::Unknown { place: self.place(), what: what.into(), name: name.into(), nearest }
+        let nearest =
+            nearest(name, valid).map_or("there is none".into(), |(nearest, _)| format!("the nearest is `{nearest}`"));
+        let why = format!("unknown {} `{name}`; {nearest}", what.into());
+        ReadError::Malformed { place: self.place(), why }
     }
 
     /// Refuses attributes that the format does not have and warns of those that are not read, each with its reason.
@@ -247,7 +247,7 @@ impl<'t> Element<'t> {
         Ok(())
     }
 
-    /// The same for the elements within.
+    /// Checks the elements within.
     pub(crate) fn check_children(
         &self,
         read: &[&str],
@@ -293,7 +293,7 @@ impl<'t> Element<'t> {
         Err(self.wrong(name, text, format!("but must be {wanted} numbers")))
     }
 
-    /// So many finite numbers of an attribute.
+    /// Returns exactly `N` finite numbers of an attribute.
     pub(crate) fn array<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, ReadError> {
         let Some(list) = self.list(name, N, N)? else { return Ok(None) };
         let mut array = [0.0; N];
@@ -319,7 +319,7 @@ impl<'t> Element<'t> {
     }
 }
 
-/// Whether a name that is so far from a valid one is likely meant to be it.
+/// Returns whether a name that is so far from a valid one is likely meant to be it.
 fn slip(name: &str, distance: usize) -> bool {
     distance <= 2 && name.chars().count() > 2 * distance
 }

@@ -1,12 +1,12 @@
-//! What the writers of model files share: nested lines, numbers and names in XML.
+//! Shared parts of the writers: nested lines, numbers and names in XML.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use farsa_body::robot::{Collider, Robot, Segment, Visual};
 
-/// Deeper lines stand no further in, or the text would grow with the square of a chain's length.
-const FURTHEST_IN: usize = 32;
+/// Deeper lines have no further indent, or the text would grow with the square of a chain's length.
+const MAX_INDENT: usize = 32;
 
 /// Lines of XML, each as far in as it is nested, up to 32 levels.
 #[derive(Default)]
@@ -19,7 +19,7 @@ impl Lines {
     /// One whole element or comment.
     pub(crate) fn line(&mut self, line: &str) {
         // Writing into a string cannot fail.
-        let _ = writeln!(self.text, "{:1$}{line}", "", 2 * self.depth.min(FURTHEST_IN));
+        let _ = writeln!(self.text, "{:1$}{line}", "", 2 * self.depth.min(MAX_INDENT));
     }
 
     /// An element, name and attributes, that others follow in.
@@ -35,7 +35,7 @@ impl Lines {
     }
 }
 
-/// What the friction on the ground takes from each joint that a body slides and turns by, by segment [N or N m].
+/// Returns the friction of the ground on each sliding and turning joint of a body, by segment [N or N m].
 pub(crate) fn friction_of_ground(robot: &Robot) -> Vec<f64> {
     let mut losses = vec![0.0; robot.segments.len()];
     for ground in &robot.grounds {
@@ -51,11 +51,11 @@ pub(crate) fn friction_of_ground(robot: &Robot) -> Vec<f64> {
     losses
 }
 
-/// What a file says of grounds, where there are any.
+/// The comment of a file with grounds.
 pub(crate) const GROUND: &str = "<!-- Friction on the ground acts along each sliding joint by itself: aslant up to 1.42 times as much \
     as in the description. -->";
 
-/// Numbers with a space between, each the shortest that reads back the same; zeros without sign.
+/// Numbers with a space between, each the shortest that reads back the same, zeros without sign.
 pub(crate) fn numbers(of: &[f64]) -> String {
     let mut text = String::new();
     for (i, x) in of.iter().enumerate() {
@@ -64,7 +64,7 @@ pub(crate) fn numbers(of: &[f64]) -> String {
     text
 }
 
-/// A name as the value of an attribute, quotes included; U+FFFD for each character that XML does not have.
+/// A name as the value of an attribute, quotes included. U+FFFD for each character that XML does not have.
 pub(crate) fn quoted(name: &str) -> String {
     let mut text = String::from("\"");
     for c in name.chars() {
@@ -101,7 +101,7 @@ pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
     robot.segments.iter().map(|segment| name(&segment.name)).collect()
 }
 
-/// Whether there is anything to say about a segment's mass.
+/// Returns whether a segment's mass is worth writing.
 pub(crate) fn has_inertial(segment: &Segment) -> bool {
     segment.mass > 0.0 || segment.inertia.iter().chain(&segment.centre).any(|x| *x != 0.0)
 }
@@ -124,7 +124,7 @@ pub(crate) fn visuals_by_body(robot: &Robot) -> Vec<Vec<&Visual>> {
     all
 }
 
-/// An orange ball that slides and turns on the ground, beside a grey one that stands in the world.
+/// Builds an orange ball that slides and turns on the ground, next to a gray one fixed to the world.
 #[cfg(test)]
 pub(crate) fn ball_on_the_ground() -> Robot {
     use farsa_body::Pose;

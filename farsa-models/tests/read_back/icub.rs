@@ -3,7 +3,8 @@
 use farsa_body::kinematics::KinematicTree;
 use farsa_body::robot::{Robot, Visual};
 use farsa_body::robots::{Chain, Icub};
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 use farsa_num::{Domain, Stream};
 
 use crate::read;

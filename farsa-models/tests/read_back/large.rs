@@ -4,7 +4,8 @@
 use std::fmt::Write as _;
 
 use farsa_body::robot::{Robot, Shape};
-use farsa_models::{Imported, Limits, MjcfOptions, ReadOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::{Imported, Limits, ReadOptions, urdf};
 
 use crate::read;
 

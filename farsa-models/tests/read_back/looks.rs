@@ -2,7 +2,8 @@
 
 use farsa_body::Pose;
 use farsa_body::robot::{Shape, Visual};
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 
 use crate::read;
 

@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 use farsa_body::Pose;
 use farsa_body::actuators::{Law, Torque};
 use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape};
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 use proptest::prelude::*;
 
 use crate::{message, read};

@@ -3,7 +3,8 @@
 use farsa_body::actuators::{Law, Torque};
 use farsa_body::robot::JointKind;
 use farsa_body::robots::MobileRobot;
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 use farsa_num::sin_cos;
 
 use crate::{read, round_trip};

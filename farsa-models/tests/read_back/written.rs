@@ -5,7 +5,8 @@ use farsa_body::actuators::{Law, Torque};
 use farsa_body::kinematics::KinematicTree;
 use farsa_body::robot::{JointKind, Robot, Shape};
 use farsa_body::robots::{ArmAndHand, Tabletop};
-use farsa_models::{MjcfOptions, mjcf, urdf};
+use farsa_models::mjcf::{self, MjcfOptions};
+use farsa_models::urdf;
 
 use crate::{fixture, read};
 

@@ -25,9 +25,9 @@ use crate::articulated::lockstep::LANES;
 
 /// Worlds of one arena, one in each lane of SIMD vectors, all at their description's start at first.
 ///
-/// Every world has the bits of a [`World`] that is arranged, commanded and stepped like it, whatever its neighbours do.
-/// It looks at everything, not into a grid: lanes are for arenas of a few robots. While an attachment device holds or wants
-/// to in any lane, lanes are stepped one by one.
+/// Every world has the bits of a [`World`] with the same arrangement and commands, independent of its neighbors. It
+/// examines every body and has no grid, so lanes are for arenas of a few robots. While an attachment device holds or
+/// its command is on in any lane, lanes are stepped one by one.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics};
@@ -61,10 +61,10 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// So many worlds, 8 or 16, stepped by these instructions; see [`crate::articulated::Batch::new`].
+    /// Builds 8 or 16 worlds, stepped by these instructions. See [`crate::articulated::Batch::new`].
     ///
     /// # Errors
-    /// What is wrong with the description, or [`ArenaError::Lanes`] for another number of worlds.
+    /// The fault of the description, or [`ArenaError::Lanes`] for another number of worlds.
     pub fn new(arena: &Arena, lanes: usize, instructions: Instructions) -> Result<Self, ArenaError> {
         if !LANES.contains(&lanes) {
             let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
@@ -89,12 +89,12 @@ impl Batch {
         self.lanes
     }
 
-    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.alone.parts(robot)
     }
 
-    /// One of the worlds; the last one for a number beyond it, which is a mistake.
+    /// One of the worlds. The last one for a number beyond it, which is a mistake.
     #[inline]
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.lanes, "lane {index} of {}", self.lanes);
@@ -114,7 +114,7 @@ impl Batch {
     }
 
     /// Readings of a robot's ring of analytic infrared sensors in every world: [sensors x lanes], as
-    /// [`World::infrared`] gives them in each; a shorter slice gets the first sensors.
+    /// [`World::infrared`] gives them in each. A shorter slice gets the first sensors.
     pub fn infrared(&mut self, robot: usize, out: &mut [f32]) {
         let robot = robot.min(self.alone.model().robots.len() - 1);
         if let Some(lockstep) = &self.lockstep {
@@ -177,7 +177,7 @@ impl fmt::Debug for Batch {
 
 /// One world of a [`Batch`]: the ports of a [`World`], no step.
 ///
-/// What is done to it touches no other lane.
+/// Changes to it affect no other lane.
 #[derive(Debug)]
 pub struct Lane<'a> {
     model: &'a Model,
@@ -187,7 +187,7 @@ pub struct Lane<'a> {
 }
 
 impl Lane<'_> {
-    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }

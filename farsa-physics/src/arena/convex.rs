@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::sin_cos;
 
-/// The colour of what has none of its own.
+/// The default color.
 pub(crate) const GREY: [f64; 3] = [0.5; 3];
 
 /// The form of a [`Convex`].
@@ -22,7 +22,7 @@ pub enum ConvexForm {
         /// Height [m].
         height: f64,
     },
-    /// The convex hull of points, in any order; needs the feature `parry`.
+    /// The convex hull of points, in any order, needs the feature `parry`.
     Hull {
         /// The points: x, y and the height above the ground, which is not negative [m].
         points: Vec<[f64; 3]>,
@@ -31,9 +31,9 @@ pub enum ConvexForm {
 
 /// A convex obstacle that does not move, in the world's frame.
 ///
-/// In the plane it is its outline as seen from above: that is what robots collide with, what [`Sight`](farsa_body::ports::Planar)
-/// tells and what infrared sensors feel. Rays in space ([`Rays`](farsa_body::ports::Rays)) meet the solid itself, slopes included.
-/// Like a wall, it is no body.
+/// In the plane it is its outline as seen from above. Robots collide with the outline, and
+/// [`Sight`](farsa_body::ports::Sight) and infrared sensors detect it. Rays in space
+/// ([`Rays`](farsa_body::ports::Rays)) hit the solid itself, slopes included. Like a wall, it is no body.
 ///
 /// ```
 /// use farsa_body::ports::{Rays, Sight};
@@ -60,27 +60,27 @@ pub struct Convex {
 }
 
 impl Convex {
-    /// A grey upright prism over the convex polygon with these corners [m], of a height [m].
+    /// A gray upright prism over the convex polygon with these corners [m], of a height [m].
     ///
-    /// Corners follow each other either way round. A corner on the straight line between its neighbours is allowed, a
+    /// Corners follow each other either way round. A corner on the straight line between its neighbors is allowed, a
     /// dent is not.
     pub fn prism(corners: &[[f64; 2]], height: f64) -> Self {
         Self { form: ConvexForm::Prism { corners: corners.into(), height }, color: GREY }
     }
 
-    /// The grey convex hull of points [m], in any order; the third coordinate is the height above the ground.
+    /// The gray convex hull of points [m], in any order. The third coordinate is the height above the ground.
     ///
     /// Needs the feature `parry`. Points within the hull are allowed.
     pub fn hull(points: &[[f64; 3]]) -> Self {
         Self { form: ConvexForm::Hull { points: points.into() }, color: GREY }
     }
 
-    /// The same obstacle in another colour.
+    /// Returns the obstacle in another color.
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color, ..self }
     }
 
-    /// The same obstacle turned counter-clockwise about the origin by `heading` [rad], then moved by `at` [m].
+    /// Returns the obstacle turned counter-clockwise about the origin by `heading` [rad], then moved by `at` [m].
     pub fn placed(self, at: [f64; 2], heading: f64) -> Self {
         let (sine, cosine) = sin_cos(heading);
         let place = |x: f64, y: f64| [at[0] + (x * cosine - y * sine), at[1] + (x * sine + y * cosine)];
@@ -99,8 +99,8 @@ impl Convex {
         Self { form, ..self }
     }
 
-    /// Corners of its outline as seen from above, counter-clockwise from the lowest x [m]; fewer than three if it has no
-    /// area.
+    /// Corners of its outline as seen from above, counter-clockwise from the lowest x [m]. Fewer than three if it has
+    /// no area.
     pub fn outline(&self) -> Vec<[f64; 2]> {
         match &self.form {
             ConvexForm::Prism { corners, .. } => crate::arena::outline::hull(corners),

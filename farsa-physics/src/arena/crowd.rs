@@ -12,17 +12,17 @@ use crate::arena::solid::{beside, meets_solid, overlaps_solid};
 use crate::arena::step::{LEFT, Met, SWEEPS, WORK_WORDS, add_push, keep_deepest, position_of, step_without_collisions};
 use crate::arena::surface::{Meeting, meets_disc, meets_wall, ray_to_disc, wall_squared};
 
-/// What a step of a crowd needs beside the state.
+/// The working memory of a step of a crowd.
 #[derive(Clone, Debug)]
 pub(crate) struct Crowd {
-    /// Present where the model asks for it.
+    /// Present where the model requests it.
     pub(crate) grid: Option<Grid>,
     /// The first robot of those that hold together with each.
     group: Vec<u16>,
-    /// Whether any robot holds another.
+    /// True if any robot holds another.
     held: bool,
     back: Vec<bool>,
-    /// Whether those that hold together are set back, by the first of them.
+    /// True if those that hold together are set back, by the first of them.
     stopped: Vec<bool>,
     pushes: Vec<(u16, [f32; 2])>,
     /// Which robots are set back now, and which were in the last round.
@@ -77,7 +77,7 @@ impl Crowd {
         self.visit(model, [x - reach, y - reach], [x + reach, y + reach], tell);
     }
 
-    /// What a robot overlaps, and its sum of pushes in the order of bodies if it is asked for.
+    /// Returns the overlaps of a robot, and on request their sum of pushes in the order of bodies.
     #[inline]
     fn find_overlap(
         &self,
@@ -126,7 +126,7 @@ impl Crowd {
         });
         let mut each = |body: usize| {
             let meeting = meets_disc(own, at(words, body), radius, model.radius(body));
-            // Two robots give way by half each; cylinders do not give way.
+            // Two robots give way by half each. Cylinders do not give way.
             take(meeting, body as f32, if body < model.robots.len() { 0.5 } else { 1.0 }, &mut push);
         };
         match others.get_mut(..count) {
@@ -142,7 +142,7 @@ impl Crowd {
         met
     }
 
-    /// One control step; `words` and `work` as in [`step`](crate::arena::step::step).
+    /// One control step. `words` and `work` as in [`step`](crate::arena::step::step).
     pub(crate) fn step(&mut self, model: &Model, words: &mut [f32], work: &mut [f32]) {
         self.hold(model, words);
         for robot in 0..model.robots.len() {
@@ -205,7 +205,7 @@ impl Crowd {
         }
     }
 
-    /// The robot whose hull is ahead within reach [m] of a robot's centre, as a word.
+    /// The robot whose hull is ahead within reach [m] of a robot's center, as a word.
     fn ahead(&self, model: &Model, words: &[f32], robot: usize, reach: f32) -> f32 {
         let own = at(words, robot);
         let way = [words[POSE_WORDS * robot + 3], words[POSE_WORDS * robot + 4]];
@@ -224,9 +224,9 @@ impl Crowd {
         met.map_or(NOTHING, |(_, body)| body as f32)
     }
 
-    /// Moves those that hold together as one: the rigid motion that is nearest to what their wheels want.
+    /// Moves attached robots as one: the rigid motion that is nearest to the velocities of their wheels.
     ///
-    /// Source: own (least squares of the velocities of the centres; each chassis turns by its own wheels).
+    /// Source: own (least squares of the velocities of the centers. Each chassis turns by its own wheels).
     fn carry(&mut self, model: &Model, words: &mut [f32], work: &[f32]) {
         let robots = model.robots.len();
         for first in 0..robots {
@@ -241,8 +241,8 @@ impl Crowd {
                 let word = model.robot_word(robot, VELOCITY);
                 [words[word], words[word + 1]]
             };
-            // Least squares of v_i = V + w x r_i, with r_i from the mean of the centres: V = mean of v_i,
-            // w = sum r_i x v_i / sum r_i . r_i.
+            // Least squares of v_i = V + w x r_i, with r_i from the mean of the centers: V = mean of v_i, w = sum r_i x
+            // v_i / sum r_i . r_i.
             let (mut centre, mut mean) = ([0.0_f32; 2], [0.0_f32; 2]);
             for robot in (first..robots).filter(member) {
                 let (p, v) = (was(robot), velocity(words, robot));
@@ -283,7 +283,7 @@ impl Crowd {
         }
     }
 
-    /// Whether a robot holds or is held.
+    /// Returns whether a robot holds or is held.
     fn tied(&self, robot: usize) -> bool {
         let group = self.group[robot];
         self.held && self.group.iter().filter(|g| **g == group).count() > 1
@@ -292,7 +292,7 @@ impl Crowd {
     fn push(&mut self, model: &Model, words: &mut [f32], work: &[f32]) {
         self.back.fill(false);
         for _ in 0..SWEEPS {
-            // All pushes of a sweep are found before anybody moves, so that nobody comes first.
+            // All pushes of a sweep are computed before any motion, so that the order of robots is irrelevant.
             let mut pushes = core::mem::take(&mut self.pushes);
             pushes.clear();
             for robot in 0..model.robots.len() {
@@ -318,7 +318,7 @@ impl Crowd {
         }
         for robot in (0..model.robots.len()).filter(|robot| self.back[*robot]) {
             for k in 0..2 {
-                // Who was pushed has the velocity of the way that it really went.
+                // A pushed robot has the velocity of its actual way.
                 let way = words[POSE_WORDS * robot + k] - work[WORK_WORDS * robot + k];
                 words[model.robot_word(robot, VELOCITY + k)] = way / model.time_step;
             }
@@ -363,7 +363,7 @@ impl Crowd {
             for robot in &now {
                 Self::set_back(model, words, work, usize::from(*robot));
             }
-            // The grid allows for a step of one's own, not for being pushed or carried.
+            // The grid allows for a robot's own step, and not for pushes or attachments.
             if self.held || model.collisions == CollisionRule::Circles {
                 self.fill(words);
             }

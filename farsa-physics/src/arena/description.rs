@@ -1,4 +1,4 @@
-//! What is in a planar world: walls, obstacles, cylinders, coloured areas of the ground and wheeled robots, as data.
+//! A planar world as data: walls, obstacles, cylinders, colored areas of the ground and wheeled robots.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use farsa_body::robots::{MobileParts, MobileRobot};
 
 use crate::arena::convex::{Convex, GREY};
 
-/// A wall: a box that stands on the ground.
+/// A wall: a box on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Wall {
@@ -26,7 +26,7 @@ pub struct Wall {
 impl Wall {
     /// Height of a wall that is given none [m].
     pub const HEIGHT: f64 = 0.1;
-    /// Colour of a wall that is given none.
+    /// Color of a wall that is given none.
     pub const COLOR: [f64; 3] = GREY;
 
     /// A box with its middle at `centre` [m], of so much length and thickness [m], its length along `heading` [rad].
@@ -42,22 +42,22 @@ impl Wall {
         Self::cuboid(centre, [length, thickness], farsa_num::atan2(y, x))
     }
 
-    /// The same wall in another colour.
+    /// Returns the wall in another color.
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color, ..self }
     }
 
-    /// The same wall of another height [m].
+    /// Returns the wall of another height [m].
     pub fn with_height(self, height: f64) -> Self {
         Self { height, ..self }
     }
 }
 
-/// A cylinder that stands on the ground and does not move by itself; perhaps a lamp.
+/// A cylinder on the ground that does not move by itself, optionally a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Cylinder {
-    /// Where its axis stands at first [m].
+    /// The initial place of its axis [m].
     pub centre: [f64; 2],
     /// Radius [m].
     pub radius: f64,
@@ -65,12 +65,12 @@ pub struct Cylinder {
     pub height: f64,
     /// Red, green and blue [0..1].
     pub color: [f64; 3],
-    /// How strongly it shines, in a unit of one's own; 0 is no lamp.
+    /// The intensity of its light, in a unit of your choice. A cylinder with 0 is no lamp.
     pub lamp: f64,
 }
 
 impl Cylinder {
-    /// A grey cylinder as high as a wall, at `centre` [m] with `radius` [m], that does not shine.
+    /// A gray cylinder as high as a wall, at `centre` [m] with `radius` [m], that does not shine.
     pub fn new(centre: [f64; 2], radius: f64) -> Self {
         Self { centre, radius, height: Wall::HEIGHT, color: Wall::COLOR, lamp: 0.0 }
     }
@@ -96,7 +96,7 @@ pub enum AreaShape {
     },
 }
 
-/// A part of the ground in a colour of its own, such as a target or a nest; nothing collides with it.
+/// A part of the ground with a color, such as a target or a nest. Nothing collides with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Area {
@@ -122,23 +122,23 @@ impl Area {
     }
 }
 
-/// What happens to robots that would overlap something.
+/// The treatment of robots that would overlap something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum CollisionRule {
-    /// All move; robots that then overlap anything are set back to where it was, as often as that makes others overlap.
+    /// All move. Robots that then overlap anything are set back to where it was, as often as that makes others overlap.
     ///
-    /// Its wheels go on turning. As the original does.
+    /// Its wheels continue to turn, as in the original.
     #[default]
     Revert,
     /// Overlapping robots are pushed apart, half by half, and off walls and cylinders, so that they slide along.
     ///
-    /// Robots that eight sweeps of pushing do not free are set back as by [`Revert`](Self::Revert); so are attached
+    /// Robots that eight sweeps of pushing do not free are set back as by [`Revert`](Self::Revert). So are attached
     /// robots.
     Circles,
 }
 
-/// How neighbours are found; the results are the same.
+/// The search for neighbors. Results are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Search {
@@ -196,17 +196,17 @@ pub struct Arena {
     pub convexes: Vec<Convex>,
     /// The cylinders.
     pub cylinders: Vec<Cylinder>,
-    /// The areas; where several lie over each other, the last one is seen.
+    /// The areas. Where several lie over each other, the last one is seen.
     pub areas: Vec<Area>,
     /// The robots.
     pub robots: Vec<RobotPlacement>,
-    /// Colour of the ground where no area is.
+    /// Color of the ground where no area is.
     pub ground: [f64; 3],
     /// The control step [s].
     pub time_step: f64,
-    /// What happens to robots that would overlap something.
+    /// The treatment of robots that would overlap something.
     pub collisions: CollisionRule,
-    /// How neighbours are found.
+    /// The search for neighbors.
     pub search: Search,
 }
 
@@ -222,7 +222,7 @@ impl Arena {
     /// The control step where none is given [s].
     pub const TIME_STEP: f64 = 0.05;
 
-    /// An endless plane with nothing in it; ground white, steps of 50 ms, collisions undone.
+    /// An endless plane with nothing in it. Ground white, steps of 50 ms, collisions undone.
     pub fn new() -> Self {
         Self {
             size: None,
@@ -249,37 +249,37 @@ impl Arena {
         Self { size: Some([width, depth]), walls: across.into_iter().chain(along).collect(), ..Self::new() }
     }
 
-    /// Adds a wall; its number.
+    /// Adds a wall. Its number.
     pub fn add_wall(&mut self, wall: Wall) -> usize {
         self.walls.push(wall);
         self.walls.len() - 1
     }
 
-    /// Adds a convex obstacle; its number.
+    /// Adds a convex obstacle. Its number.
     pub fn add_convex(&mut self, convex: Convex) -> usize {
         self.convexes.push(convex);
         self.convexes.len() - 1
     }
 
-    /// Adds a cylinder; its number, see [`Arena::cylinder`].
+    /// Adds a cylinder. Its number, see [`Arena::cylinder`].
     pub fn add_cylinder(&mut self, cylinder: Cylinder) -> usize {
         self.cylinders.push(cylinder);
         self.cylinders.len() - 1
     }
 
-    /// Adds an area; its number, see [`Arena::area`].
+    /// Adds an area. Its number, see [`Arena::area`].
     pub fn add_area(&mut self, area: Area) -> usize {
         self.areas.push(area);
         self.areas.len() - 1
     }
 
-    /// Adds a robot that starts at `at` [m] and looks along `heading` [rad]; its number, see [`Arena::parts`].
+    /// Adds a robot that starts at `at` [m] and looks along `heading` [rad]. Its number, see [`Arena::parts`].
     pub fn add_robot(&mut self, robot: MobileRobot, at: [f64; 2], heading: f64) -> usize {
         self.robots.push(RobotPlacement { robot, at, heading });
         self.robots.len() - 1
     }
 
-    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     ///
     /// # Panics
     /// If there are no robots.

@@ -1,4 +1,4 @@
-//! What no planar world can be built from.
+//! The error of planar worlds.
 
 use core::fmt;
 
@@ -36,16 +36,14 @@ impl fmt::Display for Part {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArenaError {
-    /// There is no robot.
-    NoRobots,
-    /// There are more of something than there are numbers for them.
-    TooMany {
-        /// Of what.
+    /// Too few or too many parts of one kind.
+    Count {
+        /// The kind of parts.
         what: &'static str,
-        /// How many there are.
+        /// The number of parts.
         count: usize,
-        /// How many there can be.
-        most: usize,
+        /// The least and the greatest number.
+        range: [usize; 2],
     },
     /// A number is not within what is possible.
     Range {
@@ -55,87 +53,53 @@ pub enum ArenaError {
         what: &'static str,
         /// The number.
         value: f64,
-        /// What is possible, both ends included.
+        /// The permitted range, both ends included.
         range: [f64; 2],
     },
     /// Two parts overlap where they start.
     Overlap {
         /// The two.
         parts: [Part; 2],
-        /// How deep one lies in the other [m].
+        /// The depth of the overlap [m].
         depth: f64,
     },
     /// Something starts outside of the arena.
     Outside {
-        /// What.
+        /// The part.
         part: Part,
         /// Where it starts [m].
         at: [f64; 2],
-        /// Its radius; 0 for an area, of which the middle counts, and for a corner of a convex obstacle [m].
+        /// Its radius, or 0 for an area, of which the middle counts, and for a corner of a convex obstacle [m].
         radius: f64,
         /// The arena is [0, width] x [0, depth] [m].
         size: [f64; 2],
     },
-    /// Two corners of a prism are one.
-    SameCorner {
-        /// The prism.
-        part: Part,
-        /// The numbers of the corners.
-        corners: [usize; 2],
-        /// How far they are apart [m].
-        distance: f64,
-    },
-    /// A corner of a prism lies within the hull of the others: it is not convex.
-    Dent {
-        /// The prism.
-        part: Part,
-        /// The number of the corner.
-        corner: usize,
-        /// How deep it lies [m].
-        depth: f64,
-    },
-    /// The corners of a prism do not follow each other around it.
-    OutOfTurn {
-        /// The prism.
-        part: Part,
-        /// The numbers of the corners where a side begins and ends that has corners on both hands.
-        side: [usize; 2],
-        /// The number of the first of them on the outer hand.
-        corner: usize,
-    },
-    /// Points are so close to each other or to a plane that no closed hull of them is found.
-    NoHull {
+    /// A convex obstacle whose points have no hull.
+    Convex {
         /// The obstacle.
         part: Part,
-        /// The number of its points.
-        points: usize,
-    },
-    /// Something needs a feature of this crate that it was compiled without.
-    NeedsFeature {
-        /// What.
-        part: Part,
-        /// The name of the feature.
-        feature: &'static str,
+        /// The fault.
+        fault: ConvexFault,
     },
     /// A robot may go farther in a step than its hull's radius, and so through another.
     StepTooLong {
         /// The robot.
         robot: usize,
-        /// How far it may go in a step [m].
+        /// The largest distance in a step [m].
         travel: f64,
         /// The radius of its hull [m].
         radius: f64,
     },
     /// No free place was found.
     NoFreePlace {
-        /// In so many tries.
+        /// The number of tries.
         tries: u32,
         /// For a disc of this radius [m].
         radius: f32,
-        /// How far the best place lies from where it would be free [m].
+        /// The overlap at the best place [m].
         short: f32,
     },
-    /// No batch has so many worlds.
+    /// A number of worlds without a batch.
     Lanes {
         /// The number asked for.
         lanes: usize,
@@ -144,11 +108,50 @@ pub enum ArenaError {
     },
 }
 
+/// The fault of a convex obstacle.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ConvexFault {
+    /// Two corners of a prism at one place.
+    SameCorner {
+        /// The numbers of the corners.
+        corners: [usize; 2],
+        /// The distance between them [m].
+        distance: f64,
+    },
+    /// A corner of a prism within the hull of the others, so that the prism is not convex.
+    Dent {
+        /// The number of the corner.
+        corner: usize,
+        /// The depth of the corner within the hull [m].
+        depth: f64,
+    },
+    /// Corners of a prism that do not follow each other around it.
+    OutOfTurn {
+        /// The numbers of the corners of a side that has corners to its left and to its right.
+        side: [usize; 2],
+        /// The number of the first corner on its outer side.
+        corner: usize,
+    },
+    /// Points so close to each other or to a plane that they have no closed hull.
+    NoHull {
+        /// The number of points.
+        points: usize,
+    },
+    /// An obstacle that needs a feature of this crate.
+    NeedsFeature {
+        /// The name of the feature.
+        feature: &'static str,
+    },
+}
+
 impl fmt::Display for ArenaError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoRobots => write!(f, "an arena without robots: add at least one"),
-            Self::TooMany { what, count, most } => write!(f, "{count} {what}: there can be at most {most}"),
+            Self::Count { what, count, range: [least, _] } if count < least => {
+                write!(f, "an arena without {what}: add at least one")
+            }
+            Self::Count { what, count, range: [_, most] } => write!(f, "{count} {what}: there can be at most {most}"),
             Self::Range { part, what, value, range: [low, high] } => {
                 write!(f, "{what} of {part} is {value}: must be in [{low}, {high}]")
             }
@@ -159,30 +162,7 @@ impl fmt::Display for ArenaError {
                     "{part} of radius {radius} m starts at ({x}, {y}) m: not within [0, {width}] x [0, {depth}] m"
                 )
             }
-            Self::SameCorner { part, corners: [i, j], distance } => {
-                write!(f, "corners {i} and {j} of {part} are {distance} m apart: leave one of them out")
-            }
-            Self::Dent { part, corner, depth } => {
-                write!(
-                    f,
-                    "corner {corner} of {part} lies {depth} m within the hull of the others: leave it out, or make it two obstacles"
-                )
-            }
-            Self::OutOfTurn { part, side: [i, j], corner } => {
-                write!(
-                    f,
-                    "corners of {part} are out of turn: {corner} lies on the outer side of the line from {i} to {j}; name them one after the other around it"
-                )
-            }
-            Self::NoHull { part, points } => {
-                write!(
-                    f,
-                    "no closed hull of the {points} points of {part}: leave out points that are close to others or to a face"
-                )
-            }
-            Self::NeedsFeature { part, feature } => {
-                write!(f, "{part} is a hull of points: that needs the feature `{feature}` of farsa-physics")
-            }
+            Self::Convex { part, fault } => fault.write(f, part),
             Self::StepTooLong { robot, travel, radius } => {
                 write!(
                     f,
@@ -198,3 +178,28 @@ impl fmt::Display for ArenaError {
 }
 
 impl core::error::Error for ArenaError {}
+
+impl ConvexFault {
+    fn write(&self, f: &mut fmt::Formatter<'_>, part: &Part) -> fmt::Result {
+        match self {
+            Self::SameCorner { corners: [i, j], distance } => {
+                write!(f, "corners {i} and {j} of {part} are {distance} m apart: leave one of them out")
+            }
+            Self::Dent { corner, depth } => write!(
+                f,
+                "corner {corner} of {part} lies {depth} m within the hull of the others: leave it out, or make it two obstacles"
+            ),
+            Self::OutOfTurn { side: [i, j], corner } => write!(
+                f,
+                "corners of {part} are out of turn: {corner} lies on the outer side of the line from {i} to {j}; name them one after the other around it"
+            ),
+            Self::NoHull { points } => write!(
+                f,
+                "no closed hull of the {points} points of {part}: leave out points that are close to others or to a face"
+            ),
+            Self::NeedsFeature { feature } => {
+                write!(f, "{part} is a hull of points: that needs the feature `{feature}` of farsa-physics")
+            }
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! Faces of the convex hull of points in space. The one file that knows parry.
+//! Faces of the convex hull of points in space. No other file depends on parry.
 
 use alloc::vec::Vec;
 
@@ -14,13 +14,13 @@ const FLAT: f64 = 1e-9;
 /// Points are one that are no farther apart, in the same parts: `f32` has to distinguish them.
 const SAME: f64 = 2e-4;
 
-/// How far points may lie beyond a face, in the same parts: parry leaves out corners that stand out less than a hundred times
-/// `f32`'s rounding.
+/// The tolerance of points beyond a face, in the same parts. parry leaves out corners that protrude less than a hundred
+/// times `f32`'s rounding.
 const BEYOND: f64 = 1e-4;
-/// The same for a narrow triangle, times its height.
+/// The tolerance for a narrow triangle, times its height.
 const NARROW: f64 = 3e-6;
 /// Directions that a hull is looked for from.
-const TRIES: u8 = 8;
+const MAX_TURNS: u8 = 8;
 
 type Point = [f64; 3];
 
@@ -41,7 +41,7 @@ fn unit(a: Point) -> Option<Point> {
     (length > 0.0).then(|| a.map(|x| x / length))
 }
 
-/// What is wrong with a hull.
+/// The fault of a hull.
 pub(crate) enum Flaw {
     /// It is only so thick [m].
     Thin(f64),
@@ -67,8 +67,8 @@ fn corners(points: &[Point], numbers: &[usize], out: Point, first: usize) -> Vec
     corners
 }
 
-/// Points brought into [-1, 1] along the axes of their greatest breadths, in the same order: a hull has the same faces in
-/// whatever affine frame, and this one is as far from flat as any.
+/// Returns the points scaled to [-1, 1] along the axes of their greatest breadths, in the same order. A hull has the
+/// same faces in any affine frame, and this one is as far from flat as possible.
 fn spread(points: &[Point]) -> Result<Vec<Point>, Flaw> {
     let first = points.first().copied().unwrap_or_default();
     let farthest = |off: &dyn Fn(Point) -> Point| {
@@ -102,8 +102,8 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 
 /// The faces of the convex hull of points in the obstacle's frame.
 ///
-/// parry finds which points lie on a common face, in `f32`; the faces themselves are computed from those points here, so
-/// that no number of parry's gets into the world.
+/// parry finds which points lie on a common face, in `f32`. The faces themselves are computed from those points here,
+/// so that no number of parry's gets into the world.
 pub(crate) fn faces(points: &[Point]) -> Result<Vec<Face>, Flaw> {
     let spread = spread(points)?;
     let mut numbers: Vec<usize> = Vec::with_capacity(points.len());
@@ -113,12 +113,12 @@ pub(crate) fn faces(points: &[Point]) -> Result<Vec<Face>, Flaw> {
             numbers.push(i);
         }
     }
-    // Once in some ten thousand sets with many points in a plane, parry's triangles close, but not around the points: seen
-    // from elsewhere they do.
-    let triangles = (0..TRIES).find_map(|turn| triangles(&spread, &numbers, turn)).ok_or(Flaw::Open)?;
+    // Once in some ten thousand sets with many points in a plane, parry's triangles close, but not around the points:
+    // seen from in other places they do.
+    let triangles = (0..MAX_TURNS).find_map(|turn| triangles(&spread, &numbers, turn)).ok_or(Flaw::Open)?;
     let mut polygons: Vec<Vec<usize>> = Vec::new();
     for [a, b, c] in triangles {
-        // A sliver along an edge has no direction of its own, and its neighbours bound the hull there.
+        // A sliver along an edge has no direction, and its neighbors bound the hull there.
         if let Some(out) = unit(cross(sub(spread[b], spread[a]), sub(spread[c], spread[a]))) {
             polygons.push(corners(&spread, &numbers, out, a));
         }
@@ -128,7 +128,7 @@ pub(crate) fn faces(points: &[Point]) -> Result<Vec<Face>, Flaw> {
     Ok(polygons.iter().filter_map(|polygon| plane(points, polygon)).collect())
 }
 
-/// The triangles of parry's hull of some of the points, which are turned before; `None` if they are none.
+/// Returns the triangles of parry's hull of some of the rotated points, or `None` without any.
 fn triangles(points: &[Point], numbers: &[usize], turn: u8) -> Option<Vec<[usize; 3]>> {
     let [(s, c), (t, d)] = [0.7, 0.4].map(|angle| sin_cos(angle * f64::from(turn)));
     let turned = |number: &usize| {
@@ -151,7 +151,7 @@ fn triangles(points: &[Point], numbers: &[usize], turn: u8) -> Option<Vec<[usize
         let [u, v, w] = [[*a, *b], [*b, *c], [*c, *a]].map(|[from, to]| sub(points[to], points[from]));
         let area = cross(u, v);
         let longest = Scalar::max(Scalar::max(dot(u, u), dot(v, v)), dot(w, w));
-        // The narrower a triangle, the less its direction says.
+        // The direction of a triangle is less accurate the narrower it is.
         unit(area).is_none_or(|out| {
             let slack = BEYOND + NARROW * Scalar::sqrt(longest / dot(area, area));
             numbers.iter().all(|number| dot(out, sub(points[*number], points[*a])) <= slack)
@@ -160,7 +160,7 @@ fn triangles(points: &[Point], numbers: &[usize], turn: u8) -> Option<Vec<[usize
     (closed(&triangles) && triangles.iter().all(behind)).then_some(triangles)
 }
 
-/// Whether every edge of triangles belongs to two of them, once in either direction.
+/// Returns whether every edge of triangles belongs to two of them, once in either direction.
 fn closed(triangles: &[[usize; 3]]) -> bool {
     let mut edges: Vec<[usize; 2]> = triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).collect();
     edges.sort_unstable();

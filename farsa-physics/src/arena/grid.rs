@@ -8,7 +8,7 @@ use crate::arena::model::{Model, POSE_WORDS};
 /// Cells for each body, at most.
 const CELLS: f32 = 4.0;
 
-/// Which bodies have their centre in which cell; what lies outside belongs to the cells at the border.
+/// Which bodies have their center in which cell. Places outside belong to the cells at the border.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     origin: [f32; 2],
@@ -18,7 +18,7 @@ pub(crate) struct Grid {
     /// Where the items of each cell begin, and where those of the last end.
     starts: Vec<u32>,
     items: Vec<u16>,
-    /// How far a body may be from where it was when the cells were filled [m].
+    /// The distance that a body may move before the cells are filled again [m].
     slack: f32,
 }
 
@@ -88,7 +88,7 @@ impl Grid {
         self.starts[cells] = self.items.len() as u32;
     }
 
-    /// Tells every body whose centre may lie in the rectangle [m], and others.
+    /// Visits every body whose center may be in the rectangle [m], and others.
     #[inline]
     pub(crate) fn visit(&self, low: [f32; 2], high: [f32; 2], mut tell: impl FnMut(usize)) {
         let columns = [self.column(0, low[0] - self.slack), self.column(0, high[0] + self.slack)];

@@ -15,8 +15,8 @@ struct Pose<S> {
     axis: [S; 2],
 }
 
-/// Adds what one surface does to the sensors' sums `out` [sensors x lanes]; `way` goes from the robot's centre to the
-/// surface's nearest point or, if it has a radius, to its centre.
+/// Adds what one surface does to the sensors' sums `out` [sensors x lanes]. `way` goes from the robot's center to the
+/// surface's nearest point or, if it has a radius, to its center.
 #[inline(always)]
 fn add_surface<S: Scalar<Real = f32>>(
     simd: S::Simd,
@@ -27,8 +27,8 @@ fn add_surface<S: Scalar<Real = f32>>(
     radii: f32,
     out: &mut [f32],
 ) {
-    // Each surface adds f(distance) g(cosine) by its nearest point alone, with the cosine of the angle between the sensor's
-    // axis and the way there; f and g are those of `InfraredModel`.
+    // Each surface adds f(distance) g(cosine) by its nearest point alone, with the cosine of the angle between the
+    // sensor's axis and the way there. F and g are those of `InfraredModel`.
     let zero = S::splat(simd, 0.0);
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let distance = length - S::splat(simd, radii);
@@ -111,7 +111,7 @@ fn sums_to_readings<S: Scalar<Real = f32>>(simd: S::Simd, sensors: usize, out: &
 }
 
 #[cfg_attr(not(all(feature = "lanes", not(test))), expect(dead_code, reason = "only lanes look at everything"))]
-/// The readings of a robot's ring [sensors x lanes]; the first ones if there is no room for all.
+/// The readings of a robot's ring [sensors x lanes]. The first ones if there is no room for all.
 #[inline(always)]
 pub(crate) fn ring<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robot: usize, out: &mut [f32]) {
     // Walls, convex obstacles, then bodies by their numbers: `ring_among` adds in the same order, or the sums would differ.
@@ -125,7 +125,7 @@ pub(crate) fn ring<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &
     sums_to_readings::<S>(simd, sensors, out);
 }
 
-/// The same where the bodies that may be sensed are given, in their order.
+/// Returns the where the bodies that may be sensed are given, in their order.
 pub(crate) fn ring_among(
     model: &Model,
     words: &[f32],

@@ -17,11 +17,11 @@ use crate::articulated::lockstep::LANES;
 
 /// Steps all worlds of a batch together.
 pub(crate) trait Lockstep: Send + Sync {
-    /// One control step; see [`step`].
+    /// One control step. See [`step`].
     fn step(&self, model: &Model, words: &mut [f32], work: &mut [f32]);
-    /// Readings of a robot's infrared ring; see [`ring`].
+    /// Readings of a robot's infrared ring. See [`ring`].
     fn infrared(&self, model: &Model, words: &[f32], robot: usize, out: &mut [f32]);
-    /// The same again.
+    /// Returns the again.
     fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
@@ -57,8 +57,8 @@ where
     }
 }
 
-/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for; none where lanes are
-/// stepped one by one.
+/// Returns the steps of `lanes` lanes, one of [`LANES`], by the widest of these instructions with compiled steps. The
+/// result is `None` where lanes are stepped one by one.
 #[cfg(any(not(target_arch = "wasm32"), target_feature = "simd128"))]
 pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Option<Box<dyn Lockstep>> {
     fn boxed<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {

@@ -1,52 +1,49 @@
 //! Kinematic planar worlds of wheeled robots.
-//!
-//! From a description to a step, and out again:
-//!
-//! - `description`: walls, obstacles, cylinders, areas and robots, as data
-//! - `convex`: convex obstacles as data
-//! - `error`: what no planar world can be built from
-//! - `outline`: outlines of convex obstacles in `f64`: hulls, checks, distances
-//! - `facets`: faces of a convex hull in space; the one file that knows parry
-//! - `model`: the constant part, checked
-//! - `slab`: a wall as the step has it
-//! - `solid`: convex obstacles as the step has them, and where discs and rays meet them
-//! - `surface`: nearest points and overlaps of discs with walls and with each other
-//! - `step`: one step, of one world or of lanes
-//! - `crowd`: a step of one world with many robots or attachments
-//! - `grid`: a uniform grid: which bodies may be near
-//! - `infrared`: the ring of analytic infrared sensors
-//! - `view`: answers of the ports, from the words of a state
-//! - `world`: one world behind the ports
-//! - `place`: a free place that keeps its distances
-//! - `lockstep`: the compiled steps of batches
-//! - `batch`: many worlds in SIMD lanes
 
+/// Many worlds in SIMD lanes.
 #[cfg(all(feature = "lanes", not(test)))]
 mod batch;
+/// Convex obstacles as data.
 pub(crate) mod convex;
+/// A step of one world with many robots or attachments.
 pub(crate) mod crowd;
+/// Walls, obstacles, cylinders, areas and robots, as data.
 pub(crate) mod description;
+/// The error of planar worlds.
 pub(crate) mod error;
+/// Faces of a convex hull in space, the only file that depends on parry.
 #[cfg(feature = "parry")]
 mod facets;
+/// A uniform grid that finds near bodies.
 mod grid;
+/// The ring of analytic infrared sensors.
 mod infrared;
+/// The compiled steps of batches.
 #[cfg(all(feature = "lanes", not(test)))]
 mod lockstep;
+/// The constant part, checked.
 pub(crate) mod model;
+/// Outlines of convex obstacles in `f64`: hulls, checks, distances.
 mod outline;
+/// A free place that keeps its distances.
 mod place;
+/// A wall as the step has it.
 pub(crate) mod slab;
+/// Convex obstacles in the form of the step, with discs and rays that hit them.
 mod solid;
+/// One step, of one world or of lanes.
 pub(crate) mod step;
+/// Nearest points and overlaps of discs with walls and with each other.
 pub(crate) mod surface;
+/// Answers of the ports, from the words of a state.
 pub(crate) mod view;
+/// One world behind the ports.
 mod world;
 
 #[cfg(all(feature = "lanes", not(test)))]
 pub use batch::{Batch, Lane};
 pub use convex::{Convex, ConvexForm};
 pub use description::{Area, AreaShape, Arena, CollisionRule, Cylinder, RobotPlacement, Search, Wall};
-pub use error::{ArenaError, Part};
+pub use error::{ArenaError, ConvexFault, Part};
 pub use place::FreePlace;
 pub use world::World;

@@ -9,19 +9,19 @@ use farsa_num::{Scalar, atan2, sin_cos};
 
 use crate::arena::convex::{Convex, ConvexForm};
 use crate::arena::description::{AreaShape, Arena, CollisionRule, Search};
-use crate::arena::error::{ArenaError, Part};
+use crate::arena::error::{ArenaError, ConvexFault, Part};
 use crate::arena::outline::{check_turns, distance, width};
 use crate::arena::slab::Slab;
 use crate::arena::solid::{Face, Solid, middle, prism_faces};
 
 /// Words of a body's pose: x, y, heading and its cosine and sine.
 pub(crate) const POSE_WORDS: usize = 5;
-/// Words of a robot beside its pose; see [`VELOCITY`] and what follows it.
+/// Words of a robot after its pose. See [`VELOCITY`] and the following constants.
 pub(crate) const ROBOT_WORDS: usize = 18;
 /// More bodies than these are looked for in a grid.
 const MANY: usize = 32;
 
-/// What robots have in common.
+/// The constants of a kind of robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Kind {
     pub(crate) robot: MobileRobot,
@@ -37,7 +37,7 @@ pub(crate) struct Kind {
     pub(crate) speeds: [f32; 2],
     /// Where the infrared sensors look, in the robot's frame.
     pub(crate) infrared: Vec<[f32; 2]>,
-    /// How infrared sensors see it.
+    /// Its response in infrared sensors.
     pub(crate) seen: InfraredModel,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct Round {
 /// An area.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patch {
-    /// Half its sides; of a disc the radius, twice.
+    /// Half its sides. The radius of a disc, twice.
     pub(crate) half: [f32; 2],
     pub(crate) disc: bool,
     pub(crate) color: [f32; 3],
@@ -73,10 +73,10 @@ pub(crate) struct Model {
     pub(crate) time_step: f32,
     pub(crate) collisions: CollisionRule,
     pub(crate) actuators: usize,
-    /// Whether any robot has an attachment device.
+    /// True if any robot has an attachment device.
     pub(crate) attachments: bool,
     pub(crate) grid: bool,
-    /// How infrared sensors see a wall.
+    /// The response of a wall in infrared sensors.
     pub(crate) wall_seen: InfraredModel,
     /// The largest radius of a robot or cylinder [m].
     pub(crate) largest: f32,
@@ -93,7 +93,7 @@ fn ranged(part: Part, what: &'static str, value: f64, range: [f64; 2]) -> Result
     if (range[0]..=range[1]).contains(&value) { Ok(()) } else { Err(ArenaError::Range { part, what, value, range }) }
 }
 
-/// Lengths from a thousandth of a millimetre to a hundred kilometres: their squares are normal numbers in `f32`.
+/// Lengths from a thousandth of a millimeter to a hundred kilometers: their squares are normal numbers in `f32`.
 const LENGTHS: [f64; 2] = [1e-6, 1e5];
 
 fn colored(part: Part, color: [f64; 3]) -> Result<(), ArenaError> {
@@ -105,8 +105,8 @@ fn placed(part: Part, at: [f64; 2], heading: f64) -> Result<(), ArenaError> {
     ranged(part, "heading", heading, [-1e4, 1e4])
 }
 
-fn counted(what: &'static str, count: usize, most: usize) -> Result<(), ArenaError> {
-    if count > most { Err(ArenaError::TooMany { what, count, most }) } else { Ok(()) }
+fn counted(what: &'static str, count: usize, range: [usize; 2]) -> Result<(), ArenaError> {
+    if (range[0]..=range[1]).contains(&count) { Ok(()) } else { Err(ArenaError::Count { what, count, range }) }
 }
 
 /// Ends of the motion that a robot's numbers allow.
@@ -161,7 +161,7 @@ pub(crate) fn pose_words(at: [f32; 2], heading: f32) -> [f32; POSE_WORDS] {
     [at[0], at[1], heading, cosine, sine]
 }
 
-/// How many points a convex obstacle may have, one of a plane and one of space at least.
+/// The least and greatest number of points of a convex obstacle, in the plane and in space.
 const POINTS: [[f64; 2]; 2] = [[3.0, 1024.0], [4.0, 1024.0]];
 
 /// A convex obstacle, checked.
@@ -202,13 +202,13 @@ fn hull_faces(part: Part, points: &[[f64; 3]]) -> Result<Vec<Face>, ArenaError> 
     use crate::arena::facets::{Flaw, faces};
     faces(points).map_err(|flaw| match flaw {
         Flaw::Thin(value) => ArenaError::Range { part, what: "thickness", value, range: LENGTHS },
-        Flaw::Open => ArenaError::NoHull { part, points: points.len() },
+        Flaw::Open => ArenaError::Convex { part, fault: ConvexFault::NoHull { points: points.len() } },
     })
 }
 
 #[cfg(not(feature = "parry"))]
 fn hull_faces(part: Part, _: &[[f64; 3]]) -> Result<Vec<Face>, ArenaError> {
-    Err(ArenaError::NeedsFeature { part, feature: "parry" })
+    Err(ArenaError::Convex { part, fault: ConvexFault::NeedsFeature { feature: "parry" } })
 }
 
 /// A disc where something starts.
@@ -240,7 +240,7 @@ fn check_overlaps(arena: &Arena, discs: &mut [Disc]) -> Result<(), ArenaError> {
             }
         }
     }
-    // Along x, so that only neighbours need be compared.
+    // Along x, so that only neighbors need be compared.
     let largest = discs.iter().fold(0.0, |most: f64, disc| Scalar::max(most, disc.radius));
     discs.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
     for (i, a) in discs.iter().enumerate() {
@@ -255,20 +255,17 @@ fn check_overlaps(arena: &Arena, discs: &mut [Disc]) -> Result<(), ArenaError> {
     Ok(())
 }
 
-/// What touches may be drawn a little into each other by rounding [m].
+/// The overlap of touching parts from rounding [m].
 const SLACK: f64 = 1e-9;
 
 impl Model {
     pub(crate) fn new(arena: &Arena) -> Result<Self, ArenaError> {
         let [robots, cylinders, areas] = [arena.robots.len(), arena.cylinders.len(), arena.areas.len()];
-        if robots == 0 {
-            return Err(ArenaError::NoRobots);
-        }
         let ids = usize::from(u16::MAX) + 1;
         let actuators = arena.robots.iter().map(|placed| placed.robot.actuators()).sum();
-        counted("robots", robots, ids / 2)?;
-        counted("robots, cylinders and areas", robots + cylinders + areas, ids)?;
-        counted("actuators of robots", actuators, ids)?;
+        counted("robots", robots, [1, ids / 2])?;
+        counted("robots, cylinders and areas", robots + cylinders + areas, [0, ids])?;
+        counted("actuators of robots", actuators, [0, ids])?;
         ranged(Part::Arena, "time step", arena.time_step, [1e-6, 1e3])?;
         colored(Part::Arena, arena.ground)?;
         if let Some(size) = arena.size {
@@ -458,7 +455,7 @@ impl Model {
         }
     }
 
-    /// How infrared sensors see a robot or cylinder.
+    /// Returns the response of a robot or cylinder in infrared sensors.
     #[inline(always)]
     pub(crate) fn seen(&self, body: usize) -> &InfraredModel {
         match body.checked_sub(self.robots.len()) {
@@ -475,7 +472,7 @@ impl Model {
         }
     }
 
-    /// By which numbers the parts of a robot are known; those of the last for one beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     pub(crate) fn parts(&self, robot: usize) -> MobileParts {
         let robot = robot.min(self.robots.len() - 1);
         let first = ActuatorId(self.robots[robot].1);
@@ -483,7 +480,7 @@ impl Model {
     }
 }
 
-/// Which word of a robot is what; its first three are the velocity: x and y [m/s], about the vertical [rad/s].
+/// Which word of a robot is what. Its first three are the velocity: x and y [m/s], about the vertical [rad/s].
 pub(crate) const VELOCITY: usize = 0;
 /// Positions [rad] and speeds [rad/s] of the wheels, left and right of each.
 pub(crate) const WHEELS: usize = 3;
@@ -495,5 +492,5 @@ pub(crate) const MET: usize = 12;
 pub(crate) const HELD: usize = 13;
 /// Red, green and blue of the LEDs, then the signal.
 pub(crate) const SHOWN: usize = 14;
-/// No body; of what was met, a wall.
+/// No body. The body of the contact, here a wall.
 pub(crate) const NOTHING: f32 = -1.0;

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::arena::error::{ArenaError, Part};
+use crate::arena::error::{ArenaError, ConvexFault, Part};
 
 /// A point in the plane [m].
 type Point2 = [f64; 2];
@@ -24,7 +24,7 @@ fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// How far a place lies to the right of the line from `a` to `b` [m].
+/// Returns the distance of a place to the right of the line from `a` to `b` [m].
 fn beyond([a, b]: [Point2; 2], place: Point2) -> f64 {
     -turn(a, b, place) / apart(a, b)
 }
@@ -34,7 +34,7 @@ pub(crate) fn sides(corners: &[Point2]) -> impl Iterator<Item = [Point2; 2]> + '
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
 }
 
-/// The convex hull of places, counter-clockwise from the lowest x; fewer than three places if it has no area.
+/// The convex hull of places, counter-clockwise from the lowest x. Fewer than three places if it has no area.
 ///
 /// Source: own, after Andrew's monotone chain.
 pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
@@ -61,12 +61,12 @@ pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
     chain
 }
 
-/// How far a place lies beyond that side of an outline which it is farthest beyond [m]; negative within.
+/// Returns the largest distance of a place beyond a side of an outline [m], negative within.
 fn gap(outline: &[Point2], place: Point2) -> f64 {
     sides(outline).map(|side| beyond(side, place)).fold(f64::NEG_INFINITY, Scalar::max)
 }
 
-/// Distance from a place to an outline [m]; negative within.
+/// Distance from a place to an outline [m], negative within.
 pub(crate) fn distance(outline: &[Point2], place: Point2) -> f64 {
     let gap = gap(outline, place);
     if gap <= 0.0 {
@@ -81,7 +81,7 @@ pub(crate) fn distance(outline: &[Point2], place: Point2) -> f64 {
     sides(outline).map(to_side).fold(f64::INFINITY, Scalar::min)
 }
 
-/// The smallest breadth of an outline [m]; 0 if it has no area.
+/// The smallest breadth of an outline [m], or 0 if it has no area.
 pub(crate) fn width(outline: &[Point2]) -> f64 {
     if outline.len() < 3 {
         return 0.0;
@@ -91,27 +91,30 @@ pub(crate) fn width(outline: &[Point2]) -> f64 {
     sides(outline).map(breadth).fold(f64::INFINITY, Scalar::min)
 }
 
-/// Whether corners follow each other around a convex polygon, either way.
+/// Returns whether corners follow each other around a convex polygon, either way.
 pub(crate) fn check_turns(part: Part, corners: &[Point2], outline: &[Point2]) -> Result<(), ArenaError> {
     for (i, a) in corners.iter().enumerate() {
         for (j, b) in corners.iter().enumerate().skip(i + 1) {
             let distance = apart(*a, *b);
             if distance < LEAST {
-                return Err(ArenaError::SameCorner { part, corners: [i, j], distance });
+                return Err(ArenaError::Convex { part, fault: ConvexFault::SameCorner { corners: [i, j], distance } });
             }
         }
     }
     let dents = corners.iter().enumerate().map(|(i, corner)| (i, -gap(outline, *corner)));
     let deepest = dents.fold((0, SLACK), |most, dent| if dent.1 > most.1 { dent } else { most });
     if deepest.1 > SLACK {
-        return Err(ArenaError::Dent { part, corner: deepest.0, depth: deepest.1 });
+        return Err(ArenaError::Convex { part, fault: ConvexFault::Dent { corner: deepest.0, depth: deepest.1 } });
     }
-    // All are on the hull; where two sides cross, one has corners on both hands.
+    // All are on the hull. Where two sides cross, one has corners on both hands.
     let area: f64 = sides(corners).map(|[a, b]| turn(corners[0], a, b)).sum();
     let hand = if area < 0.0 { -1.0 } else { 1.0 };
     for (i, side) in sides(corners).enumerate() {
         if let Some(corner) = corners.iter().position(|corner| hand * beyond(side, *corner) > SLACK) {
-            return Err(ArenaError::OutOfTurn { part, side: [i, (i + 1) % corners.len()], corner });
+            return Err(ArenaError::Convex {
+                part,
+                fault: ConvexFault::OutOfTurn { side: [i, (i + 1) % corners.len()], corner },
+            });
         }
     }
     Ok(())

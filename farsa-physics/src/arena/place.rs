@@ -5,7 +5,7 @@ use farsa_num::Stream;
 
 use crate::arena::error::ArenaError;
 
-/// What makes a place free for a disc, all distances from surface to surface [m].
+/// The requirements of a free place for a disc, all distances from surface to surface [m].
 ///
 /// Places are drawn uniformly from the region until one is free: two draws of the stream for each try.
 ///
@@ -28,27 +28,27 @@ use crate::arena::error::ArenaError;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreePlace<'a> {
-    /// The lowest and highest coordinates of the disc's centre [m].
+    /// The lowest and highest coordinates of the disc's center [m].
     pub region: [[f32; 2]; 2],
     /// Radius of the disc [m].
     pub radius: f32,
-    /// How far it keeps from every wall [m].
+    /// The distance from every wall [m].
     pub walls: f32,
-    /// The middle and the radius of the circle in which its centre lies, if there is one [m].
+    /// The middle and the radius of the circle in which its center lies, if there is one [m].
     pub within: Option<([f32; 2], f32)>,
-    /// From which bodies it keeps how far [m]; others are not looked at.
+    /// From which bodies it keeps how far [m]. Others are not looked at.
     pub bodies: &'a [(BodyId, f32)],
     /// Places that are tried at most.
     pub tries: u32,
 }
 
 impl<'a> FreePlace<'a> {
-    /// A disc within a region that overlaps no wall; a thousand tries.
+    /// A disc within a region that overlaps no wall. A thousand tries.
     pub fn new(region: [[f32; 2]; 2], radius: f32) -> Self {
         Self { region, radius, walls: 0.0, within: None, bodies: &[], tries: 1000 }
     }
 
-    /// The same disc, which also keeps from these bodies.
+    /// Returns the disc, which also keeps from these bodies.
     pub fn clear_of(self, bodies: &'a [(BodyId, f32)]) -> Self {
         Self { bodies, ..self }
     }

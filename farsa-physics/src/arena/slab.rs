@@ -35,7 +35,7 @@ impl Slab {
         }
     }
 
-    /// Whether some of it may be within `range` [m] of a place.
+    /// Returns whether some of it may be within `range` [m] of a place.
     #[inline]
     pub(crate) fn within_reach(&self, from: [f32; 2], range: f32) -> bool {
         (0..2).all(|k| (from[k] - self.centre[k]).abs() <= self.around[k] + range)

@@ -1,4 +1,4 @@
-//! Convex obstacles as a planar world has them, and where discs and rays meet them; for one world or lanes of them.
+//! Convex obstacles of a planar world, and discs and rays that hit them, for one world or lanes.
 //!
 //! In closed form over the sides, not by parry's iterations: those stop at a thousandth of the distance, and would have to
 //! go lane by lane.
@@ -15,12 +15,12 @@ use crate::arena::surface::Meeting;
 pub(crate) struct Side {
     /// Where it begins.
     from: [f32; 2],
-    /// Unit vector along it, counter-clockwise about the obstacle; outwards is to the right of it.
+    /// Unit vector along it, counter-clockwise about the obstacle. Outwards is to the right of it.
     along: [f32; 2],
     length: f32,
 }
 
-/// A face in the obstacle's frame, which stands on the ground: the places with `out . place <= reach` are behind it.
+/// A face in the obstacle's frame, which is on the ground. Places with `out . place <= reach` are behind it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Face {
     /// Unit vector outwards.
@@ -68,7 +68,7 @@ pub(crate) fn prism_faces(outline: &[[f64; 2]], height: f64) -> Vec<Face> {
 }
 
 impl Solid {
-    /// Of an outline in the obstacle's frame, counter-clockwise.
+    /// Builds a solid of an outline in the obstacle's frame, counter-clockwise.
     pub(crate) fn new(
         outline: &[[f64; 2]],
         centre: [f64; 2],
@@ -106,7 +106,7 @@ struct Nearest<S: Scalar> {
     /// Squared distance to it.
     square: S,
     within: S::Mask,
-    /// How far the place lies beyond the side that it is farthest beyond, and outwards there; what counts within.
+    /// The distance of the place beyond its farthest side, with the outward direction there. It counts within.
     gap: S,
     out: [S; 2],
 }
@@ -141,7 +141,7 @@ fn nearest<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2]) -> Nearest<S> {
     Nearest { place, point, square, within, gap, out }
 }
 
-/// Whether a place may be nearer to an obstacle than `reach` [m].
+/// Returns whether a place may be nearer to an obstacle than `reach` [m].
 #[inline(always)]
 pub(crate) fn beside<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach: S) -> S::Mask {
     // The rectangle around it first: most places are far from most obstacles.
@@ -149,20 +149,20 @@ pub(crate) fn beside<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach
     (u - x.like(solid.around[0])).lt(reach) & (v - x.like(solid.around[1])).lt(reach)
 }
 
-/// Whether a disc overlaps an obstacle.
+/// Returns whether a disc overlaps an obstacle.
 #[inline(always)]
 pub(crate) fn overlaps_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radius: S) -> S::Mask {
     beside(solid, at, radius) & nearest(solid, at).square.lt(radius * radius)
 }
 
-/// The vector from a place to the nearest point of an obstacle [m]; zero within.
+/// The vector from a place to the nearest point of an obstacle [m], zero within.
 #[inline(always)]
 pub(crate) fn to_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2]) -> [S; 2] {
     let Nearest { place, point, .. } = nearest(solid, at);
     [point[0] - place[0], point[1] - place[1]]
 }
 
-/// How a disc that overlaps an obstacle does so.
+/// Returns the overlap of a disc with an obstacle.
 #[inline(always)]
 pub(crate) fn meets_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radius: S) -> Meeting<S> {
     let Nearest { place, point, square, within, gap, out } = nearest(solid, at);
@@ -178,8 +178,8 @@ pub(crate) fn meets_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radi
     Meeting { depth, out, point }
 }
 
-/// Where a ray that is known by its distances beyond each of some faces, and how fast they grow, enters what is behind all
-/// of them: distance and face; `None` if it begins within or misses.
+/// Returns the distance and the face at which a ray enters the half spaces behind all faces, or `None` if it begins
+/// within or misses. The ray is given by its distance beyond each face, and the growth of that distance.
 #[inline(always)]
 fn enters(faces: impl Iterator<Item = [f32; 2]>) -> Option<(f32, usize)> {
     let (mut enter, mut leave, mut face) = (f32::NEG_INFINITY, f32::INFINITY, 0);
@@ -201,7 +201,7 @@ fn enters(faces: impl Iterator<Item = [f32; 2]>) -> Option<(f32, usize)> {
     (enter >= 0.0 && enter <= leave).then_some((enter, face))
 }
 
-/// Where a ray in the plane enters an obstacle [m]; `None` if it begins within or misses.
+/// Where a ray in the plane enters an obstacle [m], or `None` if it begins within or misses.
 pub(crate) fn ray_to_solid(solid: &Solid, from: [f32; 2], direction: [f32; 2]) -> Option<f32> {
     let [x, y] = [from[0] - solid.centre[0], from[1] - solid.centre[1]];
     let [u, v] = direction;
@@ -212,7 +212,7 @@ pub(crate) fn ray_to_solid(solid: &Solid, from: [f32; 2], direction: [f32; 2]) -
     enters(solid.sides.iter().map(side)).map(|(distance, _)| distance)
 }
 
-/// Where a ray in space enters an obstacle: distance and outward normal; `None` if it begins within or misses.
+/// Where a ray in space enters an obstacle: distance and outward normal, or `None` if it begins within or misses.
 pub(crate) fn cast_to_solid(solid: &Solid, from: [f32; 3], direction: [f32; 3]) -> Option<(f32, [f32; 3])> {
     let [x, y, z] = [from[0] - solid.centre[0], from[1] - solid.centre[1], from[2]];
     let [u, v, w] = direction;

@@ -9,9 +9,9 @@ use crate::arena::surface::{Meeting, meets_disc, meets_wall, wall_squared};
 
 /// Sweeps of pushing overlapping discs apart.
 pub(crate) const SWEEPS: usize = 8;
-/// What pushing leaves between discs, in parts of the radius: enough for rounding not to let them overlap.
+/// The gap between pushed discs, in parts of the radius, so that rounding leaves no overlap.
 pub(crate) const LEFT: f32 = 1e-4;
-/// Half the range of a wheel's position [rad]: it goes on at the other end, a whole number of turns further.
+/// Half the range of a wheel's position [rad]. The position wraps around by a full number of turns.
 const WHEEL_RANGE: f64 = 32.0 * core::f64::consts::PI;
 
 /// Words of a robot between its steps' parts: where it was, what it is pushed by, whether it is set back or will be.
@@ -54,7 +54,7 @@ fn wrapped<S: Scalar>(x: S, half: f64) -> S {
     (x - turns * x.constant(short)) - turns * x.constant(whole - short)
 }
 
-/// Where a robot comes in a step: along a circle about the instantaneous centre of rotation, exactly.
+/// Where a robot comes in a step: along a circle about the instantaneous center of rotation, exactly.
 ///
 /// Source: own (chord of an arc: its length times sin(h) / h, h half the angle, in the direction half-way).
 #[inline(always)]
@@ -66,7 +66,7 @@ pub(crate) fn drive<S: Scalar<Real = f32>>(kind: &Kind, pose: [S; POSE_WORDS], s
     let (s, c) = sin_cos(half);
     let turning = half.abs().gt(x.constant(0.0));
     let one = x.constant(1.0);
-    // A quotient of small numbers is as exact as of large ones: only 0 / 0 is none.
+    // A quotient of small numbers is as exact as of large ones. Only 0 / 0 is undefined.
     let chord = arc * S::select(turning, s / S::select(turning, half, one), one);
     let [x, y] = [x + chord * (cosine * c - sine * s), y + chord * (sine * c + cosine * s)];
     let heading = wrapped(heading + (half + half), core::f64::consts::PI);
@@ -80,7 +80,7 @@ pub(crate) fn turned<S: Scalar<Real = f32>>(position: S, speed: S, time_step: f3
     wrapped(position + speed * speed.like(time_step), WHEEL_RANGE)
 }
 
-/// What is shown of a command [0..1]; 0 for a NaN.
+/// Returns the displayed part of a command [0..1], or 0 for NaN.
 #[inline(always)]
 pub(crate) fn shown<S: Scalar>(command: S) -> S {
     command.clamp(command.constant(0.0), command.constant(1.0))
@@ -107,7 +107,7 @@ pub(crate) fn step_without_collisions<S: Scalar<Real = f32>>(
         store(words, word + WHEELS + k, turned(position, speeds[k], model.time_step));
         store(words, word + WHEELS + 2 + k, speeds[k]);
     }
-    // The pose, and the old one beside it, to which a collision sets the robot back.
+    // The pose, and the previous one, to which a collision returns the robot.
     let mut pose = [speeds[0]; POSE_WORDS];
     for k in 0..POSE_WORDS {
         pose[k] = load(simd, words, POSE_WORDS * robot + k);
@@ -157,14 +157,14 @@ pub(crate) fn show_leds_and_signal<S: Scalar<Real = f32>>(
     }
 }
 
-/// What a robot overlaps in each lane, deepest first; ties to what comes first of walls, convex obstacles, robots, cylinders.
+/// The deepest overlap of a robot in each lane. Ties go to the first of walls, convex obstacles, robots, cylinders.
 #[derive(Clone, Copy)]
 pub(crate) struct Met<S> {
     pub(crate) meeting: Meeting<S>,
     pub(crate) body: S,
 }
 
-/// Whether a robot overlaps anything.
+/// Returns whether a robot overlaps anything.
 ///
 /// Squares are compared, here and where a world alone looks for overlaps: with a root on one side only, the two could differ in
 /// the last bit.
@@ -195,7 +195,7 @@ fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], 
     any
 }
 
-/// What a robot overlaps most, and by how much all of it together pushes; `push` keeps to robots by half.
+/// Returns the deepest overlap of a robot, and the sum of all pushes. `push` gives half of it to another robot.
 #[inline(always)]
 fn find_overlap<S: Scalar<Real = f32>>(
     simd: S::Simd,
@@ -235,7 +235,7 @@ fn find_overlap<S: Scalar<Real = f32>>(
             let mask = (x * x + y * y).lt(sum * sum);
             let meeting = meets_disc(at, other, radius, other_radius);
             keep_deepest(&mut met, mask, meeting, S::splat(simd, body as f32));
-            // Two robots are pushed by half the depth each; a cylinder stands.
+            // Two robots are pushed by half the depth each. A cylinder stays.
             let part = S::splat(simd, if body < model.robots.len() { 0.5 } else { 1.0 });
             add_push(push, mask, meeting, meeting.depth * part + left);
         }
@@ -246,7 +246,7 @@ fn find_overlap<S: Scalar<Real = f32>>(
 /// The smallest depth that is reported of what overlaps: rounding may leave none [m].
 const LEAST: f32 = 1e-12;
 
-/// Keeps of two meetings the deeper one; of equal ones the first.
+/// Keeps of two meetings the deeper one. The first of equal ones.
 #[inline(always)]
 pub(crate) fn keep_deepest<S: Scalar<Real = f32>>(met: &mut Met<S>, mask: S::Mask, meeting: Meeting<S>, body: S) {
     let depth = meeting.depth.max(body.like(LEAST));
@@ -274,7 +274,7 @@ fn store_where<S: Scalar<Real = f32>>(simd: S::Simd, words: &mut [f32], index: u
     store(words, index, S::select(mask, x, old));
 }
 
-/// Tells the contacts port what a robot has met, in the lanes of the mask that have met nothing yet.
+/// Records the contact of a robot, in the lanes of the mask without a contact so far.
 #[inline(always)]
 fn record_contact<S: Scalar<Real = f32>>(
     simd: S::Simd,
@@ -294,11 +294,11 @@ fn record_contact<S: Scalar<Real = f32>>(
     store_where(simd, words, word + MET, mask, met.body);
 }
 
-/// Pushes overlapping robots apart and off what stands.
+/// Pushes overlapping robots apart and away from fixed parts.
 #[inline(always)]
 fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
     // Jacobi: all pushes of a sweep are found before any robot moves, so that the order of robots does not matter.
-    // Those that are left after the last sweep are undone.
+    // Overlaps after the last sweep are undone.
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     for _ in 0..SWEEPS {
@@ -348,9 +348,9 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     let robots = model.robots.len();
-    // A robot that is set back may stand where another has come to in the meantime, which is then set back in the next round.
-    // With all robots back, none overlaps: as many rounds as robots, and one that finds nothing.
-    // Each round but the last sets a robot back.
+    // A robot that is returned may overlap another one that arrived in the meantime, which is returned in the next
+    // round. With all robots at their previous places none overlaps. There are at most as many rounds as robots, and
+    // one more without an overlap. Each round except the last returns a robot.
     for _ in 0..=robots {
         let mut any = false;
         for robot in 0..robots {
@@ -386,8 +386,8 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
     }
 }
 
-/// One control step of worlds in which no attachment device holds or wants to; `words` [`Model::len`] of every lane,
-/// `work` [`WORK_WORDS`] of every robot and lane.
+/// Makes one control step of worlds in which no attachment device holds or has a command above 0.5. `words`
+/// [`Model::len`] of every lane, `work` [`WORK_WORDS`] of every robot and lane.
 #[inline(always)]
 pub(crate) fn step<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
     for robot in 0..model.robots.len() {

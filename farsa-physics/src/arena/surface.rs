@@ -29,7 +29,7 @@ fn out_of<S: Scalar<Real = f32>>(slab: &Slab, [u, v]: [S; 2]) -> [S; 2] {
     [u * c - v * s, u * s + v * c]
 }
 
-/// Squared distance from a place to a wall [m2]; 0 within.
+/// Squared distance from a place to a wall [m2], 0 within.
 #[inline(always)]
 pub(crate) fn wall_squared<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2]) -> S {
     let ([u, v], [a, b]) = within(slab, at);
@@ -37,18 +37,18 @@ pub(crate) fn wall_squared<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2]) -> S 
     u * u + v * v
 }
 
-/// The vector from a place to the nearest point of a wall [m]; zero within.
+/// The vector from a place to the nearest point of a wall [m], zero within.
 #[inline(always)]
 pub(crate) fn to_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2]) -> [S; 2] {
     let ([u, v], [a, b]) = within(slab, at);
     out_of(slab, [a - u, b - v])
 }
 
-/// How a disc that overlaps a wall does so.
+/// Returns the overlap of a disc with a wall.
 #[inline(always)]
 pub(crate) fn meets_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2], radius: S) -> Meeting<S> {
-    // In the wall's frame (u, v) is the centre, (a, b) its nearest point of the wall; their difference is the way out, and
-    // zero for a centre within.
+    // In the wall's frame (u, v) is the center, (a, b) its nearest point of the wall. Their difference is the way out,
+    // and zero for a center within.
     let zero = radius.constant(0.0);
     let one = radius.constant(1.0);
     let ([u, v], [a, b]) = within(slab, at);
@@ -68,10 +68,10 @@ pub(crate) fn meets_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2], radius:
     Meeting { depth, out: out_of(slab, out), point }
 }
 
-/// How a disc at a place that overlaps another disc does so.
+/// Returns the overlap of a disc with another disc.
 #[inline(always)]
 pub(crate) fn meets_disc<S: Scalar<Real = f32>>(at: [S; 2], other: [S; 2], radius: S, other_radius: S) -> Meeting<S> {
-    // Along the line of centres; along x for two at one place, which have none.
+    // Along the line of centers. Along x for two at one place, which have none.
     let [x, y] = [at[0] - other[0], at[1] - other[1]];
     let distance = (x * x + y * y).sqrt();
     let apart = distance.gt(radius.constant(0.0));
@@ -82,21 +82,21 @@ pub(crate) fn meets_disc<S: Scalar<Real = f32>>(at: [S; 2], other: [S; 2], radiu
     Meeting { depth: (radius + other_radius) - distance, out, point }
 }
 
-/// Where a ray of unit direction enters a disc around the origin [m]; `None` if it begins within or misses.
+/// Where a ray of unit direction enters a disc around the origin [m], or `None` if it begins within or misses.
 pub(crate) fn ray_to_disc(from: [f32; 2], direction: [f32; 2], radius: f32) -> Option<f32> {
-    // Of the squares' difference: from far away, their roots would lose a small disc.
+    // From the difference of the squares, because their roots would lose a small disc at a distance.
     let along = from[0] * direction[0] + from[1] * direction[1];
     let across = from[0] * direction[1] - from[1] * direction[0];
     let outside = from[0] * from[0] + from[1] * from[1] - radius * radius;
     let under = (radius - across) * (radius + across);
-    // What is not a number meets nothing.
+    // NaN hits nothing.
     if !(outside >= 0.0 && along <= 0.0 && under >= 0.0) {
         return None;
     }
     Some((-along - Scalar::sqrt(under)).max(0.0))
 }
 
-/// Where a ray enters a wall [m]; `None` if it begins within or misses.
+/// Where a ray enters a wall [m], or `None` if it begins within or misses.
 pub(crate) fn ray_to_wall(slab: &Slab, from: [f32; 2], direction: [f32; 2]) -> Option<f32> {
     // Slabs: the ray is within the wall where it is between both pairs of sides, from the last entry to the first exit
     // [Ericson2005] section 5.3.3.

@@ -1,4 +1,4 @@
-//! What the ports of a planar world report, from its words: for a world alone and a lane.
+//! The ports of a planar world, read from its words, for one world and a lane.
 
 use farsa_body::ports::{ActuatorId, BodyId, Hit, JointId, Lamp, NearbySurface, PairContact, PairId, PlanarHit};
 use farsa_body::{Pose, Twist};
@@ -16,9 +16,9 @@ pub(crate) trait View {
     fn word(&self, index: usize) -> f32;
     /// Changes a word of the state.
     fn set_word(&mut self, index: usize, x: f32);
-    /// Tells every robot and cylinder whose centre may lie in the rectangle [m], and perhaps others, in any order.
+    /// Visits every robot and cylinder whose center may be in the rectangle [m], and perhaps others, in any order.
     fn visit(&self, low: [f32; 2], high: [f32; 2], tell: impl FnMut(usize));
-    /// Whether it pays to ask for small rectangles.
+    /// Returns whether small rectangles are faster.
     fn gridded(&self) -> bool;
 }
 
@@ -29,7 +29,7 @@ struct Sorted {
 }
 
 impl Sorted {
-    /// The bodies whose centres may lie in the rectangle; `None` if they are too many.
+    /// The bodies whose centers may lie in the rectangle, or `None` if they are too many.
     #[inline]
     fn new(world: &impl View, low: [f32; 2], high: [f32; 2]) -> Option<Self> {
         let mut sorted = Self { bodies: [0; 64], count: 0 };
@@ -48,7 +48,7 @@ impl Sorted {
     }
 }
 
-/// Tells the robots and cylinders whose centres may lie in the rectangle [m], in their order.
+/// Visits the robots and cylinders whose centers may be in the rectangle [m], in their order.
 #[inline]
 pub(crate) fn in_order(world: &impl View, low: [f32; 2], high: [f32; 2], mut tell: impl FnMut(usize)) {
     match Sorted::new(world, low, high) {
@@ -70,7 +70,7 @@ fn robot_word(world: &impl View, robot: usize, word: usize) -> f32 {
     world.word(world.model().robot_word(robot, word))
 }
 
-/// Pose of a body; the identity for one that does not exist.
+/// Pose of a body. The identity for one that does not exist.
 pub(crate) fn pose(world: &impl View, body: BodyId) -> Pose {
     let body = body.index();
     if body >= world.model().bodies() {
@@ -81,7 +81,7 @@ pub(crate) fn pose(world: &impl View, body: BodyId) -> Pose {
     Pose { position: [x, y, 0.0], rotation: [0.0, 0.0, sine, cosine] }
 }
 
-/// Velocity of a robot; zero for everything else.
+/// Velocity of a robot, or zero for everything else.
 pub(crate) fn velocity(world: &impl View, body: BodyId) -> Twist {
     let robot = body.index();
     if robot >= world.model().robots.len() {
@@ -134,7 +134,7 @@ pub(crate) fn pair_contact(world: &impl View, pair: PairId) -> PairContact {
     PairContact { points: 1, force: [u, v, 0.0], normal_force: 1.0, point: [x, y, 0.0], depth }
 }
 
-/// What colour a robot or cylinder shows.
+/// Returns the color of a robot or cylinder.
 fn color(world: &impl View, body: usize) -> [f32; 3] {
     let model = world.model();
     if let Some(round) = body.checked_sub(model.robots.len()) {
@@ -198,7 +198,7 @@ pub(crate) fn query_near(world: &impl View, from: [f32; 2], range: f32, mut tell
 /// Pieces of a ray, at most.
 const PIECES: usize = 64;
 
-/// Goes along a ray in the plane and tries each body that may lie on it; `way` need not be a unit vector.
+/// Goes along a ray in the plane and tries each body that may lie on it. `way` need not be a unit vector.
 ///
 /// `try_body` returns how far the nearest thing found so far is, in lengths of `way`.
 fn along(
@@ -211,7 +211,7 @@ fn along(
 ) {
     let reach = world.model().largest;
     let length = Scalar::max(way[0].abs(), way[1].abs());
-    // Pieces of a few bodies' length, so that those far beyond what is met are not asked; then the rest at once.
+    // Pieces of a few bodies' length, so that those far beyond what is met are not asked. Then the rest at once.
     let piece = if world.gridded() && length > 0.0 { 8.0 * reach / length } else { range };
     let mut start = 0.0;
     for i in 1..=PIECES {
@@ -279,7 +279,8 @@ pub(crate) fn cast_planar(
     }
 }
 
-/// Where a ray enters an upright cylinder on the ground: distance and outward normal; rays that begin inside meet nothing.
+/// Returns the distance and outward normal at which a ray enters an upright cylinder on the ground. Rays that begin
+/// inside hit nothing.
 fn ray_to_cylinder(o: [f32; 3], d: [f32; 3], radius: f32, height: f32) -> Option<(f32, [f32; 3])> {
     let a = d[0] * d[0] + d[1] * d[1];
     let beside = o[0] * o[0] + o[1] * o[1] - radius * radius;
@@ -356,7 +357,7 @@ pub(crate) fn cast(world: &impl View, origin: [f32; 3], direction: [f32; 3], ran
     }
 }
 
-/// The colour of the ground at a place.
+/// The color of the ground at a place.
 pub(crate) fn ground(world: &impl View, at: [f32; 2]) -> [f32; 3] {
     let model = world.model();
     for (i, patch) in model.patches.iter().enumerate().rev() {
@@ -387,7 +388,7 @@ pub(crate) fn attached(world: &impl View, robot: BodyId) -> Option<BodyId> {
     (robot.index() < world.model().robots.len()).then(|| body_of(robot_word(world, robot.index(), HELD)))?
 }
 
-/// Whether an attachment device holds or wants to.
+/// Returns whether an attachment device holds or has a command above 0.5.
 pub(crate) fn holds(world: &impl View) -> bool {
     let model = world.model();
     let wants = |robot: usize| {
@@ -412,7 +413,7 @@ pub(crate) fn place_joint(world: &mut impl View, joint: JointId, position: f32, 
     }
 }
 
-/// Puts a body down by its place and heading; a robot there is at rest, touches nothing and holds nothing.
+/// Puts a body down by its place and heading. A robot there is at rest, touches nothing and holds nothing.
 pub(crate) fn place_body(world: &mut impl View, body: BodyId, pose: Pose) {
     let body = body.index();
     if body >= world.model().bodies() {

@@ -20,17 +20,17 @@ use crate::arena::view::{self as view, View};
 
 /// One planar world: kinematic, wheels do exactly what is commanded.
 ///
-/// - *Motion*: along an arc about the instantaneous centre of rotation, exactly; commands of wheels are brought within the robot's
-///   greatest wheel speed, a NaN stands still. LEDs and signals are shown from the next step on. Wheels turn whatever becomes of
-///   the motion; their positions go on at the other end of +-16 turns.
+/// - *Motion*: along an arc about the instantaneous center of rotation, exactly. Wheel commands are clamped to the
+///   robot's greatest wheel speed, and NaN stops a wheel. LEDs and signals are visible from the next step on. Wheels
+///   turn even if the motion is undone. Their positions wrap around at +-16 turns.
 /// - *Collisions*: [`CollisionRule`](crate::arena::CollisionRule). A robot that was set back is reported at rest.
-/// - *Contacts*: pair `r` is robot `r` and whatever it overlapped most in the last step, before that was undone or pushed
-///   apart, with a nominal normal force of 1 N; `None` is a wall, and nothing where it does not touch.
-/// - *Attachment*: while its command is above 0.5, a device takes hold of the nearest robot that is straight ahead within reach of
-///   its hull, and keeps it. Those that hold together move as one rigid body, by the least-squares fit to the velocities that their
-///   wheels want, and are set back together; each chassis turns by its own wheels.
-/// - *Arranging*: a body keeps its place and heading of a pose, nothing else; it is at rest, and no longer held.
-///   A robot that is put into something stays there until it is put elsewhere.
+/// - *Contacts*: pair `r` is robot `r` and the body of its deepest overlap in the last step, before that was undone or
+///   pushed apart, with a nominal normal force of 1 N. `None` is a wall, or nothing where it does not touch.
+/// - *Attachment*: while its command is above 0.5, a device attaches to the nearest robot straight ahead within reach
+///   of its hull, and keeps it. Attached robots move as one rigid body, by the least-squares fit to the velocities of
+///   their wheels, and are returned together. Each chassis turns by its own wheels.
+/// - *Arranging*: a body keeps its place and heading of a pose, nothing else. It is at rest, and no longer held. A
+///   robot that is put into something stays there until it is put in other places.
 ///
 /// A handle that does not exist reads as zero and takes commands without effect. A world is `Sync`: sensors of many robots may be
 /// read in threads.
@@ -61,15 +61,16 @@ impl World {
         self.model.robots.len()
     }
 
-    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }
 
-    /// Readings of a robot's ring of infrared sensors by [`InfraredModel`](farsa_body::sensors::infrared::InfraredModel); `out` [sensors].
+    /// Readings of a robot's ring of infrared sensors by
+    /// [`InfraredModel`](farsa_body::sensors::infrared::InfraredModel). `out` [sensors].
     ///
-    /// The same as a sensor that asks [`Planar::near`], but faster, and in lanes, too: `Batch::infrared`.
-    /// A shorter slice gets the first sensors.
+    /// Reads the same values as a sensor through [`Sight::query_near`](farsa_body::ports::Sight::query_near), but faster, and in lanes, too: `Batch::infrared`. A
+    /// shorter slice gets the first sensors.
     pub fn infrared(&self, robot: usize, out: &mut [f32]) {
         let robot = robot.min(self.robots() - 1);
         ring_among(&self.model, &self.words, robot, out, |[x, y], reach, tell| {
@@ -77,7 +78,7 @@ impl World {
         });
     }
 
-    /// The state, to be changed; [`Arrange::finish_placement`] must follow.
+    /// The state, to be changed. [`Arrange::finish_placement`] must follow.
     #[cfg(all(feature = "lanes", not(test)))]
     pub(crate) fn words_mut(&mut self) -> &mut [f32] {
         &mut self.words

@@ -11,7 +11,7 @@ use crate::articulated::model::{Model, ModelError};
 /// Worlds of one model, one in each lane of SIMD vectors, all at their description's start at first.
 ///
 /// Every world has the bits of a [`World`](crate::articulated::World) that is arranged, commanded and stepped like it,
-/// whatever its neighbours do.
+/// whatever its neighbors do.
 ///
 /// ```
 /// use farsa_body::Pose;
@@ -42,10 +42,10 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// So many worlds, one of [`LANES`], stepped by these instructions.
+    /// Builds `lanes` worlds, one of [`LANES`], stepped by these instructions.
     ///
-    /// For what is none of [`Batch::instructions`] the best below it is taken; [`Instructions::Fallback`], one world after the other,
-    /// is there on every machine.
+    /// For instructions that are not in [`Batch::instructions`] the best below them are used.
+    /// [`Instructions::Fallback`], one world after the other, exists on every machine.
     ///
     /// # Errors
     /// [`ModelError::Lanes`] for another number of worlds.
@@ -76,7 +76,7 @@ impl Batch {
         &self.model
     }
 
-    /// One of the worlds; the last one for a number beyond it, which is a mistake.
+    /// One of the worlds. The last one for a number beyond it, which is a mistake.
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.words.lanes, "lane {index} of {}", self.words.lanes);
         Lane { index: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }
@@ -90,7 +90,7 @@ impl Batch {
 
 impl Clone for Batch {
     fn clone(&self) -> Self {
-        // What the steps remember is in the words: loaded again, it is the same.
+        // The memory of the steps is in the words, so that a reload restores it.
         let words = Words { arranged: true, ..self.words.clone() };
         Self { model: self.model.clone(), words, lockstep: self.lockstep.boxed_clone() }
     }

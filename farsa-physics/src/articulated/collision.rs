@@ -13,7 +13,7 @@ pub(crate) struct Point<S: Scalar> {
     pub(crate) normal: Vector<S>,
     /// Midway between the surfaces [m].
     pub(crate) position: Vector<S>,
-    /// Whether the point counts at all.
+    /// True for a point that counts.
     pub(crate) valid: S::Mask,
 }
 
@@ -37,13 +37,13 @@ impl<S: Scalar> PlacedShape<S> {
     }
 }
 
-/// Below this distance two centres count as one [m]; the normal is then up.
+/// Below this distance two centers count as one [m]. The normal is then up.
 const COINCIDENT: f64 = 1e-9;
 
-/// Two balls about `a` and `b`; a radius of zero is a point.
+/// Two balls about `a` and `b`. A radius of zero is a point.
 #[inline(always)]
 pub(crate) fn balls<S: Scalar>(a: Vector<S>, ra: S, b: Vector<S>, rb: S) -> Point<S> {
-    // Lanes divide whether they use the quotient or not: a divisor of 1 takes the place of one that is none.
+    // Lanes divide even where the quotient is unused, so 1 replaces an invalid divisor.
     let d = sub(a, b);
     let length = dot(d, d).sqrt();
     let apart = length.gt(length.constant(COINCIDENT));
@@ -72,8 +72,9 @@ pub(crate) fn nearest_of_segments<S: Scalar>(
     d2: Vector<S>,
     h2: S,
 ) -> (Vector<S>, Vector<S>) {
-    // Minimise |c1 + s d1 - c2 - t d2|^2: s = (b f - c) / (1 - b^2) on the lines, clamped; then t for that s, clamped; then s
-    // once more for that t, which is exact where t was clamped and changes nothing where it was not. Parallel ones begin at s = 0.
+    // Minimise |c1 + s d1 - c2 - t d2|^2: s = (b f - c) / (1 - b^2) on the lines, clamped. Then t for that s, clamped.
+    // Then s again for that t, which is exact where t was clamped and changes nothing where it was not. Parallel ones
+    // begin at s = 0.
     let r = sub(c1, c2);
     let b = dot(d1, d2);
     let c = dot(d1, r);
@@ -97,8 +98,8 @@ fn sign_of<S: Scalar>(x: S) -> S {
 /// Signed distance of a point to a box and the outward normal, both in the box's axes.
 #[inline(always)]
 fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
-    // By symmetry in the octant of positive coordinates: q = |p| - half, outside the length of its positive part
-    // max(q, 0), inside the largest component of q, which is negative.
+    // By symmetry in the octant of positive coordinates: q = |p| - half, outside the length of its positive part max(q,
+    // 0), inside the largest component of q, which is negative.
     let zero = p[0].constant(0.0);
     let one = p[0].constant(1.0);
     let sign = [sign_of(p[0]), sign_of(p[1]), sign_of(p[2])];
@@ -107,7 +108,7 @@ fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
     let squared = dot(out, out);
     let outside = squared.gt(zero);
     let length = S::select(outside, squared, one).sqrt();
-    // Inside, the nearest face; ties to x, then y.
+    // Inside, the nearest face. Ties to x, then y.
     let x_face = q[0].ge(q[1]) & q[0].ge(q[2]);
     let y_face = !x_face & q[1].ge(q[2]);
     let z_face = !x_face & !y_face;
@@ -132,8 +133,8 @@ pub(crate) fn ball_box<S: Scalar>(p: Vector<S>, radius: S, place: &PlacedShape<S
 /// Halvings in the search along a segment: the place is found to a four-thousandth of its length.
 const HALVINGS: usize = 12;
 
-/// The ball of `radius` on the segment `centre` +- `half_length` * `axis` that is deepest in a box, where it is deeper
-/// than at both ends (that is, where the segment crosses an edge); `valid` is false elsewhere.
+/// Returns the ball of `radius` on the segment `centre` +- `half_length` * `axis` that is deepest in a box. It must be
+/// deeper than at both ends, so that the segment crosses an edge, otherwise `valid` is false.
 #[inline(always)]
 pub(crate) fn segment_box<S: Scalar>(
     centre: Vector<S>,

@@ -10,7 +10,7 @@ use crate::articulated::link::{LinkData, WORLD};
 use crate::articulated::model::{Geometry, Model, Pair};
 use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
 
-/// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
+/// The allowance for the approach of two surfaces over that of their centers [m/s]: a shape of 3 cm at 50 rad/s.
 const TURNING: f64 = 1.5;
 
 /// The colliders in the world.
@@ -43,7 +43,7 @@ pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, approach: 
     S::splat(simd, model.margin) + h * (approach + h.constant(TURNING))
 }
 
-/// Distance between a pair's bounds [m]; nothing can touch while it is positive.
+/// Distance between a pair's bounds [m]. Nothing can touch while it is positive.
 #[inline(always)]
 pub(crate) fn clearance<S: Scalar>(
     simd: S::Simd,
@@ -51,8 +51,8 @@ pub(crate) fn clearance<S: Scalar>(
     pair: &Pair<S::Real>,
     placed: &[PlacedShape<S>],
 ) -> S {
-    // A ball around the first shape against the second itself where that costs little (plane, box), else against its ball:
-    // a ball around a table would be near everything.
+    // A ball around the first shape is tested against a cheap second shape itself (plane, box), else against its ball.
+    // A ball around a table would be near everything.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     let bound = S::splat(simd, model.colliders[a].bound);
@@ -75,7 +75,7 @@ pub(crate) fn edge_distance<S: Scalar>(
     placed: &[PlacedShape<S>],
     index: usize,
 ) -> Option<S> {
-    // Of a small box on a large one most of the twelve edges are far away; each costs a search with twelve halvings.
+    // Most of the twelve edges of a small box on a large one are far away. Each costs a search with twelve halvings.
     let [a, b] = pair.colliders;
     match (model.colliders[a].geometry, model.colliders[b].geometry) {
         (Geometry::Block { .. }, Geometry::Block { half }) if (8..20).contains(&index) => {
@@ -118,8 +118,9 @@ fn point<S: Scalar>(
     placed: &[PlacedShape<S>],
     index: usize,
 ) -> Point<S> {
-    // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius 0: each
-    // pair comes down to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
+    // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius
+    // 0. Each pair reduces to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block,
+    // plane.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     match (model.colliders[a].geometry, model.colliders[b].geometry) {
@@ -158,8 +159,8 @@ fn point<S: Scalar>(
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
         }
         (Geometry::Block { half: ha }, Geometry::Block { half: hb }) => {
-            // Corners of a in b, then edges of b through a and, where both boxes move (see `model_builder`), corners of b in
-            // a, whose normals are turned round: they push a away from b.
+            // Corners of a in b, then edges of b through a. Where both boxes move (see `model_builder`), corners of b
+            // in a follow, with reversed normals, because they push a away from b.
             let zero = S::splat(simd, S::Real::from_f64(0.0));
             let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
             if index < 8 {
@@ -183,5 +184,5 @@ fn point<S: Scalar>(
 }
 
 #[cfg(test)]
-#[path = "contact_oracles.rs"]
-mod oracles;
+#[path = "contact_tests.rs"]
+mod tests;

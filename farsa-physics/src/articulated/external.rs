@@ -13,7 +13,7 @@ use crate::articulated::tree::jacobian;
 /// The forces of a control step, and what turns them into changes of velocity.
 #[derive(Clone, Debug)]
 pub struct Wrenches<R> {
-    /// Of each link the moment about its centre of mass and the force, in the world's axes.
+    /// The moment about each link's center of mass and the force, in the world's axes.
     of_links: Vec<[R; 6]>,
     any: bool,
     /// Per degree of freedom: nothing, joint efforts, what is added to the joint-space inertia, accelerations.
@@ -25,7 +25,7 @@ pub struct Wrenches<R> {
 }
 
 impl<R: Real> Wrenches<R> {
-    /// None yet, for one model; what [`Precision::step`](crate::articulated::Precision::step) asks for.
+    /// Builds an empty set for one model, as [`Precision::step`](crate::articulated::Precision::step) requires it.
     pub fn new(model: &Model<R>) -> Self {
         let zero = R::from_f64(0.0);
         let mut diagonal = vec![zero; model.dofs];
@@ -43,7 +43,7 @@ impl<R: Real> Wrenches<R> {
         }
     }
 
-    /// Adds a force [N] at a point [m] of a link whose centre of mass is at `centre` [m], all in the world's axes.
+    /// Adds a force [N] at a point [m] of a link whose center of mass is at `centre` [m], all in the world's axes.
     pub(crate) fn add(&mut self, link: usize, centre: Vector<R>, point: Vector<R>, force: Vector<R>) {
         // No force changes no bit, not even the sign of a zero.
         if force.iter().all(|x| *x == R::from_f64(0.0)) {
@@ -57,12 +57,12 @@ impl<R: Real> Wrenches<R> {
         self.any = true;
     }
 
-    /// Whether there is any.
+    /// Returns whether there is any.
     pub(crate) fn any(&self) -> bool {
         self.any
     }
 
-    /// Forgets all.
+    /// Discards all.
     pub(crate) fn clear(&mut self) {
         if self.any {
             self.of_links.fill([R::from_f64(0.0); 6]);
@@ -70,7 +70,7 @@ impl<R: Real> Wrenches<R> {
         }
     }
 
-    /// The joint efforts `J^T f` of the forces \[dofs\]; `links` must be placed.
+    /// The joint efforts `J^T f` of the forces \[dofs\]. `links` must be placed.
     pub(crate) fn efforts(&mut self, model: &Model<R>, links: &[LinkData<R>])
     where
         R: Scalar<Real = R, Simd = ()>,

@@ -1,8 +1,9 @@
-//! Friction on the ground below bodies that slide in a plane: rows beside the contacts'.
+//! Friction on the ground below bodies that slide in a plane: rows next to the contacts'.
 //!
-//! The ground carries a body's weight, which no joint of it moves under: friction is limited by a load that is known
-//! beforehand. As in a contact it is the impulse that leaves the body at rest or, where that is more than the limit, one
-//! of that size against the motion. A step ends with the ground's rows, so a body that is held is held whatever pushes it.
+//! The ground carries a body's weight, and no joint moves the body along that weight. So friction is limited by a
+//! constant load. As in a contact it is the impulse that leaves the body at rest, or one of the limit's size against
+//! the motion where that is smaller. A step ends with the ground's rows, so a held body stays at rest under any push
+//! below the limit.
 
 use farsa_num::{Mask, Real, Scalar};
 
@@ -21,8 +22,8 @@ pub(crate) struct Rubbing<S: Scalar> {
     /// Predicted speeds of the sliding joints and of the turn.
     velocity: [S; 3],
     impulse: [S; 3],
-    /// The rows' entries: of the first joint its own; of the second its own, then the first's; of the turn its own, then
-    /// the second's and the first's.
+    /// The rows' entries: of the first joint its own. The second has its own, then the first's. The turn has its own,
+    /// then the second's and the first's.
     first: S,
     second: [S; 2],
     turn: [S; 3],
@@ -53,8 +54,8 @@ impl<S: Scalar> Rubbing<S> {
     }
 }
 
-/// Sets up the rows of bodies that move under their predicted velocities `v`, or that `touched` says something touches;
-/// returns in which lanes there are any.
+/// Sets up the rows of bodies that move under their predicted velocities `v`, or that something touches according to
+/// `touched`. Returns the lanes that have any.
 #[inline(never)]
 pub(crate) fn set_up_grounds<S: Scalar>(
     simd: S::Simd,
@@ -148,7 +149,7 @@ pub(crate) fn relax_ground<S: Scalar>(
     let (y, [y1, y0]) = (rubbing.first, rubbing.second);
     let v0 = rubbing.velocity[0] + y * response[one_at];
     let v1 = rubbing.velocity[1] + (y1 * response[other_at] + y0 * response[one_at]);
-    // At rest after the step where that takes no more than the limit; else against the motion, alike in all directions.
+    // At rest after the step where that takes no more than the limit. Else against the motion, alike in all directions.
     let [a1, a2, a12, determinant] = rubbing.response;
     let rest = [old[0] - (a2 * v0 - a12 * v1) * determinant, old[1] - (a1 * v1 - a12 * v0) * determinant];
     let slide = [old[0] - v0 * rubbing.slide, old[1] - v1 * rubbing.slide];

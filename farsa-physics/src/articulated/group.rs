@@ -1,6 +1,6 @@
 //! Groups of pairs that are searched together: only while the spheres around their two sets of colliders are near.
 //!
-//! And what is remembered of points that are far.
+//! It also has the memory of distant points.
 
 use alloc::vec::Vec;
 
@@ -98,21 +98,22 @@ pub(crate) fn spheres_near<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, a: 
     (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, a.speed + b.speed))
 }
 
-/// The gap of a point of a group that is far: nothing nearer is known.
+/// Returns the gap of a point of a distant group, for which no smaller gap was computed.
 #[inline(always)]
 pub(crate) fn unknown_gap<S: Scalar>(simd: S::Simd) -> S {
     S::splat(simd, S::Real::from_f64(f64::INFINITY))
 }
 
-/// Whether the words of a group's points, [`POINT_WORDS`] of each, are those of a group that is far in every lane.
+/// Returns whether the words of a group's points, [`POINT_WORDS`] of each, are those of a group that is far in every
+/// lane.
 ///
-/// Its first point tells: while a group is near, that point's gap is finite.
+/// Its first point decides: while a group is near, that point's gap is finite.
 #[inline(always)]
 pub(crate) fn is_clear<S: Scalar>(simd: S::Simd, points: &[S], group: &Group) -> bool {
     group.clusters.is_some() && !points[POINT_WORDS * group.points.start + 7].lt(unknown_gap(simd)).any()
 }
 
-/// The rolling impulse of a pair's point among those of all points; empty for a pair without rolling friction.
+/// The rolling impulse of a pair's point among those of all points. Empty for a pair without rolling friction.
 #[inline(always)]
 pub(crate) fn rolling_words<'a, R, S>(pair: &Pair<R>, index: usize, all: &'a mut [S]) -> &'a mut [S] {
     match pair.rolling {
@@ -154,7 +155,7 @@ pub(crate) fn forget_group<S: Scalar>(
     }
 }
 
-/// Whether a geometry is endless.
+/// Returns whether a geometry is endless.
 pub(crate) fn is_plane<R>(geometry: &Geometry<R>) -> bool {
     matches!(geometry, Geometry::Plane)
 }

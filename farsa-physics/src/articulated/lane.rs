@@ -20,7 +20,7 @@ use crate::articulated::vision;
 /// Words that the ports read of a link: rotation, position, reference point, velocity.
 pub(crate) const LINK_WORDS: usize = 21;
 
-/// What the ports of all lanes read and write: one word of every lane, then the next word of every lane.
+/// The words for the ports of all lanes: one word of every lane, then the next word of every lane.
 #[derive(Clone, Debug)]
 pub(crate) struct Words {
     pub(crate) lanes: usize,
@@ -28,7 +28,7 @@ pub(crate) struct Words {
     pub(crate) state: Vec<f32>,
     /// [`LINK_WORDS`] of each link.
     pub(crate) links: Vec<f32>,
-    /// Whether more than commands was changed since the last step.
+    /// True if more than commands was changed since the last step.
     pub(crate) arranged: bool,
     /// A world alone, to place the links of one lane.
     pub(crate) alone: (Vec<f32>, Scratch<f32>),
@@ -92,7 +92,7 @@ fn link_words(w: &LinkData<f32>) -> [f32; LINK_WORDS] {
 
 /// One world of a [`Batch`](crate::articulated::Batch): the ports of a [`World`](crate::articulated::World), no step.
 ///
-/// What is done to it touches no other lane.
+/// Changes to it affect no other lane.
 #[derive(Debug)]
 pub struct Lane<'a> {
     pub(crate) model: &'a Model<f32>,

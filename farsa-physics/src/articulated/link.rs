@@ -7,7 +7,7 @@ use crate::articulated::spatial::{Inertia, Matrix, Spatial, Vector};
 /// The parent of a link that hangs on the world.
 pub(crate) const WORLD: u16 = u16::MAX;
 
-/// How a moving link moves relative to its parent.
+/// The motion of a link relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Motion {
     Revolute,
@@ -23,7 +23,7 @@ pub struct Link<R> {
     /// First position, first velocity.
     pub(crate) q: u16,
     pub(crate) dof: u16,
-    /// The link of its tree whose centre of mass is the tree's reference point.
+    /// The link of its tree whose center of mass is the tree's reference point.
     pub(crate) reference: u16,
     /// Number among the floating links.
     pub(crate) root: u16,
@@ -39,16 +39,16 @@ pub struct Link<R> {
     pub(crate) upper: R,
     pub(crate) limit_stiffness: R,
     pub(crate) limit_damping: R,
-    /// Of a link that only slides, what makes its kernels short.
+    /// The constants of a link that only slides, for short kernels.
     pub(crate) sliding: Option<Sliding<R>>,
 }
 
-/// What the sweeps compute for one link.
+/// The results of the sweeps for one link.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkData<S> {
     pub(crate) rotation: Matrix<S>,
     pub(crate) position: Vector<S>,
-    /// Centre of mass in the world.
+    /// Center of mass in the world.
     pub(crate) centre: Vector<S>,
     /// The tree's reference point in the world.
     pub(crate) reference: Vector<S>,
@@ -88,12 +88,12 @@ impl<S: Scalar> LinkData<S> {
     }
 }
 
-/// What of a link that only slides does not change, in the world's axes.
+/// The constants of a link that only slides, in the world's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sliding<R> {
     pub(crate) rotation: Matrix<R>,
     /// From the parent's origin, or the world's, to where the joint is at 0.
     pub(crate) offset: Vector<R>,
-    /// From the link's origin to its centre of mass.
+    /// From the link's origin to its center of mass.
     pub(crate) arm: Vector<R>,
 }

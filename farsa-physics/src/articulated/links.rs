@@ -24,7 +24,7 @@ fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {
     } else {
         [1.0, 0.0, 0.0]
     };
-    // Gram-Schmidt: what of u is across the axis; v then makes the frame right-handed.
+    // Gram-Schmidt: what of u is across the axis. V then makes the frame right-handed.
     let along = u[0] * x + u[1] * y + u[2] * z;
     let u = [u[0] - along * x, u[1] - along * y, u[2] - along * z];
     let n = Scalar::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
@@ -64,7 +64,7 @@ impl Link<f64> {
         if total == 0.0 {
             return;
         }
-        // Both bodies about their common centre: sum of I_k + m_k (c_k . c_k 1 - c_k c_k^T), the parallel axis theorem.
+        // Both bodies about their common center: sum of I_k + m_k (c_k . c_k 1 - c_k c_k^T), the parallel axis theorem.
         let (old, w) = (self.centre, mass / total);
         let joint = [0, 1, 2].map(|k: usize| old[k] * (1.0 - w) + centre[k] * w);
         let turned = rotate_symmetric(&mount.rotation, inertia);
@@ -136,7 +136,7 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
         let at = compose(&base, &frame(&joint.placement));
         let motion = match joint.kind {
             JointKind::Fixed => {
-                // What is fixed to a link is part of it; what is fixed to the world has no inertia that anybody feels.
+                // A segment fixed to a link is part of it. The inertia of a segment fixed to the world has no effect.
                 if let Some(link) = links.get_mut(usize::from(at.link)) {
                     link.carry(segment.mass, segment.centre, &segment.inertia, &at);
                 }
@@ -147,7 +147,7 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
             JointKind::Prismatic => Motion::Prismatic,
             JointKind::Floating => Motion::Floating,
         };
-        // The link is turned so that its joint moves along or about its z axis; the segment is mounted on it the other
+        // The link is turned so that its joint moves along or about its z axis. The segment is mounted on it the other
         // way round.
         let own = if motion == Motion::Floating { IDENTITY } else { axis_frame(joint.axis) };
         let mount = Mount { link: links.len() as u16, rotation: transpose(&own), position: [0.0; 3] };
@@ -187,7 +187,7 @@ pub(crate) fn choose_references(links: &mut [Link<f64>]) {
     let n = links.len();
     let mut tree: Vec<usize> = (0..n).collect();
     let mut children = vec![0_usize; n];
-    // Parents come before their children, so the root of the parent is known.
+    // Parents come before their children, so the root of the parent is already computed.
     for i in 0..n {
         if links[i].parent != WORLD {
             tree[i] = tree[usize::from(links[i].parent)];

@@ -1,7 +1,7 @@
 //! The compiled steps of batches, one for every instruction set and vector, here and nowhere else.
 //!
-//! Each takes the compiler about as long as all the rest of the crate, so the crate's unit tests are built without them, and sixteen
-//! worlds that fill no vector of the instruction set are two vectors of eight to the same step.
+//! Each takes the compiler about as long as the rest of the crate, so the crate's unit tests are built without them.
+//! Sixteen worlds that fill no vector of the instruction set are two vectors of eight to the same step.
 #![cfg_attr(
     all(target_arch = "wasm32", not(target_feature = "simd128")),
     allow(dead_code, unused_imports, reason = "there are no vectors")
@@ -28,7 +28,7 @@ pub const LANES: [usize; 2] = [8, 16];
 pub(crate) trait Lockstep: Send + Sync {
     /// One control step from words to words.
     fn step(&mut self, model: &Model<f32>, words: &mut Words);
-    /// The same again.
+    /// Returns the again.
     fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
@@ -47,7 +47,7 @@ struct Share<S: Scalar> {
 }
 
 impl<S: Scalar<Real = f32>> Vectors<S> {
-    /// For so many worlds, a multiple of [`Scalar::LANES`].
+    /// Builds the steps for `lanes` worlds, a multiple of [`Scalar::LANES`].
     fn new(simd: S::Simd, model: &Model<f32>, lanes: usize) -> Self {
         let share = Share { state: vec![S::splat(simd, 0.0); model.state_len()], scratch: Scratch::new(simd, model) };
         Self { simd, shares: vec![share; lanes / S::LANES] }
@@ -143,7 +143,7 @@ where
 struct OneByOne {
     state: Vec<f32>,
     scratch: Scratch<f32>,
-    /// None, which the step asks for.
+    /// None, which the step requests.
     forces: Wrenches<f32>,
 }
 
@@ -170,7 +170,7 @@ pub(crate) fn instructions() -> impl Iterator<Item = Instructions> {
     Instructions::available().filter(|one| *one != Instructions::Sse4_2)
 }
 
-/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
+/// Returns the steps of `lanes` lanes, one of [`LANES`], by the widest of these instructions with compiled steps.
 pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
     let vectors = if instructions == Instructions::Fallback { None } else { in_vectors(instructions, model, lanes) };
     vectors.unwrap_or_else(|| {
@@ -201,7 +201,8 @@ fn in_vectors(instructions: Instructions, model: &Model<f32>, lanes: usize) -> O
     {
         use farsa_num::fearless_simd::f32x16;
 
-        // Sixteen lanes fill a register of AVX-512 alone. In two halves they took SSE2 and AVX2 as long as by a step of their own.
+        // Sixteen lanes fill a register of AVX-512 only. A separate step for sixteen took as long on SSE2 and AVX2 as
+        // two halves.
         if let Some(simd) = level.as_avx512() {
             return Some(if lanes == LANES[0] {
                 boxed::<f32x8<_>>(simd, model, lanes)

@@ -1,78 +1,75 @@
 //! Articulated rigid bodies in reduced coordinates with compliant contacts.
-//!
-//! From a description to a step, and out again:
-//!
-//! - `model`: the constant part: links, colliders, pairs, actuators, options
-//! - `model_builder`: makes a model from a description
-//! - `link`: a moving link: its constants, and what the sweeps compute for it
-//! - `links`: the moving links of a description, and their inertias
-//! - `spatial`: spatial vectors and inertias [Featherstone2008]
-//! - `sliding`: the same for links that only slide
-//! - `tree`: forward kinematics, articulated bodies, Newton-Euler, composite bodies
-//! - `collision`: gap, normal and point of two convex shapes
-//! - `contact`: the contact points of each pair of colliders
-//! - `rows`: what a unit force or moment at a contact does to the tree
-//! - `stop`: joint stops as one-sided rows
-//! - `solver`: the impulses of contacts and stops, solved together
-//! - `step`: one control step, of one world or of lanes
-//! - `external`: forces from outside
-//! - `view`: answers of the ports, from the words of a state
-//! - `ray`: ray casts
-//! - `world`: one world behind the ports
-//! - `lockstep`: the compiled steps of batches
-//! - `sight`: what cameras see in a horizontal plane
-//! - `vision`: what the eyes of a camera with an image see
-//! - `group`: groups of pairs that are looked at together
-//! - `ground`: friction below bodies that slide in a plane
-//! - `batch`: many worlds in SIMD lanes
-//! - `lane`: one world of a batch behind the ports
 
+/// Many worlds in SIMD lanes.
 #[cfg(all(feature = "lanes", not(test)))]
 mod batch;
+/// Gap, normal and point of two convex shapes.
 #[cfg(feature = "alloc")]
 mod collision;
+/// The contact points of each pair of colliders.
 #[cfg(feature = "alloc")]
 mod contact;
+/// Forces from outside.
 #[cfg(feature = "alloc")]
 mod external;
+/// Friction below bodies that slide in a plane.
 #[cfg(feature = "alloc")]
 mod ground;
+/// Groups of pairs that are tested together.
 #[cfg(feature = "alloc")]
 mod group;
+/// One world of a batch behind the ports.
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
+/// A moving link: its constants, and the results of the sweeps.
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 pub(crate) mod link;
+/// The moving links of a description, and their inertias.
 #[cfg(feature = "alloc")]
 pub(crate) mod links;
+/// The compiled steps of batches.
 #[cfg(all(feature = "lanes", not(test)))]
 pub(crate) mod lockstep;
+/// The constant part: links, colliders, pairs, actuators, options.
 #[cfg(feature = "alloc")]
 pub(crate) mod model;
+/// Makes a model from a description.
 #[cfg(feature = "alloc")]
 mod model_builder;
+/// Ray casts.
 #[cfg(feature = "alloc")]
 pub(crate) mod ray;
+/// Responses of the tree to a unit force or moment at a contact.
 #[cfg(feature = "alloc")]
 mod rows;
+/// Sight in a horizontal plane.
 #[cfg(feature = "alloc")]
 mod sight;
+/// Spatial vectors of links that only slide.
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 mod sliding;
+/// The impulses of contacts and stops, solved together.
 #[cfg(feature = "alloc")]
 mod solver;
+/// Spatial vectors and inertias [Featherstone2008].
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]
 pub(crate) mod spatial;
+/// One control step, of one world or of lanes.
 #[cfg(feature = "alloc")]
 mod step;
+/// Joint stops as one-sided rows.
 #[cfg(feature = "alloc")]
 mod stop;
+/// Forward kinematics, articulated bodies, Newton-Euler, composite bodies.
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 pub(crate) mod tree;
+/// The ports, read from the words of a state.
 #[cfg(feature = "alloc")]
 pub(crate) mod view;
+/// Rays of cameras with an image.
 #[cfg(feature = "alloc")]
 mod vision;
+/// One world behind the ports.
 #[cfg(feature = "alloc")]
 mod world;
 

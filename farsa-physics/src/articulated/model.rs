@@ -13,7 +13,7 @@ use farsa_num::Real;
 use crate::articulated::link::{Link, WORLD};
 use crate::articulated::spatial::{Matrix, Vector};
 
-/// How an articulated world is stepped.
+/// The options of an articulated world's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
@@ -75,7 +75,7 @@ pub enum ModelError {
     TooMany {
         /// Which parts.
         what: &'static str,
-        /// How many.
+        /// The number.
         count: usize,
     },
     /// A number of lanes that there are no vectors for.
@@ -128,7 +128,7 @@ pub(crate) enum Geometry<R> {
 pub(crate) struct Collider<R> {
     pub(crate) mount: Mount<R>,
     pub(crate) geometry: Geometry<R>,
-    /// Radius of the ball about its origin that holds it; none for a plane.
+    /// Radius of the ball about its origin that holds it, none for a plane.
     pub(crate) bound: R,
 }
 
@@ -139,7 +139,7 @@ pub(crate) struct Reach {
     pub(crate) first: Vec<u16>,
     /// Links from the second collider's up to, but without, the first one that is also in `first`.
     pub(crate) second: Vec<u16>,
-    /// Where in `first` the two meet; its length when they do not.
+    /// The position in `first` at which the two join, or its length if they do not.
     pub(crate) meet: usize,
     /// The velocities of a row's entries, in the order in which they are written.
     pub(crate) dofs: Vec<u16>,
@@ -167,14 +167,14 @@ pub(crate) struct Ground<R> {
 pub(crate) struct Pair<R> {
     /// Colliders in the order ball, capsule, block, plane.
     pub(crate) colliders: [usize; 2],
-    /// Whether that is the other way round than in the description.
+    /// True if that is the other way round than in the description.
     pub(crate) flipped: bool,
     /// First contact point and their number.
     pub(crate) point: usize,
     pub(crate) points: usize,
     /// First entry of the first point's rows.
     pub(crate) row: usize,
-    /// The same for the rolling rows.
+    /// The first entry of the rolling rows.
     pub(crate) rolling_row: usize,
     /// Number of the first point's rolling impulse, where there is rolling friction.
     pub(crate) rolling: Option<usize>,
@@ -182,7 +182,7 @@ pub(crate) struct Pair<R> {
     pub(crate) rolling_friction: R,
     pub(crate) stiffness: R,
     pub(crate) damping: R,
-    /// Whether the pair can push a joint that has a stop.
+    /// True if the pair can push a joint that has a stop.
     pub(crate) at_stops: bool,
     /// The grounds below its two shapes.
     pub(crate) grounds: [Option<u16>; 2],
@@ -223,7 +223,7 @@ pub struct Model<R> {
     pub(crate) joints: Vec<JointKind>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
     pub(crate) colliders: Vec<Collider<R>>,
-    /// The colliders that cameras see, and their colours.
+    /// The colliders that cameras see, and their colors.
     pub(crate) shown: Vec<(u16, [f32; 3])>,
     pub(crate) sight_height: R,
     pub(crate) pairs: Vec<Pair<R>>,
@@ -263,7 +263,7 @@ impl<R: Real> Model<R> {
     pub fn positions(&self) -> usize {
         self.positions
     }
-    /// Number of velocities: one per joint, six per floating body (angular, then that of the centre of mass).
+    /// Number of velocities: one per joint, six per floating body (angular, then that of the center of mass).
     pub fn dofs(&self) -> usize {
         self.dofs
     }
@@ -287,12 +287,12 @@ impl<R: Real> Model<R> {
     pub(crate) fn first_point(&self) -> usize {
         self.first_command() + 2 * self.actuators.len()
     }
-    /// The link of a body's segment and the velocity it begins with; `None` for what is fixed to the world.
+    /// The link of a body's segment and the velocity it begins with, or `None` for what is fixed to the world.
     pub fn link_of(&self, body: BodyId) -> Option<usize> {
         let mount = self.mounts.get(body.index())?;
         (mount.link != WORLD).then_some(usize::from(mount.link))
     }
-    /// The index of a joint's position and velocity; `None` for fixed and floating joints.
+    /// The index of a joint's position and velocity, or `None` for fixed and floating joints.
     pub fn joint_index(&self, joint: farsa_body::ports::JointId) -> Option<(usize, usize)> {
         match self.joints.get(joint.index())? {
             JointKind::Revolute | JointKind::Prismatic => {

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::robot::{JointKind, Robot, RobotError, Shape};
+use farsa_body::robot::{JointKind, PairFault, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::group::{groups_of, is_plane};
@@ -55,7 +55,7 @@ fn points_of(a: &Geometry<f64>, b: &Geometry<f64>, both_move: bool) -> Option<us
         (Geometry::Capsule { .. }, Geometry::Plane) => Some(2),
         (Geometry::Capsule { .. }, Geometry::Block { .. }) => Some(3),
         (Geometry::Block { .. }, Geometry::Plane) => Some(8),
-        // Corners of the one in the other, edges of the other in the one; corners of the other where it is no table.
+        // Corners of the one in the other, edges of the other in the one. Corners of the other where it is no table.
         (Geometry::Block { .. }, Geometry::Block { .. }) => Some(if both_move { 28 } else { 20 }),
         _ => None,
     }
@@ -138,13 +138,14 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         let [a, b] = p.colliders;
         let movable = |c: usize| colliders[c].0.link != WORLD;
         let rank = |c: usize| colliders[c].3;
-        // Of two boxes the moving one comes first: its corners and the still one's edges are looked at. Corners of a still
-        // box are not: a table's are rarely within reach, and eight points more would cost all that lies on it.
+        // The moving one of two boxes comes first, so that its corners and the fixed one's edges are tested. Corners of
+        // a fixed box are not. A table's are rarely within reach, and eight further points would cost time for
+        // everything on it.
         let flipped = rank(a) > rank(b) || (rank(a) == 2 && rank(b) == 2 && !movable(a));
         let [a, b] = if flipped { [b, a] } else { [a, b] };
         let Some(count) = points_of(&colliders[a].1, &colliders[b].1, movable(a) && movable(b)) else {
             let names = [a, b].map(|c| robot.colliders[c].name.clone());
-            return Err(RobotError::Shapes { colliders: names }.into());
+            return Err(RobotError::Pair { colliders: names, fault: PairFault::Shapes }.into());
         };
         let reach = reach_of(links, colliders[a].0.link, colliders[b].0.link);
         let rolls = p.surface.rolling_friction > 0.0;

@@ -8,7 +8,8 @@ use crate::articulated::model::Geometry;
 use crate::articulated::spatial::{Matrix, Vector, add, dot, product, rotate, rotate_back, scale, sub};
 use crate::articulated::view::View;
 
-/// Where a ray enters a shape, in the shape's frame: distance and outward normal. Rays that begin inside meet nothing.
+/// The distance and outward normal at which a ray enters a shape, in the shape's frame. Rays that begin inside hit
+/// nothing.
 pub(crate) type Entry<R> = Option<(R, Vector<R>)>;
 
 pub(crate) fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, radius: R) -> Entry<R> {
@@ -29,8 +30,8 @@ pub(crate) fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vec
 
 pub(crate) fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
     let zero = R::from_f64(0.0);
-    // The cylinder's side first, then the two caps; a hit on the side is nearer than any on a cap behind it.
-    // Across the axis: a t^2 + 2 b t + c = 0. Along the axis a is 0, and only the caps are in the way.
+    // The cylinder's side first, then the two caps. A hit on the side is nearer than any on a cap behind it. Across the
+    // axis: a t^2 + 2 b t + c = 0. Along the axis a is 0, and only the caps are in the way.
     let a = direction[0] * direction[0] + direction[1] * direction[1];
     let b = origin[0] * direction[0] + origin[1] * direction[1];
     let c = origin[0] * origin[0] + origin[1] * origin[1] - radius * radius;
@@ -70,7 +71,7 @@ pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vect
     let mut leave: Option<R> = None;
     for k in 0..3 {
         if direction[k] == zero {
-            // Along these two faces: between them for ever, or never.
+            // Parallel to these two faces: always between them, or never.
             if origin[k].abs() > half[k] {
                 return None;
             }
@@ -134,7 +135,7 @@ pub(crate) fn cast<R: Real>(
     let mut best: Option<Hit<BodyId>> = None;
     for (i, collider) in world.model().colliders.iter().enumerate() {
         let (rotation, position) = collider_frame(world, i);
-        // In the frame of the collider; rotations keep lengths, so t is the distance in the world, too.
+        // In the frame of the collider. Rotations keep lengths, so t is the distance in the world, too.
         let o = rotate_back(&rotation, sub(origin, position));
         let d = rotate_back(&rotation, direction);
         let Some((t, normal)) = enter(&collider.geometry, o, d) else { continue };

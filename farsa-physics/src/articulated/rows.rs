@@ -1,9 +1,9 @@
 //! Rows: what unit forces and moments at a contact do to the articulated bodies.
 //!
-//! [`accelerations`](crate::articulated::tree::accelerations) has already factorised the inverse of the joint-space
+//! [`accelerations`](crate::articulated::tree::accelerations) has already factorized the inverse of the joint-space
 //! inertia, `M^-1 = B B^T`. The row `y = B^T J^T` of a unit force has entries only along the path from its link to the
-//! root, and gives every product that is needed: `J M^-1 J^T = y^T y`, and with the response `z`, the sum of `y` times
-//! impulse over all points, the change of a point's velocity `y^T z`. Own derivation.
+//! root. It gives every product: `J M^-1 J^T = y^T y`. The response `z` is the sum of `y` times impulse over all
+//! points, and the change of a point's velocity is `y^T z`. Own derivation.
 
 use farsa_num::{Mask, Real, Scalar};
 
@@ -67,8 +67,8 @@ fn climb<S: Scalar>(
         }
         return 6;
     }
-    // The inward pass of the articulated bodies for a force alone: the joint takes s . p, as y = s . p / sqrt(D) in the row,
-    // and hands p - U (s . p) / D on.
+    // The inward pass of the articulated bodies for a force alone: the joint takes s . p, as y = s . p / sqrt(D) in the
+    // row, and passes p - U (s . p) / D on.
     let w = &work[usize::from(link)];
     let root = inverse_sqrt_inertia[usize::from(l.dof)];
     for k in 0..3 {
@@ -148,8 +148,8 @@ fn write<S: Scalar>(
     axes: &[Vector<S>; 3],
     rows: &mut [[S; 3]],
 ) -> [S; 6] {
-    // Equal and opposite loads climb from both links. Where the two paths meet they are added and go on as one, so that
-    // velocities which both sides share get one entry.
+    // Equal and opposite loads climb from both links. Where the two paths join, the loads are added and continue as
+    // one, so that velocities common to both sides get one entry.
     let reach = &pair.reach;
     let minus = S::splat(simd, S::Real::from_f64(-1.0));
     let first_entries = reach.dofs.len() - reach.second.iter().map(|l| entries(model, *l)).sum::<usize>();
@@ -186,7 +186,7 @@ fn entries<R: Real>(model: &Model<R>, link: u16) -> usize {
     if model.links[usize::from(link)].motion == Motion::Floating { 6 } else { 1 }
 }
 
-/// Whether two numbers are equal; false with a NaN.
+/// Returns whether two numbers are equal, false with a NaN.
 #[inline(always)]
 pub(crate) fn equal<S: Scalar>(a: S, b: S) -> S::Mask {
     a.le(b) & b.le(a)
@@ -207,11 +207,11 @@ pub(crate) fn velocity<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], mut v: [S; 3], 
 
 /// Adds a block's change of impulse to the response, in the lanes that have any.
 ///
-/// A change of zero would leave the response as it is (which is never -0): most blocks of a batch are loaded in some lanes
-/// only, and many in none.
+/// A change of zero would leave the response unchanged (it is never -0). Most blocks of a batch are loaded in some
+/// lanes only, and many in none.
 #[inline(always)]
 pub(crate) fn apply<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], change: [S; 3], mask: S::Mask, response: &mut [S]) {
-    // z += y dl, which is all that the other points need to know of this one.
+    // z += y dl contains the effect on all other points.
     let zero = change[0].constant(0.0);
     let none = equal(change[0], zero) & equal(change[1], zero) & equal(change[2], zero);
     let mask = mask & !none;

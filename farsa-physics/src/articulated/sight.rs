@@ -1,4 +1,4 @@
-//! What is seen in a horizontal plane of an articulated world: where it cuts the shapes that have a colour.
+//! Sight in a horizontal plane of an articulated world: the sections of shapes that have a color.
 
 use farsa_body::ports::{BodyId, NearbySurface, PlanarHit};
 use farsa_num::Real;
@@ -8,13 +8,13 @@ use crate::articulated::ray::{ball, collider_frame, enter};
 use crate::articulated::spatial::{Matrix, Vector, add, rotate, rotate_back, scale, sub};
 use crate::articulated::view::{self, View};
 
-/// Where a collider of a ball is; its turn does not matter.
+/// Where a collider of a ball is. Its turn does not matter.
 #[inline]
 fn centre<R: Real>(world: &impl View<R>, index: usize) -> Vector<R> {
     view::place(world, &world.model().colliders[index].mount)
 }
 
-/// The first shape with a colour on a ray in the plane, other than those of `but`.
+/// The first shape with a color on a ray in the plane, except those of `but`.
 pub(crate) fn cast_planar<R: Real>(
     world: &impl View<R>,
     from: [f32; 2],
@@ -52,7 +52,7 @@ pub(crate) fn cast_planar<R: Real>(
     best
 }
 
-/// Reports every shape with a colour that the plane cuts within `range` of a place.
+/// Reports every shape with a color that the plane cuts within `range` of a place.
 pub(crate) fn query_near<R: Real>(
     world: &impl View<R>,
     from: [f32; 2],
@@ -123,8 +123,8 @@ fn near_capsule<R: Real>(
     radius: R,
     half_length: R,
 ) -> Near<R> {
-    // The cut is made of discs: of the ball at each place t of the axis. How far the disc at t is from here is a convex
-    // function of t, a norm less a square root of a concave one, so its least value is found by its slope.
+    // The section consists of discs, one of the ball at each place t of the axis. The distance to the disc at t is a
+    // convex function of t, a norm less a square root of a concave one, so its slope finds its least value.
     let (zero, half, one) = (R::from_f64(0.0), R::from_f64(0.5), R::from_f64(1.0));
     let axis = [rotation[0][2], rotation[1][2], rotation[2][2]];
     let rise = axis[2];
@@ -171,7 +171,7 @@ fn near_block<R: Real>(at: Vector<R>, rotation: &Matrix<R>, position: Vector<R>,
     if (0..3).all(|k| local[k].abs() <= half[k]) {
         return Some(([at[0], at[1]], zero, zero));
     }
-    // Where the plane cuts the twelve edges; the cut is the convex hull of these places.
+    // Where the plane cuts the twelve edges. The cut is the convex hull of these places.
     let corner = |i: usize| {
         let mut place = half;
         for (k, x) in place.iter_mut().enumerate() {
@@ -220,7 +220,7 @@ fn near_plane<R: Real>(at: Vector<R>, rotation: &Matrix<R>, position: Vector<R>)
     let zero = R::from_f64(0.0);
     let normal = [rotation[0][2], rotation[1][2], rotation[2][2]];
     let steep = length([normal[0], normal[1]]);
-    // Along a level plane no ray of the eyes meets it.
+    // No horizontal ray hits a horizontal plane.
     if steep < R::from_f64(1e-6) {
         return None;
     }

@@ -1,9 +1,9 @@
 //! Links that only slide: no joint between them and the world turns.
 //!
-//! Their rotations are constants, they have no angular velocity, and their joints feel nothing but forces: of spatial vectors
-//! the linear half is left, of inertias the linear block. That half is computed as for other links, so that a motion has the
-//! same bits either way, but for the signs of zeros; the angular half, which such joints multiply by zero, is left out. A disc
-//! that slides in the plane consists of two such links.
+//! Their rotations are constants, they have no angular velocity, and only forces act on their joints. Spatial vectors
+//! reduce to the linear half, and inertias to the linear block. That half is computed as for other links, so that a
+//! motion has the same bits either way, except for the signs of zeros. The angular half, which such joints multiply by
+//! zero, is left out. A disc that slides in the plane consists of two such links.
 
 use farsa_num::{Real, Scalar};
 
@@ -13,7 +13,7 @@ use crate::articulated::spatial::{
 };
 
 impl<R: Real> Sliding<R> {
-    /// For a link, given the links before it; `None` if it may turn.
+    /// For a link, given the links before it, or `None` if it may turn.
     pub(crate) fn of(link: &Link<R>, before: &[Link<R>]) -> Option<Self> {
         if link.motion != Motion::Prismatic {
             return None;
@@ -27,7 +27,7 @@ impl<R: Real> Sliding<R> {
         Some(Self { rotation, offset, arm: rotate(&rotation, link.centre) })
     }
 
-    /// Rotation, origin and centre of mass of a link at `q`, from its parent's origin.
+    /// Rotation, origin and center of mass of a link at `q`, from its parent's origin.
     #[inline(always)]
     pub(crate) fn place<S: Scalar<Real = R>>(
         &self,
@@ -66,7 +66,7 @@ pub(crate) fn weigh<S: Scalar>(simd: S::Simd, w: &mut LinkData<S>, mass: S::Real
     w.force = Spatial::zero(simd);
 }
 
-/// The pass inwards of the articulated bodies for a link that slides; what it hands its parent, which slides, too.
+/// The pass inwards of the articulated bodies for a link that slides. The part for its parent, which slides, too.
 #[inline(always)]
 pub(crate) fn inwards<S: Scalar>(simd: S::Simd, w: &mut LinkData<S>, tau: S, diagonal: S) -> ([S; 6], Vector<S>) {
     let axis = w.subspace.linear;
@@ -106,8 +106,8 @@ mod tests {
 
     use crate::articulated::{Model, Options, Precision, World};
 
-    /// A ball and a disc that turns on the ground, a cart on a tilted rail with a pendulum that reaches both, and on the pendulum
-    /// a weight that slides, which is no sliding link.
+    /// Builds a scene: a ball, a disc that turns on the ground, and a cart on a tilted rail with a pendulum that
+    /// reaches both. A weight slides on the pendulum, and is no sliding link.
     fn scene() -> Robot {
         let mut robot = Robot::new("things that slide");
         let ball = robot.add_sliding_body("ball", Pose::at([0.0, 0.0, 0.1]), MassProperties::sphere(0.3, 0.1), false);

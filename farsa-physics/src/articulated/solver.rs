@@ -1,10 +1,10 @@
 //! The contact solver: points that may carry an impulse, set up as rows over the articulated factor and solved together.
 //!
-//! Every contact point is a spring and damper along its normal and friction across it, both taken implicitly: the
-//! impulse of a step is a function of the velocity *after* it. The velocities after it are those without contacts plus
-//! the response of the articulated bodies to all impulses ([`crate::articulated::rows`]). Sweeps of projected Gauss-Seidel over the
-//! points keep non-negative normal impulses and the friction cone exactly, and every impulse acts equally and oppositely
-//! on both sides, whether the sweeps have converged or not.
+//! Every contact point is a spring and damper along its normal and friction across it, both implicit: the impulse of a
+//! step is a function of the velocity *after* it. The velocities after it are those without contacts plus the response
+//! of the articulated bodies to all impulses ([`crate::articulated::rows`]). Sweeps of projected Gauss-Seidel over the
+//! points keep non-negative normal impulses and the friction cone exactly. Every impulse acts equally and oppositely on
+//! both sides, even if the sweeps have not converged.
 
 use farsa_num::{Mask, Real, Scalar};
 
@@ -69,7 +69,7 @@ struct Candidate<S: Scalar> {
     velocity: Vector<S>,
     /// In which lanes it may carry an impulse.
     mask: S::Mask,
-    /// The gap to be remembered.
+    /// The gap for the next step.
     gap: S,
 }
 
@@ -110,7 +110,7 @@ fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
     [model.colliders[a].mount.link, model.colliders[b].mount.link]
 }
 
-/// How many pairs a step that left the colliders at these places has looked at the surfaces of.
+/// Returns the number of pairs whose surfaces were examined in the step that left the colliders at these places.
 pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[PlacedShape<R>]) -> usize {
     let near = |pair: &&Pair<R>| {
         let [far, reach] = bounds((), model, pair, placed);
@@ -120,8 +120,8 @@ pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[PlacedShape<R>]) -
 }
 
 impl<S: Scalar> Solver<'_, S> {
-    /// Finds the points that may carry an impulse and sets their rows up; returns how many there are, and in which lanes
-    /// there are any and any that push a joint with a stop.
+    /// Finds the points that may carry an impulse and sets their rows up. Returns how many there are, and in which
+    /// lanes there are any and any that push a joint with a stop.
     #[inline(never)]
     pub(crate) fn set_up(
         &mut self,
@@ -167,7 +167,7 @@ impl<S: Scalar> Solver<'_, S> {
         (count, touched)
     }
 
-    /// The points of one pair, in the lanes of its group that are near; returns how many are active now.
+    /// The points of one pair, in the lanes of its group that are near. Returns how many are active now.
     #[inline(always)]
     fn set_up_pair(
         &mut self,
@@ -184,7 +184,7 @@ impl<S: Scalar> Solver<'_, S> {
         // points, or an impulse of an earlier step would start a later contact.
         let pair = &model.pairs[p];
         let [far, reach] = bounds(simd, model, pair, self.placed);
-        // Overlapping bounds say nothing of the surfaces.
+        // Overlapping bounds do not imply a contact of the surfaces.
         let (mut near, mut far) = (far.le(reach), far.max(S::splat(simd, S::Real::from_f64(0.0))));
         if let Some(within) = within {
             near = near & within;
@@ -229,8 +229,8 @@ impl<S: Scalar> Solver<'_, S> {
         count
     }
 
-    /// One contact point: where it is, and in which lanes it may carry an impulse. `far` is the distance of the pair's
-    /// bounds, remembered as the gap in lanes where nothing nearer is known.
+    /// Returns the place of one contact point, and the lanes in which it may carry an impulse. `far` is the distance of
+    /// the pair's bounds, stored as the gap in lanes without a computed one.
     #[inline(always)]
     fn gap_and_mask(
         &self,
@@ -250,12 +250,12 @@ impl<S: Scalar> Solver<'_, S> {
             velocity_at(simd, links[0], self.work, point.position),
             velocity_at(simd, links[1], self.work, point.position),
         );
-        // Speculative contact: the point counts when its predicted gap at the end of the step, gap + h v_n, is below the
-        // margin, so that a fast shape is met before it is inside. A velocity that separates does not count: contacts
-        // pushed by others may need the point all the same.
+        // Speculative contact: the point counts when its predicted gap at the end of the step, gap + h v_n, is below
+        // the margin, so that a fast shape is stopped before it is inside. A separating velocity does not count,
+        // because contacts pushed by others may need the point all the same.
         let closing = dot(velocity, point.normal).min(zero);
         let mask = near & point.valid & (point.gap + h * closing).lt(margin);
-        // What a lane remembers must not depend on its neighbours.
+        // The memory of a lane must not depend on its neighbors.
         let gap = S::select(near & point.valid, point.gap, far);
         Candidate { point, velocity, mask, gap }
     }
@@ -301,8 +301,9 @@ impl<S: Scalar> Solver<'_, S> {
         let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
         let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
 
-        // Friction is the row v_t + slip l_t = 0 inside the cone; `slip` on the diagonal makes it regular. Sticking needs
-        // the inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12| (Gershgorin).
+        // Friction is the row v_t + slip l_t = 0 inside the cone. `slip` on the diagonal makes it regular. Sticking
+        // needs the inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12|
+        // (Gershgorin).
         let (a1, a2) = (response[1] + slip, response[2] + slip);
         self.blocks[pair.point + index] = Block {
             mask,
@@ -371,8 +372,8 @@ impl<S: Scalar> Solver<'_, S> {
     #[inline(always)]
     fn sweep_all(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
         // Symmetric projected Gauss-Seidel: backwards every other time, so that no point is always served last. A fixed
-        // number of sweeps, because a test of convergence would let lanes differ from worlds alone. What is left over
-        // is made up for by the warm start of the next step.
+        // number of sweeps, because a test of convergence would let lanes differ from worlds alone. The warm start of
+        // the next step corrects the rest.
         for round in 0..model.sweeps {
             for k in 0..count {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
@@ -402,13 +403,13 @@ impl<S: Scalar> Solver<'_, S> {
         let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
         let mut v = velocity(dofs, rows, block.velocity, self.response);
         let [_, _, _, a01, a02, a12] = block.response;
-        // Normal row: l += -(v + c l + offset) / (A_nn + c), not below 0. What this changes is felt across at once.
+        // Normal row: l += -(v + c l + offset) / (A_nn + c), not below 0. The change acts across at once.
         let old = block.impulse;
         let normal = (old[0] - (v[0] + block.compliance * old[0] + block.offset) * block.inverse[0]).max(zero);
         let d0 = normal - old[0];
         v[1] += a01 * d0;
         v[2] += a02 * d0;
-        // Sticking solves both tangents at once; sliding steps against the velocity, alike in all directions, and is
+        // Sticking solves both tangents at once. Sliding steps against the velocity, alike in all directions, and is
         // projected onto the cone of the new normal impulse.
         let limit = S::splat(simd, pair.friction) * normal;
         let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);

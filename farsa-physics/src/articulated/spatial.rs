@@ -1,8 +1,8 @@
 //! Spatial vectors and inertias, all in the world's axes about one reference point of their tree.
 //!
-//! In common axes about a common point nothing is transformed from link to link: articulated inertias are added as they
-//! are, which makes the sweeps about half as long as in link coordinates [Featherstone2008, section 7.3 does them in link
-//! coordinates]. The point is chosen near the lightest links, so that single precision suffices.
+//! With common axes and a common point nothing is transformed from link to link. Articulated inertias are added
+//! unchanged, which makes the sweeps about half as long as in link coordinates ([Featherstone2008, section 7.3] has
+//! them in link coordinates). The point is chosen near the lightest links, so that single precision suffices.
 
 use core::ops::{Add, AddAssign, Sub};
 
@@ -83,7 +83,7 @@ pub(crate) fn product<S: Scalar>(m: &Matrix<S>, n: &Matrix<S>) -> Matrix<S> {
 pub(crate) fn matrix_of<S: Scalar>(q: [S; 4]) -> Matrix<S> {
     let one = q[0].constant(1.0);
     let [x, y, z, w] = q;
-    // R = 1 + 2 w [v]x + 2 [v]x [v]x with v = (x, y, z); doubled once, so that each entry takes one product and one
+    // R = 1 + 2 w [v]x + 2 [v]x [v]x with v = (x, y, z). Doubled once, so that each entry takes one product and one
     // sum.
     let (x2, y2, z2) = (x + x, y + y, z + z);
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
@@ -210,11 +210,11 @@ impl<S: Scalar> Inertia<S> {
         Self { angular: [z; 6], coupling: [[z; 3]; 3], linear: [z; 6] }
     }
 
-    /// A rigid body: mass, centre of mass from the reference point, inertia about the centre in the world's axes.
+    /// A rigid body: mass, center of mass from the reference point, inertia about the center in the world's axes.
     #[inline(always)]
     pub(crate) fn rigid(mass: S, centre: Vector<S>, about_centre: [S; 6]) -> Self {
         let zero = mass.constant(0.0);
-        // With c the centre of mass: I_c + m (c . c 1 - c c^T) about the point, and m [c]x between motion and moment
+        // With c the center of mass: I_c + m (c . c 1 - c c^T) about the point, and m [c]x between motion and moment
         // [Featherstone2008] section 2.13.
         let m = scale(centre, mass);
         let [x, y, z] = centre;
@@ -236,7 +236,7 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn times(&self, m: Spatial<S>) -> Spatial<S> {
         Spatial {
-            // Below the diagonal stands the coupling transposed.
+            // Below the diagonal is the transposed coupling.
             angular: add(symmetric(&self.angular, m.angular), rotate(&self.coupling, m.linear)),
             linear: add(rotate_back(&self.coupling, m.angular), symmetric(&self.linear, m.linear)),
         }
@@ -259,8 +259,7 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn minus_square(&self, u: Spatial<S>, d: S) -> Self {
         let s = u.scale(d);
-        // What a joint that gives way takes from the inertia that its parent feels: I - U U^T / D. One triangle is
-        // enough.
+        // A yielding joint reduces the inertia that its parent carries: I - U U^T / D. One triangle is enough.
         let (w, v, sw, sv) = (u.angular, u.linear, s.angular, s.linear);
         let mut o = *self;
         for (k, (a, b)) in TRIANGLE.into_iter().enumerate() {
@@ -297,12 +296,12 @@ impl<S: Scalar> Inertia<S> {
         }
     }
 
-    /// The Cholesky factor, lower triangle; the diagonal holds reciprocals.
+    /// The Cholesky factor, lower triangle. The diagonal holds reciprocals.
     #[inline(always)]
     pub(crate) fn cholesky(&self) -> Cholesky<S> {
         let one = self.angular[0].constant(1.0);
         // A = L L^T, column by column: l_jj = sqrt(a_jj - sum_k l_jk^2), l_ij = (a_ij - sum_k l_ik l_jk) / l_jj. The
-        // reciprocals of l_jj are kept: those who solve with the factor then only multiply.
+        // reciprocals of l_jj are stored, so that a solve with the factor only multiplies.
         let mut l = [[one; 6]; 6];
         for j in 0..6 {
             let mut d = self.entry(j, j);

@@ -17,7 +17,7 @@ use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale
 use crate::articulated::stop::{Stop, set_up_stops};
 use crate::articulated::tree::{Root, accelerations, forward_kinematics};
 
-/// Everything that a step computes and forgets, for one model; made once, reused for every step.
+/// The temporary results of a step for one model. Made once, reused for every step.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Scalar> {
     pub(crate) links: Vec<LinkData<S>>,
@@ -76,7 +76,8 @@ impl<S: Scalar> Scratch<S> {
         (&mut self.links, &mut self.roots)
     }
 
-    /// Places the links of `state` [`Model::state_len`]; needed once before the first step and after any change from outside.
+    /// Places the links of `state` [`Model::state_len`]. Needed once before the first step and after any change from
+    /// outside.
     #[inline(always)]
     pub fn forward_kinematics(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
         let (q, rest) = state.split_at(model.positions);
@@ -84,11 +85,11 @@ impl<S: Scalar> Scratch<S> {
     }
 }
 
-/// What a [`crate::articulated::World`] computes in: `f32` for speed, `f64` for reference.
+/// The precision of a [`crate::articulated::World`]: `f32` for speed, `f64` for reference.
 ///
 /// The step is compiled here, once for each, and not again in every crate that steps a world.
 pub trait Precision: Real {
-    /// [`step`] for one world, under forces from outside, which are then forgotten.
+    /// [`step`] for one world, under external forces, which are then discarded.
     fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>, forces: &mut Wrenches<Self>);
     /// [`Scratch::forward_kinematics`] for one world.
     fn forward_kinematics(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
@@ -143,7 +144,7 @@ pub fn step<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s
     }
 }
 
-/// One control step of one world under forces from outside, which act at every dynamics step and are then forgotten.
+/// Makes one control step of one world under external forces, which act at every dynamics step and are then discarded.
 #[inline(always)]
 fn step_one<R: Real + Scalar<Real = R, Simd = ()>>(
     model: &Model<R>,
@@ -183,8 +184,7 @@ fn push<R: Real + Scalar<Real = R, Simd = ()>>(
     place_links((), model, q, v, links);
 }
 
-/// The large pieces are functions of their own, which the compiler makes in a fraction of the time that it takes for one
-/// function of everything.
+/// The large pieces are separate functions, which compile in a fraction of the time of one function.
 #[inline(always)]
 fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s: &mut Scratch<S>) {
     let zero = S::splat(simd, S::Real::from_f64(0.0));
@@ -197,8 +197,8 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     for (v, a) in state.v.iter_mut().zip(&s.qdd) {
         *v += h * *a;
     }
-    // Contacts see the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T with
-    // B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
+    // Contacts use the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T
+    // with B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
     if model.points > 0 || !model.grounds.is_empty() {
         predict(simd, model, state.v, &mut s.links);
         place_colliders(simd, model, &s.links, &mut s.placed);
@@ -257,7 +257,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     place_links(simd, model, state.q, state.v, &mut s.links);
 }
 
-/// [`forward_kinematics`] as a function of its own.
+/// [`forward_kinematics`] as a separate function.
 #[inline(never)]
 fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkData<S>]) {
     S::vectorize(
@@ -267,7 +267,7 @@ fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S
     );
 }
 
-/// [`accelerations`] as a function of its own.
+/// [`accelerations`] as a separate function.
 #[inline(never)]
 fn accelerate<S: Scalar>(
     simd: S::Simd,
@@ -308,7 +308,7 @@ fn efforts<S: Scalar>(
             }
             continue;
         }
-        // A force -k (q - q0) - d v is taken implicitly, at q + h v' and v' = v + h qdd: its part in qdd goes to the
+        // A force -k (q - q0) - d v is taken implicitly, at q + h v' and v' = v + h qdd. Its part in qdd goes to the
         // diagonal as h d + h^2 k, the rest stays as the effort -k (q + h v - q0) - d v.
         let (x, speed) = (q[usize::from(link.q)], v[at]);
         let damping = S::splat(simd, link.damping);
@@ -414,8 +414,8 @@ fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &
         let shrink = one / length;
         let new = [new[0] * shrink, new[1] * shrink, new[2] * shrink, new[3] * shrink];
         q[iq + 3..iq + 7].copy_from_slice(&new);
-        // The velocity is that of the centre of mass, the position that of the origin: the origin moves by h v and by what
-        // the turn about the centre does to the vector between them, R c before less R' c after.
+        // The velocity is that of the center of mass, the position that of the origin. The origin moves by h v and by
+        // the effect of the turn about the center on the vector between them, R c before less R' c after.
         let centre = splat::<S>(simd, link.centre);
         let before = sub(w.centre, w.position);
         let after = rotate(&matrix_of(new), centre);

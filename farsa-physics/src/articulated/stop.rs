@@ -1,10 +1,10 @@
-//! Joint stops while contacts push: one-sided rows beside the contacts'.
+//! Joint stops while contacts push: one-sided rows next to the contacts'.
 //!
-//! A stop that a joint would run into by itself is part of the joint's implicit diagonal. A contact's impulse may drive
-//! a joint into its stop within the step that the contact is found in, so every joint near a stop also gets a row here.
+//! A stop that a joint would reach by itself is part of the joint's implicit diagonal. A contact's impulse may drive a
+//! joint into its stop within the step of that contact, so every joint near a stop also gets a row here.
 //!
-//! Few of them run into it. The impulses change a joint's speed by `y . z`, with its row y and the response z, which is at most
-//! `|y| |z|`: while `|z|` is so small that the joint surely stays within its limits, its row is not looked at.
+//! Few of them reach it. The impulses change a joint's speed by `y . z`, with its row y and the response z, which is at
+//! most `|y| |z|`. The row is skipped while `|z|` is so small that the joint surely stays within its limits.
 
 use farsa_num::{Mask, Real, Scalar};
 
@@ -58,8 +58,8 @@ impl<S: Scalar> Stop<S> {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         let (one, h) = (zero.constant(1.0), S::splat(simd, model.h));
         let limits = &model.links[link];
-        // A stop is a spring at the end of the step, l = -h k (q + h v+ - q0). With v+ = v + A l, v without this stop, that is
-        // l = -h k (q + h v - q0) / (1 + h^2 k A): `gain` times the overrun that there would be without it.
+        // A stop is a spring at the end of the step, l = -h k (q + h v+ - q0). With v+ = v + A l, v without this stop,
+        // that is l = -h k (q + h v - q0) / (1 + h^2 k A), or `gain` times the overrun without the stop.
         let stiffness = h * S::splat(simd, limits.limit_stiffness);
         let length = response.sqrt() * zero.constant(LONGER);
         // |y . z| <= |y| |z|, less what may be rounded: of the positions, and of a sum of the speed and `entries` products.
@@ -82,7 +82,7 @@ impl<S: Scalar> Stop<S> {
         }
     }
 
-    /// Whether the joint stays within its limits in every lane, at a response that is no longer than `length`.
+    /// Returns whether the joint stays within its limits in every lane, at a response that is no longer than `length`.
     #[inline(always)]
     fn is_idle(&self, length: S) -> bool {
         length.le(self.idle).all()
@@ -107,10 +107,10 @@ pub(crate) fn length_of<S: Scalar>(simd: S::Simd, response: &[S]) -> S {
     sum.sqrt() * sum.constant(LONGER)
 }
 
-/// Sets up the rows of the joints near a stop; returns how many there are.
+/// Sets up the rows of the joints near a stop. Returns how many there are.
 ///
-/// `rows` (one word per entry) and `stops` [links] receive them; `v` are predicted velocities, `pushed` the
-/// lanes with contacts on them.
+/// `rows` (one word per entry) and `stops` [links] receive them. `v` are predicted velocities, `pushed` the lanes with
+/// contacts on them.
 #[inline(never)]
 pub(crate) fn set_up_stops<S: Scalar>(
     simd: S::Simd,
@@ -197,7 +197,7 @@ fn watch<S: Scalar>(
     count
 }
 
-/// Brings one stop's impulse to its law, given all others; `length` is that of the response or more, also afterwards.
+/// Brings one stop's impulse to its law, given all others. `length` is that of the response or more, also afterwards.
 #[inline(always)]
 pub(crate) fn relax_stop<S: Scalar>(
     simd: S::Simd,
@@ -287,7 +287,7 @@ mod tests {
             let mut other = response.clone();
             let mut size = 1.0;
             for sweep in 0..60 {
-                // A contact's row, and impulses that become smaller as sweeps go on.
+                // A contact's row, and impulses that decrease with the sweeps.
                 let change = stream.range(-1.0, 1.0) * size;
                 size *= 0.8;
                 for (z, other) in response.iter_mut().zip(&mut other) {

@@ -1,7 +1,7 @@
 //! Recursive dynamics of a forest of links: forward kinematics, articulated bodies, Newton-Euler, composite bodies.
 //!
-//! All functions work on slices of the caller and allocate nothing. A joint's own frame has its axis along z; floating
-//! links have six velocities: angular, then that of the centre of mass, both in the world's axes.
+//! All functions work on slices of the caller and allocate nothing. A joint's own frame has its axis along z. Floating
+//! links have six velocities: angular, then that of the center of mass, both in the world's axes.
 
 use farsa_num::{Real, Scalar, sin_cos};
 
@@ -34,8 +34,8 @@ pub fn forward_kinematics<S: Scalar>(
     }
 }
 
-/// Whether there is a link that only slides. Where there is none, the kernels are compiled as if there never were one: with a
-/// question of each link they take a tenth more.
+/// Returns whether there is a link that only slides. Without one, kernels are compiled for no such link, because a test
+/// at each link takes a tenth of the time.
 fn some_slide<R>(links: &[Link<R>]) -> bool {
     links.iter().any(|link| link.sliding.is_some())
 }
@@ -82,9 +82,9 @@ fn place<S: Scalar, const SLIDING: bool>(
         w.position = position;
         w.centre = add(position, rotate(&rotation, splat::<S>(simd, link.centre)));
     }
-    // Second pass, once the reference points are known: the joint's motion subspace s, v_i = v_parent + s q', and the
-    // acceleration that velocities alone give, c_i = v_parent x s q'. There is no term for a subspace that moves with the link,
-    // for s q' x s q' = 0, and none for the reference point: spatial vectors are taken where it is now.
+    // Second pass, with the reference points: the joint's motion subspace s, v_i = v_parent + s q', and the
+    // acceleration from velocities alone, c_i = v_parent x s q'. There is no term for a subspace that moves with the
+    // link, for s q' x s q' = 0. The reference point needs no term, because spatial vectors refer to its present place.
     for (i, link) in links.iter().enumerate() {
         let reference = work[usize::from(link.reference)].centre;
         let parent = if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].velocity };
@@ -98,7 +98,7 @@ fn place<S: Scalar, const SLIDING: bool>(
         let axis = [w.rotation[0][2], w.rotation[1][2], w.rotation[2][2]];
         match link.motion {
             Motion::Floating => {
-                // The centre of mass is the reference point.
+                // The center of mass is the reference point.
                 let (angular, linear) = ([v[at], v[at + 1], v[at + 2]], [v[at + 3], v[at + 4], v[at + 5]]);
                 let r = sub(reference, w.centre);
                 w.velocity = Spatial { angular, linear: add(linear, cross(angular, r)) };
@@ -133,10 +133,11 @@ fn rigid_inertia<S: Scalar>(simd: S::Simd, link: &Link<S::Real>, w: &LinkData<S>
 
 /// Joint accelerations under joint efforts: articulated bodies [Featherstone2008] table 7.1.
 ///
-/// `tau` [dofs] are efforts, `diagonal` [dofs] is added to the joint-space inertia (armature and h d + h^2 k of implicit
-/// terms), `qdd` [dofs] receives accelerations; `work` must have gone through [`forward_kinematics`]. Deviations: common axes and reference
-/// point instead of link coordinates; gravity [m/s2] as a field instead of an acceleration of the base; a floating
-/// link's linear acceleration is that of its centre of mass. The factor stays in `work` and `roots`.
+/// `tau` [dofs] are efforts, `diagonal` [dofs] is added to the joint-space inertia (armature and h d + h^2 k of
+/// implicit terms), `qdd` [dofs] receives accelerations. `work` must have gone through [`forward_kinematics`].
+/// Deviations: common axes and reference point instead of link coordinates. Gravity [m/s2] as a field instead of an
+/// acceleration of the base. A floating link's linear acceleration is that of its center of mass. The factor stays in
+/// `work` and `roots`.
 #[inline(always)]
 pub fn accelerations<S: Scalar>(
     simd: S::Simd,
@@ -175,15 +176,16 @@ fn articulated_bodies<S: Scalar, const SLIDING: bool>(
             w.inertia = rigid_inertia(simd, link, w);
         }
     }
-    // Bias forces p_i = v_i x* I_i v_i; gravity comes in with the acceleration of the base, below.
+    // Bias forces p_i = v_i x* I_i v_i. Gravity comes in with the acceleration of the base, below.
     for (link, w) in links.iter().zip(work.iter_mut()) {
         if !slides(link) {
             w.force = w.velocity.cross_force(w.inertia.times(w.velocity));
         }
     }
-    // Inwards, articulated inertias I^A and bias forces p^A. With U = I^A s, D = s . U + diagonal and u = tau - s . p^A a link
-    // hands its parent I^A - U U^T / D and p^A + (I^A - U U^T / D) c + U u / D. Common axes and one reference point: both are
-    // added as they are. A floating link takes its six velocities at once, with a Cholesky factor in the place of D.
+    // Inwards, articulated inertias I^A and bias forces p^A. With U = I^A s, D = s . U + diagonal and u = tau - s . p^A
+    // a link passes I^A - U U^T / D and p^A + (I^A - U U^T / D) c + U u / D to its parent. Common axes and one
+    // reference point: both are added unchanged. A floating link takes its six velocities at once, with a Cholesky
+    // factor instead of D.
     for (i, link) in links.iter().enumerate().rev() {
         let at = usize::from(link.dof);
         let w = &mut work[i];
@@ -224,7 +226,8 @@ fn articulated_bodies<S: Scalar, const SLIDING: bool>(
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.dof);
         if link.motion == Motion::Floating {
-            // I^A a = f - p^A. From spatial to conventional acceleration of the centre of mass: a + w x v, and free fall.
+            // I^A a = f - p^A. From spatial to conventional acceleration of the center of mass: a + w x v, and free
+            // fall.
             let w = &mut work[i];
             let effort = Spatial {
                 angular: [tau[at], tau[at + 1], tau[at + 2]],
@@ -268,8 +271,8 @@ impl<S: Scalar> Root<S> {
 
 /// Joint efforts that produce the accelerations `qdd` [dofs]: recursive Newton-Euler [Featherstone2008] table 5.1, into `tau` [dofs].
 ///
-/// `armature` counts; `work` must have gone through [`forward_kinematics`]. With `qdd` and velocities zero these are the efforts that hold
-/// the robot against gravity [m/s2]. Deviations as in [`accelerations`].
+/// `armature` counts. `work` must have gone through [`forward_kinematics`]. With `qdd` and velocities zero these are
+/// the efforts that hold the robot against gravity [m/s2]. Deviations as in [`accelerations`].
 #[inline(always)]
 pub fn inverse_dynamics<S: Scalar>(
     simd: S::Simd,
@@ -279,8 +282,8 @@ pub fn inverse_dynamics<S: Scalar>(
     work: &mut [LinkData<S>],
     tau: &mut [S],
 ) {
-    // Outwards, accelerations relative to free fall and the force that each link alone needs, f = I a + v x* I v; inwards,
-    // the forces of all that a joint carries, of which it feels tau = s . f.
+    // Outwards, accelerations relative to free fall and the force that each link alone needs, f = I a + v x* I v.
+    // Inwards, the forces of all that a joint carries, of which it feels tau = s . f.
     let zero = Spatial::zero(simd);
     let field = splat::<S>(simd, gravity);
     let base = Spatial { angular: zero.angular, linear: sub(zero.linear, field) };
@@ -347,8 +350,8 @@ pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut
             }
             continue;
         }
-        // I^c s is the force that a unit acceleration of the joint needs; what each joint above feels of it is an entry of the
-        // column, M_ji = s_j . I^c_i s_i.
+        // I^c s is the force that a unit acceleration of the joint needs. Its effect on each joint above is an entry of
+        // the column, M_ji = s_j . I^c_i s_i.
         let f = inertia.times(work[i].subspace);
         matrix[at * dofs + at] = work[i].subspace.dot(f) + S::splat(simd, link.armature);
         let mut above = link.parent;
@@ -377,7 +380,7 @@ pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut
 
 /// The Jacobian of a point of a link in the world's axes, into `matrix` [6 x dofs, rows: angular x, y, z, linear x, y, z].
 ///
-/// `point` is in the world [m]; `work` must have gone through [`forward_kinematics`].
+/// `point` is in the world [m]. `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn jacobian<S: Scalar>(
     simd: S::Simd,
@@ -398,8 +401,8 @@ pub fn jacobian<S: Scalar>(
         let l = &links[usize::from(next)];
         let w = &work[usize::from(next)];
         let at = usize::from(l.dof);
-        // A joint moves the point by its subspace, taken there: s_lin + s_ang x arm. Of a floating link's velocities the
-        // linear ones are those of its centre of mass, which may not be the reference.
+        // A joint moves the point by its subspace, taken there: s_lin + s_ang x arm. The linear velocities of a
+        // floating link are those of its center of mass, which may not be the reference.
         let arm = sub(point, w.reference);
         if l.motion == Motion::Floating {
             let arm = sub(point, w.centre);
@@ -424,7 +427,8 @@ pub fn jacobian<S: Scalar>(
     }
 }
 
-/// Kinetic energy of the links and their armatures [J]; `v` [dofs]; `work` must have gone through [`forward_kinematics`].
+/// Kinetic energy of the links and their armatures [J]. `v` [dofs]. `work` must have gone through
+/// [`forward_kinematics`].
 #[inline(always)]
 pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S], work: &mut [LinkData<S>]) -> S {
     rigid_inertias(simd, links, work);
@@ -439,7 +443,8 @@ pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S]
     twice * twice.constant(0.5)
 }
 
-/// Potential energy in the field `gravity` [m/s2] [J], zero at the world's origin; `work` must have gone through [`forward_kinematics`].
+/// Potential energy in the field `gravity` [m/s2] [J], zero at the world's origin. `work` must have gone through
+/// [`forward_kinematics`].
 #[inline(always)]
 pub fn potential_energy<S: Scalar>(
     simd: S::Simd,
@@ -454,7 +459,7 @@ pub fn potential_energy<S: Scalar>(
     energy
 }
 
-/// Centre of mass of all links in the world [m]; `work` must have gone through [`forward_kinematics`].
+/// Center of mass of all links in the world [m]. `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn centre_of_mass<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &[LinkData<S>]) -> [S; 3] {
     let zero = S::splat(simd, S::Real::from_f64(0.0));

@@ -1,5 +1,4 @@
-//! What the ports of a world report, from the words of its state and the places of its links: for a world alone and a
-//! lane.
+//! The ports of a world, read from the words of its state and the places of its links, for one world and a lane.
 
 use farsa_body::ports::{BodyId, JointId, PairContact, PairId};
 use farsa_body::robot::JointKind;
@@ -16,7 +15,7 @@ pub(crate) trait View<R: Real> {
     fn model(&self) -> &Model<R>;
     /// A word of the state.
     fn word(&self, index: usize) -> R;
-    /// Whether any of so many points, whose words begin at `first`, carries a normal impulse.
+    /// Returns whether any of `points` points, whose words begin at `first`, carries a normal impulse.
     fn carries(&self, first: usize, points: usize) -> bool {
         (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::from_f64(0.0))
     }
@@ -64,7 +63,7 @@ fn quaternion_about<R: Real, const I: usize>(m: &Matrix<R>) -> [R; 4] {
     q
 }
 
-/// Pose of a body's frame; the identity for a body that does not exist.
+/// Pose of a body's frame. The identity for a body that does not exist.
 pub(crate) fn pose<R: Real>(world: &impl View<R>, body: BodyId) -> Pose<R> {
     let Some(mount) = world.model().mounts.get(body.index()) else { return Pose::identity() };
     if mount.link == WORLD {
@@ -77,7 +76,7 @@ pub(crate) fn pose<R: Real>(world: &impl View<R>, body: BodyId) -> Pose<R> {
     }
 }
 
-/// Where the origin of a body's frame is; the world's origin for a body that does not exist.
+/// Where the origin of a body's frame is. The world's origin for a body that does not exist.
 pub(crate) fn origin<R: Real>(world: &impl View<R>, body: BodyId) -> Vector<R> {
     world.model().mounts.get(body.index()).map_or([R::from_f64(0.0); 3], |mount| place(world, mount))
 }
@@ -109,12 +108,12 @@ pub(crate) fn velocity<R: Real>(world: &impl View<R>, body: BodyId) -> Twist<R> 
     Twist { linear: velocity.at(sub(origin, reference)), angular: velocity.angular }
 }
 
-/// Angle or displacement of a joint; 0 for one that has none.
+/// Angle or displacement of a joint, or 0 for one that has none.
 pub(crate) fn joint_position<R: Real>(world: &impl View<R>, joint: JointId) -> f32 {
     world.model().joint_index(joint).map_or(0.0, |(q, _)| world.word(q).to_f64() as f32)
 }
 
-/// Speed of a joint; 0 for one that has none.
+/// Speed of a joint, or 0 for one that has none.
 pub(crate) fn joint_speed<R: Real>(world: &impl View<R>, joint: JointId) -> f32 {
     let model = world.model();
     model.joint_index(joint).map_or(0.0, |(_, v)| world.word(model.positions + v).to_f64() as f32)
@@ -129,14 +128,14 @@ pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value:
     }
 }
 
-/// Whether a point of a pair carries a normal force.
+/// Returns whether a point of a pair carries a normal force.
 pub(crate) fn touches<R: Real>(world: &impl View<R>, pair: PairId) -> bool {
     let model = world.model();
     let Some(pair) = model.pairs.get(pair.index()) else { return false };
     world.carries(model.first_point() + POINT_WORDS * pair.point, pair.points)
 }
 
-/// How a pair touches.
+/// Returns the contact of a pair.
 pub(crate) fn pair_contact<R: Real>(world: &impl View<R>, pair: PairId) -> PairContact {
     let model = world.model();
     let Some(pair) = model.pairs.get(pair.index()) else { return PairContact::default() };
@@ -175,7 +174,7 @@ pub(crate) fn place_joint<R: Real>(world: &mut impl View<R>, joint: JointId, pos
     }
 }
 
-/// Puts a floating body somewhere; nothing happens to another.
+/// Puts a floating body somewhere, nothing happens to another.
 pub(crate) fn place_body<R: Real>(world: &mut impl View<R>, body: BodyId, pose: Pose, twist: Twist) {
     let model = world.model();
     let Some(link) = model.link_of(body) else { return };

@@ -1,4 +1,4 @@
-//! What the eyes of a camera see of an articulated world.
+//! Rays of a camera in an articulated world.
 
 use farsa_body::ports::{BodyId, Seen};
 use farsa_num::Real;
@@ -8,10 +8,10 @@ use crate::articulated::ray::{collider_frame, enter};
 use crate::articulated::spatial::{Vector, dot, rotate_back, sub};
 use crate::articulated::view::View;
 
-/// The first collider on each of many rays from one place, other than those of `but`.
+/// The first collider on each of many rays from one place, except those of `but`.
 ///
-/// A collider's frame is found once for all rays. Most rays pass far from most colliders, which a ball around it tells for a few
-/// products; the margin of that test is larger than its rounding, so it decides nothing.
+/// A collider's frame is computed once for all rays. Most rays pass far from most colliders, which a test with a ball
+/// around it shows at little cost. The margin of that test is larger than its rounding, so it does not change results.
 pub(crate) fn look<R: Real>(
     world: &impl View<R>,
     from: [f32; 3],
@@ -55,10 +55,10 @@ pub(crate) fn look<R: Real>(
 
 /// A ball around a collider, as an eye sees it.
 struct Around<R> {
-    /// From the eye to its centre, and the square of that way.
+    /// From the eye to its center, and the square of that way.
     away: Vector<R>,
     square: R,
-    /// Its radius, and the square of what a ray's distance from the centre must exceed.
+    /// Its radius, and the square of what a ray's distance from the center must exceed.
     radius: R,
     room: R,
 }

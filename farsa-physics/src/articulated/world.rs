@@ -54,7 +54,7 @@ impl<R: Precision> World<R> {
         &self.state
     }
 
-    /// The same, to be changed; [`Arrange::finish_placement`] must follow.
+    /// Returns the state for changes. [`Arrange::finish_placement`] must follow.
     pub fn state_mut(&mut self) -> &mut [R] {
         &mut self.state
     }
@@ -69,7 +69,7 @@ impl<R: Precision> World<R> {
         &self.state[self.model.positions..self.model.positions + self.model.dofs]
     }
 
-    /// Whether every word of the state is finite.
+    /// Returns whether every word of the state is finite.
     pub fn is_finite(&self) -> bool {
         self.state[..self.model.positions + self.model.dofs].iter().all(|x| x.to_f64().is_finite())
     }
@@ -95,14 +95,14 @@ impl<R: Precision> World<R> {
         sum
     }
 
-    /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs; N m or N].
+    /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs. N m or N].
     ///
     /// # Panics
     /// When there is not a place for each degree of freedom.
     pub fn gravity_efforts(&mut self, tau: &mut [R]) {
         let (model, state) = (&self.model, &self.state);
         let Scratch { links: work, qdd, .. } = &mut self.scratch;
-        // At rest, and without accelerations; each step writes them anew.
+        // At rest, and without accelerations. Each step writes them again.
         qdd.fill(R::from_f64(0.0));
         forward_kinematics((), &model.links, &state[..model.positions], qdd, work);
         inverse_dynamics((), &model.links, model.gravity, qdd, work, tau);

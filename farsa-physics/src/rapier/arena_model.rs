@@ -19,21 +19,21 @@ use crate::rapier::arena_scene::{ArenaScene, Block, Chassis};
 use crate::rapier::convert::vector;
 use crate::rapier::error::RapierError;
 
-/// What a wheel turns about.
+/// The axis of a wheel.
 pub(crate) const AXLE: JointAxis = JointAxis::AngX;
-/// What a wheel lacks of its commanded speed when its motor gives all its torque, in parts of the greatest speed.
+/// The lag of a wheel behind its commanded speed at its motor's full torque, in parts of the greatest speed.
 const LAG: f64 = 0.01;
 /// The ground.
 const GROUND: Group = Group::GROUP_1;
-/// Hulls, blocks and everything that stands on the ground.
+/// Hulls, blocks and all other parts on the ground.
 const SOLID: Group = Group::GROUP_2;
 /// Wheels and skids, which touch the ground alone.
 const FEET: Group = Group::GROUP_3;
 /// Friction of what is rougher than everything that touches it: of two surfaces the smoother one decides.
 const ROUGH: f32 = 1e3;
-/// How high the skids are above the ground, in radii of the wheels: a robot stands on its wheels and one of them.
+/// The height of the skids above the ground, in radii of the wheels. A robot rests on its wheels and one skid.
 const CLEARANCE: f64 = 0.01;
-/// How deep a block may lie in something at the start: rounding [m].
+/// The depth of a block in another part at the start, from rounding [m].
 const SLACK: f32 = 1e-6;
 
 /// A robot in rapier: the bodies of its chassis and wheels.
@@ -42,9 +42,9 @@ pub(crate) struct Vehicle {
     pub(crate) body: RigidBodyHandle,
     pub(crate) hull: ColliderHandle,
     pub(crate) multibody: MultibodyIndex,
-    /// Of each wheel its number among the links, and that of its velocity.
+    /// The number of each wheel among the links, and that of its velocity.
     pub(crate) wheels: [(usize, usize); 2],
-    /// How high the centre of mass and the axle are: the body's origin there [m].
+    /// The height of the center of mass and the axle, where the body's origin is [m].
     pub(crate) axle: f32,
     /// The largest torque of each motor [N m].
     pub(crate) torque: f32,
@@ -52,7 +52,7 @@ pub(crate) struct Vehicle {
     pub(crate) gain: f32,
 }
 
-/// A block in rapier; the body's origin is its middle.
+/// A block in rapier. The body's origin is its middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parcel {
     pub(crate) body: RigidBodyHandle,
@@ -61,7 +61,7 @@ pub(crate) struct Parcel {
     pub(crate) color: [f32; 3],
 }
 
-/// What the bodies of the ports are in rapier.
+/// The bodies of the ports in rapier.
 #[derive(Clone, Debug)]
 pub(crate) struct ArenaPlan {
     pub(crate) vehicles: Vec<Vehicle>,
@@ -74,7 +74,7 @@ pub(crate) struct ArenaPlan {
 }
 
 impl ArenaPlan {
-    /// The body of a collider, if it has one; blocks are numbered from `first`.
+    /// The body of a collider, if it has one. Blocks are numbered from `first`.
     pub(crate) fn body_of(&self, collider: ColliderHandle, first: usize) -> Option<BodyId> {
         let robots = self.vehicles.len();
         let number = self.vehicles.iter().position(|vehicle| vehicle.hull == collider);
@@ -108,7 +108,7 @@ fn collider(shape: SharedShape, friction: f64, of: Group, with: Group) -> Collid
         .collision_groups(groups(of, with))
 }
 
-/// Something that stands on the ground and does not move.
+/// Builds a fixed part on the ground.
 fn obstacle(shape: SharedShape, at: Frame) -> Collider {
     collider(shape, f64::from(ROUGH), SOLID, SOLID).position(at).build()
 }
@@ -124,7 +124,7 @@ fn prism(number: usize, convex: &Convex) -> Result<SharedShape, RapierError> {
         }
         ConvexForm::Hull { points } => points.iter().copied().map(vector).collect(),
     };
-    let unusable = || RapierError::Unusable {
+    let unusable = || RapierError::SceneObject {
         name: alloc::format!("convex obstacle {number}"),
         why: alloc::format!("{} points span no solid", points.len()),
     };
@@ -152,7 +152,7 @@ fn add_vehicle(physics: &mut PhysicsWorld, robot: &MobileRobot, chassis: &Chassi
     let own = (1.0 - chassis.wheel_share) * chassis.mass;
     let body = rigid().pose(at).additional_mass_properties(hull_mass(own, radius, robot.height));
     let body = physics.insert_body(body);
-    // From where a skid's middle is, so that it does not stand on its rim.
+    // The hull begins at the height of a skid's middle, so that it does not rest on its rim.
     let bottom = (0.5 * axle).min(0.5 * robot.height);
     let half = 0.5 * (robot.height - bottom);
     let shape = SharedShape::cylinder(half as f32, radius as f32);
@@ -177,7 +177,7 @@ fn add_vehicle(physics: &mut PhysicsWorld, robot: &MobileRobot, chassis: &Chassi
     });
     let multibody = physics.multibody_joints.rigid_body_link(body)?.multibody;
     let found = physics.multibody_joints.get_multibody_mut(multibody)?;
-    // The root gets its six velocities here; they have no damping of their own.
+    // The root gets its six velocities here. They have no damping.
     found.forward_kinematics(&physics.bodies, true);
     found.damping_mut().fill(0.0);
     let mut links = [(0, 0); 2];
@@ -227,7 +227,7 @@ fn check_blocks(physics: &PhysicsWorld, plan: &ArenaPlan) -> Result<(), RapierEr
     Ok(())
 }
 
-/// Builds everything; the arena has been looked at.
+/// Builds everything. The arena has been looked at.
 pub(crate) fn build(scene: &ArenaScene, options: &ArenaOptions) -> Result<(ArenaPlan, PhysicsWorld), RapierError> {
     let arena = &scene.arena;
     let options = options.options(arena.time_step)?;
@@ -252,7 +252,7 @@ pub(crate) fn build(scene: &ArenaScene, options: &ArenaOptions) -> Result<(Arena
     let vehicles = arena.robots.iter().zip(&scene.chassis).enumerate().map(|(number, (placed, chassis))| {
         let pose = planar(placed.at, placed.heading);
         let vehicle = add_vehicle(&mut physics, &placed.robot, chassis, &pose);
-        vehicle.ok_or_else(|| RapierError::Unusable {
+        vehicle.ok_or_else(|| RapierError::SceneObject {
             name: alloc::format!("robot {number}"),
             why: "its wheels cannot be joined to it".into(),
         })

@@ -1,15 +1,15 @@
-//! How a world of wheeled robots is stepped in rapier.
+//! The options of a world of wheeled robots in rapier.
 
 use crate::rapier::error::RapierError;
 use crate::rapier::options::Options;
 
-/// How a world of wheeled robots is stepped in rapier; the control step is the arena's.
+/// The options of a world of wheeled robots in rapier. The control step is the arena's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArenaOptions {
     /// The longest step of rapier [s]: a control step is divided into as few equal ones as are no longer.
     pub longest_step: f64,
-    /// Iterations of the solver per step of rapier, which divide it further; motors' laws are evaluated once per step.
+    /// Iterations of the solver per step of rapier, which divide it further. Motors' laws are evaluated once per step.
     pub iterations: u32,
     /// Sweeps of the solver over contacts in each iteration.
     pub sweeps: u32,
@@ -39,7 +39,7 @@ impl Default for ArenaOptions {
 }
 
 impl ArenaOptions {
-    /// The same as options of a world of rapier whose control step is this [s].
+    /// Returns the options of a world of rapier with this control step [s].
     pub(crate) fn options(&self, time_step: f64) -> Result<Options, RapierError> {
         let range = [1e-6, 1.0];
         if !(range[0]..=range[1]).contains(&self.longest_step) {

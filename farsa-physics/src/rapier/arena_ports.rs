@@ -13,7 +13,7 @@ use crate::arena::view;
 use crate::rapier::arena_world::ArenaWorld;
 use crate::rapier::snapshot::{Kept, pack, unpack};
 
-/// Words of a pair in a snapshot: the other body plus one, or 0; then its contact.
+/// Words of a pair in a snapshot: the other body plus one, or 0. Then its contact.
 const PAIR_WORDS: usize = 10;
 
 impl Handles for ArenaWorld {

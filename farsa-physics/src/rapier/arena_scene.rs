@@ -1,5 +1,6 @@
 //! Wheeled robots as rigid bodies, and what they can push, as data.
 
+use alloc::format;
 use alloc::vec::Vec;
 
 use farsa_body::ports::{BodyId, PairId};
@@ -8,7 +9,7 @@ use farsa_body::robots::MobileRobot;
 use crate::arena::description::{Arena, Wall};
 use crate::rapier::error::RapierError;
 
-/// What a wheeled robot is as a rigid body, beside what [`MobileRobot`] says of it.
+/// The properties of a wheeled robot as a rigid body, in addition to those of [`MobileRobot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Chassis {
@@ -30,11 +31,11 @@ impl Chassis {
     /// [`MobileRobot::DENSITY`] [kg/m3].
     pub const DENSITY: f64 = MobileRobot::DENSITY;
 
-    /// The chassis of a robot of which only the size is known.
+    /// Chooses the chassis of a robot by its size.
     ///
-    /// All of it is chosen: its mass by [`Chassis::DENSITY`], a tenth of it in the wheels; motors that together push with half
-    /// the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would; rubber wheels (0.8)
-    /// and a smooth hull (0.3).
+    /// All of it is chosen: its mass by [`Chassis::DENSITY`], a tenth of it in the wheels. Motors that together push
+    /// with half the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would.
+    /// Rubber wheels (0.8) and a smooth hull (0.3).
     pub fn for_robot(robot: &MobileRobot) -> Self {
         let mass = robot.mass();
         let wheel = robot.wheel_radius;
@@ -61,7 +62,7 @@ impl Chassis {
     }
 }
 
-/// A box that stands on the ground and can be pushed over it.
+/// A box on the ground that robots can push.
 ///
 /// Its frame has x along its length, z up and the origin on the ground below its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +83,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// A grey block of this size [m] and mass [kg] with its middle at `centre` [m], along the axes, with friction 0.5.
+    /// A gray block of this size [m] and mass [kg] with its middle at `centre` [m], along the axes, with friction 0.5.
     pub fn new(centre: [f64; 2], size: [f64; 3], mass: f64) -> Self {
         Self { centre, heading: 0.0, size, mass, friction: 0.5, color: Wall::COLOR }
     }
@@ -109,7 +110,7 @@ impl Block {
 
 /// An arena whose robots are rigid bodies on wheels, and blocks that they can push.
 ///
-/// Bodies, joints and actuators have the numbers of the arena; blocks come after the areas.
+/// Bodies, joints and actuators have the numbers of the arena. Blocks come after the areas.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics, World as _};
@@ -136,9 +137,9 @@ impl Block {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ArenaScene {
-    /// The arena; its rule of collisions is of the kinematic world and not looked at here.
+    /// The arena. Its rule of collisions is of the kinematic world and not looked at here.
     pub arena: Arena,
-    /// What each of its robots is as a rigid body.
+    /// The chassis of each of its robots.
     pub chassis: Vec<Chassis>,
     /// The blocks.
     pub blocks: Vec<Block>,
@@ -151,7 +152,7 @@ impl ArenaScene {
         Self { arena, chassis, blocks: Vec::new() }
     }
 
-    /// Adds a block; its number.
+    /// Adds a block. Its number.
     pub fn add_block(&mut self, block: Block) -> usize {
         self.blocks.push(block);
         self.blocks.len() - 1
@@ -167,19 +168,21 @@ impl ArenaScene {
         BodyId((self.arena_bodies() + block) as u16)
     }
 
-    /// The pair of a block and whatever it touches beside the ground; those of robots come before.
+    /// Returns the pair of a block and the body that it touches, except the ground. Pairs of robots come first.
     pub fn block_pair(&self, block: usize) -> PairId {
         PairId((self.arena.robots.len() + block) as u16)
     }
 
-    /// Looks at everything but the arena, which is looked at elsewhere.
+    /// Looks at everything but the arena, which is looked at in other places.
     pub(crate) fn check(&self) -> Result<(), RapierError> {
         let (robots, chassis) = (self.arena.robots.len(), self.chassis.len());
         if robots != chassis {
             return Err(RapierError::Chassis { robots, chassis });
         }
         if let Some(robot) = self.arena.robots.iter().position(|placed| placed.robot.attachment.is_some()) {
-            return Err(RapierError::Attachment { robot });
+            let why =
+                format!("robot {robot} has an attachment device, which holds nothing in rapier: take it off (`None`)");
+            return Err(RapierError::Unsupported { why });
         }
         let fits = |(_, value, [low, high]): &(&str, f64, [f64; 2])| (*low..=*high).contains(value);
         for (robot, chassis) in self.chassis.iter().enumerate() {

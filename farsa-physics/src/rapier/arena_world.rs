@@ -28,21 +28,24 @@ use crate::rapier::pushes::Pushes;
 use crate::rapier::snapshot::copy;
 use crate::rapier::world::LEAST_STIFFNESS;
 
-/// A planar world whose robots are rigid bodies on wheels, in rapier; the ports of [`crate::arena::World`], and blocks.
+/// A planar world whose robots are rigid bodies on wheels, in rapier. The ports of [`crate::arena::World`], and blocks.
 ///
-/// - *Robots*: a hull (upright cylinder) on two wheels and two skids without friction, one of which is on the ground. Wheels
-///   touch the ground in one point each. So robots accelerate, slip and stall. The centre of mass is between the wheels.
-/// - *Motors* turn a wheel with a torque in proportion to what it lacks of the commanded speed, all of it where that is a
-///   hundredth of the greatest speed or more; for a NaN they stand still.
+/// - *Robots*: a hull (upright cylinder) on two wheels and two skids without friction, one of which is on the ground.
+///   Wheels touch the ground in one point each. So robots accelerate, slip and stall. The center of mass is between the
+///   wheels.
+/// - *Motors* turn a wheel with a torque in proportion to its lag behind the commanded speed, and with the full torque
+///   from a hundredth of the greatest speed on. NaN stops them.
 /// - *Wheels* report the mean speed of the last control step, as encoders do, and positions within +-16 turns.
-/// - *Walls, convex obstacles and cylinders* do not move. Of two surfaces that rub the smoother one decides; walls and ground
-///   are rougher than anything.
-/// - *Contacts*: pair `r` is robot `r` and what its hull met hardest in any step of rapier of the last control step, with that
-///   force; then come the pairs of blocks. `None` is a wall, and nothing where it does not touch. The ground is left out.
-/// - *Seen* are robots and cylinders as in the kinematic world; blocks by the side that is most nearly on the ground, as if
-///   they stood on it, in the order of the numbers; rays in space meet them as they lie.
+/// - *Walls, convex obstacles and cylinders* do not move. The smoother of two surfaces decides. Walls and ground are
+///   rougher than anything.
+/// - *Contacts*: pair `r` is robot `r` and what its hull met hardest in any step of rapier of the last control step,
+///   with that force. Then come the pairs of blocks. `None` is a wall, and nothing where it does not touch. The ground
+///   is left out.
+/// - *Sight* shows robots and cylinders as in the kinematic world. A block appears by the side that is most nearly on
+///   the ground, as if it rested on it, in the order of the numbers. Rays in space hit blocks in their actual pose.
 /// - *Poses* of robots and blocks are those of rapier: a robot leans by some tenths of a degree on its skids.
-/// - *Arranging*: a body keeps its place and heading of a pose, upright and at rest. What is put into something is pushed out.
+/// - *Arranging*: a body keeps its place and heading of a pose, upright and at rest. Overlapping bodies are pushed
+///   apart.
 ///
 /// A world that has broken down does not step, and every port of it returns NaN, until it is cleared or restored.
 pub struct ArenaWorld {
@@ -50,15 +53,15 @@ pub struct ArenaWorld {
     pub(crate) plan: ArenaPlan,
     pub(crate) physics: PhysicsWorld,
     initial: PhysicsWorld,
-    /// Those of a kinematic world: places, wheels, commands and what is shown.
+    /// The words of a kinematic world: places, wheels, commands, LEDs and signals.
     pub(crate) words: Vec<f32>,
     pub(crate) crowd: Crowd,
-    /// Of each pair the other body and how they touched.
+    /// The other body of each pair, and the contact.
     pub(crate) met: Vec<(Option<BodyId>, PairContact)>,
     /// The blocks as sensors of the plane see them.
     pub(crate) slabs: Vec<Slab>,
     pub(crate) lost: bool,
-    /// Whether something was placed since colliders and neighbours were brought up to date.
+    /// True if something was placed since colliders and neighbors were brought up to date.
     pub(crate) moved: bool,
     /// Forces from outside that act in the next control step.
     pub(crate) pushes: Pushes,
@@ -71,8 +74,8 @@ impl ArenaWorld {
     /// A world at its description's start.
     ///
     /// # Errors
-    /// What is wrong with the arena ([`RapierError::Arena`]), a robot with an attachment device, not as many chassis as
-    /// robots, a number out of its range, a block that overlaps something.
+    /// A fault of the arena ([`RapierError::Arena`]), a robot with an attachment device, a number of chassis that
+    /// differs from that of robots, a number out of its range, or a block that overlaps something.
     pub fn new(scene: &ArenaScene, options: &ArenaOptions) -> Result<Self, RapierError> {
         let model = Model::new(&scene.arena)?;
         scene.check()?;
@@ -103,12 +106,12 @@ impl ArenaWorld {
         self.plan.vehicles.len()
     }
 
-    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }
 
-    /// Whether the world has not broken down.
+    /// Returns whether the world has not broken down.
     pub fn is_finite(&self) -> bool {
         !self.lost
     }
@@ -149,7 +152,7 @@ impl ArenaWorld {
         at.compose(&Pose::at([0.0, 0.0, -parcel.half[2]]))
     }
 
-    /// The velocity of a body's origin, which lies so far below its centre of mass in its frame.
+    /// The velocity of a body's origin, which lies so far below its center of mass in its frame.
     fn below(pose: &Pose, linear: Vector, angular: Vector, depth: f32) -> Twist {
         let arm = Vector::from(pose.rotate([0.0, 0.0, -depth]));
         Twist { linear: (linear + angular.cross(arm)).into(), angular: angular.into() }
@@ -204,9 +207,9 @@ impl ArenaWorld {
 
     /// Gives rapier the motors' law: a torque in proportion to the speed that a wheel lacks, up to the largest.
     ///
-    /// As a damping it is part of the multibody's mass. A motor of rapier is a constraint, which at each wheel works against
-    /// that of friction: with few sweeps wheels slip in proportion to what they push, and impulses that start where the last
-    /// ones ended make the wheels of one axle push against each other until the grip is used up.
+    /// The law is a damping and so part of the multibody's mass. A motor of rapier is a constraint, which works against
+    /// the friction of each wheel. With few sweeps wheels slip in proportion to the pushed load. Impulses that start
+    /// from the last step's make the wheels of one axle push against each other until the grip is exhausted.
     fn drive(&mut self) {
         for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
             let most = self.model.kind(robot).max_wheel_speed;
@@ -220,7 +223,7 @@ impl ArenaWorld {
                 let gain = vehicle.gain.min(vehicle.torque / lacking.abs());
                 let Some(found) = multibody.link_mut(link) else { continue };
                 let rest = found.joint.coords()[AXLE as usize] + gain * commanded / LEAST_STIFFNESS;
-                // rapier would replace an acceleration that is none by zero and go on.
+                // rapier would replace an acceleration of NaN by zero and continue.
                 self.lost |= !(rest.is_finite() && lacking.is_finite());
                 found.joint.set_spring(AXLE as usize, LEAST_STIFFNESS, rest);
                 multibody.damping_mut()[dof] = gain;
@@ -278,8 +281,8 @@ impl ArenaWorld {
         }
     }
 
-    /// Reads how far wheels have turned, from where they were when this was called last; their positions are kept within their
-    /// range.
+    /// Reads how far wheels have turned, from where they were when this was called last. Their positions are kept
+    /// within their range.
     fn count(&mut self) {
         for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
             let first = self.model.robot_word(robot, WHEELS);
@@ -324,7 +327,7 @@ impl ArenaWorld {
         let parcel = &self.plan.parcels[block];
         let pose = self.block_pose(block);
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| pose.rotate(axis));
-        // The last of equals, so that one that stands upright does so.
+        // The last of equals, so that an upright block stays upright.
         let up = (0..3).fold(2, |up, k| if axes[k][2].abs() > axes[up][2].abs() { k } else { up });
         let [along, across] = [[1, 2], [0, 2], [0, 1]][up];
         let [x, y, _] = axes[along];
@@ -344,7 +347,7 @@ impl ArenaWorld {
         }
     }
 
-    /// Back to the start, with everything forgotten.
+    /// Restores the start, without commands, forces or contacts.
     pub(crate) fn reset(&mut self) {
         self.physics = copy(&self.initial);
         self.pushes.clear();
@@ -376,7 +379,7 @@ impl ArenaWorld {
         self.moved = true;
     }
 
-    /// Puts a robot, cylinder or block down, upright and at rest; areas have nothing in rapier.
+    /// Puts a robot, cylinder or block down, upright and at rest. Areas have nothing in rapier.
     pub(crate) fn put_body(&mut self, body: BodyId, pose: &Pose) {
         let robots = self.plan.vehicles.len();
         self.moved = true;
@@ -428,7 +431,7 @@ impl ArenaWorld {
         self.observe();
     }
 
-    /// Whether rapier's state is of a world of this description, as far as numbers of parts say.
+    /// Returns whether rapier's state is of a world of this description, judged by the numbers of parts.
     pub(crate) fn fits(&self, physics: &PhysicsWorld) -> bool {
         let parts = |p: &PhysicsWorld| {
             let dofs: Vec<_> = p.multibody_joints.multibodies().map(Multibody::ndofs).collect();

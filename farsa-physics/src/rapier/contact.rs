@@ -8,7 +8,7 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::rapier::model::{RobotPlan, Touching};
 
-/// The flag in a contact's number that says that it is new.
+/// The flag in a contact's number that marks a new contact.
 const NEW: u32 = 1 << 31;
 
 /// The manifolds of a pair, and whether its first collider is rapier's second.
@@ -22,7 +22,7 @@ fn points(manifold: &ContactManifold) -> impl Iterator<Item = &Contact> {
     manifold.data.solver_contacts.iter().filter_map(|c| manifold.points.get((c.contact_id[0] & !NEW) as usize))
 }
 
-/// Whether a point of a pair carries a normal force.
+/// Returns whether a point of a pair carries a normal force.
 pub(crate) fn touches(physics: &PhysicsWorld, pair: &Touching) -> bool {
     let Some((manifolds, _)) = manifolds(physics, pair.colliders) else { return false };
     manifolds.iter().any(|manifold| points(manifold).any(|point| point.data.impulse > 0.0))
@@ -37,13 +37,13 @@ fn normal_force(physics: &PhysicsWorld, pair: &Touching) -> f32 {
 
 /// The friction impulse of a whole step at a point of a multibody, on rapier's first body.
 ///
-/// rapier keeps it along two directions that it does not expose. What it keeps for the next start are the same two
-/// numbers of the last iteration and their vector in the world: from these follow the directions.
+/// rapier keeps it along two directions that it does not expose. Its memory for the next start are the same two numbers
+/// of the last iteration and their vector in the world: from these follow the directions.
 fn friction_at(point: &Contact, normal: Vector) -> Vector {
     let data = &point.data;
     let (last, world) = (data.warmstart_tangent_impulse, data.warmstart_tangent_world);
-    // With t1 and t2 = t1 x n the two directions, `world` is a t1 + b t2 and `across` is a t2 - b t1: solved for t1 and
-    // t2, the determinant is a^2 + b^2.
+    // With t1 and t2 = t1 x n the two directions, `world` is a t1 + b t2 and `across` is a t2 - b t1. In the solution
+    // for t1 and t2, the determinant is a^2 + b^2.
     let across = -normal.cross(world);
     let square = last.x * last.x + last.y * last.y;
     if square > 0.0 {
@@ -66,7 +66,7 @@ fn friction(manifold: &ContactManifold, at_points: bool, iterations: usize) -> V
     points(manifold).next().map_or(Vector::ZERO, |point| point.data.warmstart_tangent_world * iterations as f32)
 }
 
-/// How a pair touched in the last step of rapier; its depth is that of the bodies' present places.
+/// Returns the contact of a pair in the last step of rapier. Its depth is that of the bodies' present places.
 pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairContact {
     let mut contact = PairContact { depth: f32::NEG_INFINITY, ..PairContact::default() };
     let Some((manifolds, flipped)) = manifolds(physics, pair.colliders) else { return contact };
@@ -102,10 +102,12 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
     contact
 }
 
-/// Sets the torques of rolling and spinning resistance, which rapier does not know, on the bodies of the pairs that have any.
+/// Applies the torques of rolling and spinning resistance, which rapier does not have, to the bodies of the pairs that
+/// have any.
 ///
-/// The torque is the surface's rolling friction times the normal force of the step before, against the relative rotation,
-/// but no more than stops a free body's rotation within the step. A link of a multibody counts as immovable for that.
+/// The torque is the surface's rolling friction times the normal force of the previous step, against the relative
+/// rotation. It is at most the torque that stops a free body's rotation within the step. A link of a multibody counts
+/// as immovable there.
 pub(crate) fn roll(physics: &mut PhysicsWorld, plan: &RobotPlan) {
     for pair in plan.pairs.iter().filter(|pair| pair.rolling_friction > 0.0) {
         for carrier in pair.carriers.iter().flatten() {

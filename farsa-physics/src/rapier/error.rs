@@ -23,60 +23,19 @@ pub enum RapierError {
         /// The lowest and highest value.
         range: [f64; 2],
     },
-    /// A plane on a body that moves; planes are ground.
-    MovingPlane {
-        /// The collider's name.
-        collider: String,
+    /// A part that rapier cannot simulate: a moving plane, friction on the ground below a sliding body, or an attachment device.
+    Unsupported {
+        /// The part and the reason.
+        why: String,
     },
-    /// Ground below a body that slides; rapier has no friction in a joint.
-    Ground {
-        /// The body's name.
-        body: String,
-    },
-    /// A number of an object is NaN, infinite or out of its range.
+    /// An object that has an invalid number, or a geometry from which rapier makes no collider.
     SceneObject {
         /// The object's name.
         name: String,
-        /// Which number.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// An object with a mass whose geometry does not move.
-    Immovable {
-        /// The object's name.
-        name: String,
-        /// Its geometry.
-        geometry: &'static str,
-    },
-    /// A triangle of a vertex that the mesh does not have.
-    Triangle {
-        /// The object's name.
-        name: String,
-        /// The triangle's number.
-        triangle: usize,
-        /// The vertex's number.
-        vertex: u32,
-        /// How many vertices there are.
-        count: usize,
-    },
-    /// A height field that has not as many heights as rows times columns, or fewer than two of either.
-    Grid {
-        /// The object's name.
-        name: String,
-        /// Number of rows and columns.
-        size: [usize; 2],
-        /// Number of heights.
-        heights: usize,
-    },
-    /// Points or triangles that rapier makes nothing of.
-    Unusable {
-        /// The object's name.
-        name: String,
-        /// Why.
+        /// The fault.
         why: String,
     },
-    /// The arena is none.
+    /// A fault of the arena.
     Arena(ArenaError),
     /// There are not as many chassis as robots.
     Chassis {
@@ -84,11 +43,6 @@ pub enum RapierError {
         robots: usize,
         /// Number of chassis.
         chassis: usize,
-    },
-    /// A robot with an attachment device, of which this world has none.
-    Attachment {
-        /// The robot's number.
-        robot: usize,
     },
     /// A number of a robot as a rigid body, or of a block, is out of its range.
     Part {
@@ -107,7 +61,7 @@ pub enum RapierError {
     BlockOverlap {
         /// The block's number.
         block: usize,
-        /// How deep it lies in it [m].
+        /// The depth of the overlap [m].
         depth: f64,
     },
 }
@@ -138,28 +92,10 @@ impl fmt::Display for RapierError {
                 let nearest = if *value > *high { high } else { low };
                 write!(f, "option {name} is {value}, not from {low} to {high}; the nearest is {nearest}")
             }
-            Self::Ground { body } => write!(f, "body {body}: nothing rubs on the ground that it slides on here"),
-            Self::MovingPlane { collider } => write!(f, "collider {collider}: a plane does not move"),
-            Self::SceneObject { name, field, value } => write!(f, "object {name}: {field} is {value}"),
-            Self::Immovable { name, geometry } => {
-                write!(f, "object {name}: a {geometry} does not move, so it has no mass")
-            }
-            Self::Triangle { name, triangle, vertex, count } => {
-                let last = count.saturating_sub(1);
-                write!(f, "object {name}: triangle {triangle} has vertex {vertex}; the last of {count} is {last}")
-            }
-            Self::Grid { name, size: [rows, columns], heights } => {
-                write!(
-                    f,
-                    "object {name}: {heights} heights for {rows} rows of {columns}, of which there are at least two"
-                )
-            }
-            Self::Unusable { name, why } => write!(f, "object {name}: {why}"),
+            Self::Unsupported { why } => f.write_str(why),
+            Self::SceneObject { name, why } => write!(f, "object {name}: {why}"),
             Self::Arena(e) => e.fmt(f),
             Self::Chassis { robots, chassis } => write!(f, "{chassis} chassis for {robots} robots: one for each"),
-            Self::Attachment { robot } => {
-                write!(f, "robot {robot} has an attachment device, which holds nothing in rapier: take it off (`None`)")
-            }
             Self::Part { part, number, field, value, range: [low, high] } => {
                 let nearest = if *value > *high { high } else { low };
                 write!(f, "{field} of {part} {number} is {value}, not from {low} to {high}; the nearest is {nearest}")

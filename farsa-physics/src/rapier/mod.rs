@@ -1,4 +1,4 @@
-//! The same robots, and general scenes, in rapier.
+//! Robots of this crate, and general scenes, in rapier.
 //!
 //! A block on a slide pushes a crate over the ground:
 //!
@@ -36,39 +36,38 @@
 //! ```
 //!
 //! The files without a prefix are of articulated robots and general scenes, those with `arena_` of wheeled robots:
-//!
-//! - `options`: how a world is stepped
-//! - `scene`: a robot with objects around it, as data
-//! - `error`: why a world cannot be built
-//! - `convert`: vectors, frames and shapes as rapier has them
-//! - `model`: from a description to rapier's bodies, joints and colliders
-//! - `rules`: which colliders may touch, and with what friction
-//! - `world`: one world of rapier
-//! - `ports`: its ports
-//! - `contact`: what rapier's contacts say
-//! - `pushes`: forces from outside
-//! - `snapshot`: rapier's whole state as numbers
-//! - `arena_options`: how a world of wheeled robots is stepped
-//! - `arena_scene`: wheeled robots as rigid bodies, and what they can push, as data
-//! - `arena_model`: from an arena to rapier's bodies, joints and colliders
-//! - `arena_world`: one world of wheeled robots
-//! - `arena_ports`: its ports
 
+/// From an arena to rapier's bodies, joints and colliders.
 mod arena_model;
+/// The options of a world of wheeled robots.
 mod arena_options;
+/// The ports of a world of wheeled robots.
 mod arena_ports;
+/// Wheeled robots as rigid bodies, and what they can push, as data.
 mod arena_scene;
+/// One world of wheeled robots.
 mod arena_world;
+/// Readings of rapier's contacts.
 mod contact;
+/// Vectors, frames and shapes as rapier has them.
 mod convert;
+/// The error of worlds.
 mod error;
+/// From a description to rapier's bodies, joints and colliders.
 mod model;
+/// The options of a world.
 mod options;
+/// The ports of a world.
 mod ports;
+/// Forces from outside.
 mod pushes;
+/// Which colliders may touch, and with what friction.
 mod rules;
+/// A robot with objects around it, as data.
 mod scene;
+/// Rapier's whole state as numbers.
 mod snapshot;
+/// One world of rapier.
 mod world;
 
 pub use arena_options::ArenaOptions;

@@ -1,5 +1,6 @@
 //! From a description to rapier's bodies, joints and colliders.
 
+use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -26,7 +27,7 @@ use crate::rapier::options::Options;
 use crate::rapier::rules::Rules;
 use crate::rapier::scene::{Scene, SceneObject, Side};
 
-/// What moves: a free body, or a link of a multibody.
+/// A moving part: a free body, or a link of a multibody.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carrier {
     pub(crate) body: RigidBodyHandle,
@@ -47,14 +48,14 @@ pub(crate) struct BodyFrame {
     pub(crate) pose: Pose,
 }
 
-/// A pair of colliders as the port knows it.
+/// A pair of colliders of the port.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touching {
     pub(crate) colliders: [ColliderHandle; 2],
     pub(crate) bodies: [Option<BodyId>; 2],
     pub(crate) carriers: [Option<usize>; 2],
     pub(crate) rolling_friction: f32,
-    /// Whether a link of a multibody is among them.
+    /// True if a link of a multibody is among them.
     pub(crate) of_links: bool,
 }
 
@@ -74,7 +75,7 @@ pub(crate) struct RobotPlan {
     pub(crate) kinds: Vec<JointKind>,
     pub(crate) colliders: Vec<ColliderHandle>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
-    /// The colours of the robot's colliders; objects have none.
+    /// The colors of the robot's colliders, objects have none.
     pub(crate) colors: Vec<Option<[f32; 3]>>,
     pub(crate) pairs: Vec<Touching>,
     pub(crate) rules: Rules,
@@ -86,15 +87,15 @@ pub(crate) struct RobotPlan {
     pub(crate) substeps: u32,
 }
 
-/// Mass, centre and inertia as rapier has them.
+/// Mass, center and inertia as rapier has them.
 fn mass_of(link: &Link<f64>) -> MassProperties {
     let [xx, yy, zz, xy, xz, yz] = link.inertia.map(|x| x as f32);
     let inertia = Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
     MassProperties::with_inertia_matrix(vector(link.centre), link.mass as f32, inertia)
 }
 
-/// Puts the frames of floating links into their centres of mass: the root of one of rapier's multibodies turns about its
-/// origin.
+/// Puts the frames of floating links into their centers of mass: the root of one of rapier's multibodies turns about
+/// its origin.
 fn centre_roots(links: &mut [Link<f64>], mounts: &mut [Mount<f64>]) -> Vec<[f64; 3]> {
     let mut shifts = vec![[0.0; 3]; links.len()];
     for i in 0..links.len() {
@@ -132,7 +133,9 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
     let (mut links, mut mounts) = links_of(robot);
     check_masses(robot, &mounts, &links)?;
     if let Some(ground) = robot.grounds.first() {
-        return Err(RapierError::Ground { body: robot.segments[ground.body.index()].name.clone() });
+        let body = &robot.segments[ground.body.index()].name;
+        let why = format!("body {body}: nothing rubs on the ground that it slides on here");
+        return Err(RapierError::Unsupported { why });
     }
     let shifts = centre_roots(&mut links, &mut mounts);
     let mut physics = options.world();
@@ -150,7 +153,8 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
         let mount = collider.body.map_or(local, |body| compose(&mounts[body.index()], &local));
         let carrier = (mount.link != WORLD).then_some(usize::from(mount.link));
         if carrier.is_some() && collider.shape == Shape::Plane {
-            return Err(RapierError::MovingPlane { collider: collider.name.clone() });
+            let why = format!("collider {}: a plane does not move", collider.name);
+            return Err(RapierError::Unsupported { why });
         }
         let built = ColliderBuilder::new(shape_of(&collider.shape))
             .position(pose(&mount))

@@ -1,4 +1,4 @@
-//! How a world of rapier is stepped.
+//! The options of a world of rapier.
 
 use rapier3d::dynamics::{FrictionModel, SpringCoefficients};
 use rapier3d::pipeline::PhysicsWorld;
@@ -6,7 +6,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::rapier::convert::vector;
 use crate::rapier::error::RapierError;
 
-/// How a world of rapier is stepped.
+/// The options of a world of rapier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
@@ -77,8 +77,8 @@ impl Options {
         parameters.dt = (self.time_step / f64::from(self.substeps)) as f32;
         parameters.num_solver_iterations = self.iterations as usize;
         parameters.num_internal_pgs_iterations = self.sweeps as usize;
-        // One sweep each step, begun with the last step's impulses, is a spring where normal force and friction act on each
-        // other: a leg on a light foot bounces.
+        // One sweep each step, begun with the last step's impulses, acts as a spring where normal force and friction
+        // act on each other, so that a leg on a light foot bounces.
         parameters.num_internal_stabilization_iterations = self.speed_sweeps as usize;
         parameters.friction_in_bias_pass = self.speed_sweeps > 1;
         parameters.length_unit = self.length_unit as f32;
@@ -86,7 +86,7 @@ impl Options {
         parameters.static_contact_softness = softness;
         // At each point of a box by itself friction works against itself and is a tenth too weak.
         parameters.friction_model = FrictionModel::Simplified;
-        // Readers of a contact want that of this step, at the points that the solver has seen.
+        // Readers of a contact need that of this step, at the points of the solver.
         parameters.contact_recycling = false;
         parameters.contact_clustering = false;
         physics

@@ -75,7 +75,7 @@ impl Contacts for World {
 }
 
 impl World {
-    /// The first surface on a ray, other than those of `but`, and the number of its collider.
+    /// The first surface on a ray, except those of `but`, and the number of its collider.
     ///
     /// Surfaces are met from outside only, as in the other worlds: what the ray begins in is not seen.
     fn first(

@@ -7,7 +7,8 @@ use rapier3d::pipeline::PhysicsWorld;
 
 /// The forces that wait for the next control step.
 ///
-/// rapier keeps what acts on a body until it is told otherwise: they are handed over as the step begins, and taken away at its end.
+/// rapier keeps forces on a body until they are changed, so they are applied at the beginning of the step and removed
+/// at its end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pushes {
     all: Vec<Push>,
@@ -22,7 +23,7 @@ struct Push {
 }
 
 impl Pushes {
-    /// One more; none that is zero, which would wake the body.
+    /// One more. None that is zero, which would wake the body.
     pub(crate) fn add(&mut self, body: RigidBodyHandle, point: [f32; 3], force: [f32; 3]) {
         if force != [0.0; 3] {
             self.all.push(Push { body, point, force });
@@ -38,7 +39,7 @@ impl Pushes {
         }
     }
 
-    /// Takes them away and forgets them.
+    /// Removes and discards them.
     pub(crate) fn end(&mut self, physics: &mut PhysicsWorld) {
         for Push { body, .. } in self.all.drain(..) {
             if let Some(rigid) = physics.bodies.get_mut(body) {
@@ -48,7 +49,7 @@ impl Pushes {
         }
     }
 
-    /// Forgets them.
+    /// Discards them.
     pub(crate) fn clear(&mut self) {
         self.all.clear();
     }

@@ -1,4 +1,4 @@
-//! Which colliders may touch, and with what friction: rapier asks for every pair of colliders that come near.
+//! Which colliders may touch, and with what friction: rapier requests every pair of colliders that come near.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ const NONE: u16 = u16::MAX;
 
 /// The pairs of colliders that may touch.
 ///
-/// A collider bears its number plus one as user data; 0 is a collider that others put there, which touches everything.
+/// A collider bears its number plus one as user data. 0 is a collider that others put there, which touches everything.
 #[derive(Clone, Debug)]
 pub(crate) struct Rules {
     /// Number of colliders.
@@ -32,17 +32,17 @@ impl Rules {
         Self { width, pairs: table, friction: pairs.iter().map(|(_, friction)| *friction as f32).collect() }
     }
 
-    /// What a collider of this number bears.
+    /// Returns the mark of a collider with this number.
     pub(crate) fn mark(number: usize) -> u128 {
         number as u128 + 1
     }
 
-    /// The number of a collider; `None` for one of others.
+    /// The number of a collider, or `None` for one of others.
     pub(crate) fn number(collider: &Collider) -> Option<usize> {
         usize::try_from(collider.user_data).ok()?.checked_sub(1)
     }
 
-    /// The pair of two colliders; `Err` for a collider of others.
+    /// The pair of two colliders. `Err` for a collider of others.
     fn pair(&self, a: &Collider, b: &Collider) -> Result<Option<usize>, ()> {
         let (Some(a), Some(b)) = (Self::number(a), Self::number(b)) else { return Err(()) };
         let pair = self.pairs.get(a * self.width + b).copied().unwrap_or(NONE);

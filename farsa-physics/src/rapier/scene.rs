@@ -33,7 +33,7 @@ pub enum Geometry {
     },
     /// The convex hull of points [m].
     Hull(Vec<[f32; 3]>),
-    /// A surface of triangles, which does not move; only its outside is met.
+    /// A surface of triangles, which does not move. Only its outside is met.
     Mesh {
         /// Vertices [m].
         vertices: Vec<[f32; 3]>,
@@ -42,7 +42,7 @@ pub enum Geometry {
     },
     /// A landscape over a rectangle about the origin, which does not move.
     HeightField {
-        /// Heights above z = 0 [rows * columns; m]: row after row towards +y, in a row towards +x.
+        /// Heights above z = 0 [rows * columns. M]: row after row towards +y, in a row towards +x.
         heights: Vec<f32>,
         /// Number of rows and columns.
         size: [usize; 2],
@@ -51,7 +51,7 @@ pub enum Geometry {
     },
 }
 
-/// Something beside the robot.
+/// An object in addition to the robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct SceneObject {
@@ -61,9 +61,9 @@ pub struct SceneObject {
     pub geometry: Geometry,
     /// Where it is at the start, in the world.
     pub placement: Pose<f64>,
-    /// Its mass [kg], spread evenly; `None` for what does not move.
+    /// Its mass [kg], spread evenly, or `None` for what does not move.
     pub mass: Option<f64>,
-    /// Coefficient of sliding friction with the robot; between two objects the geometric mean of theirs.
+    /// Coefficient of sliding friction with the robot. Between two objects the geometric mean of theirs.
     pub friction: f64,
 }
 
@@ -81,9 +81,8 @@ impl SceneObject {
 
 /// A robot and the objects around it.
 ///
-/// The robot's colliders touch each other as its pairs say; an object touches all of them and all other objects, except
-/// that
-/// what never moves does not touch what never moves. Bodies and pairs of objects are numbered after the robot's own.
+/// The robot's colliders touch each other according to its pairs. An object touches all of them and all other objects,
+/// except that two fixed parts do not touch. Bodies and pairs of objects are numbered after the robot's own.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Scene {
@@ -144,7 +143,7 @@ impl Scene {
         own.chain(others)
     }
 
-    /// Looks whether objects can be built; the robot is looked at elsewhere.
+    /// Looks whether objects can be built. The robot is looked at in other places.
     pub(crate) fn check(&self) -> Result<(), RapierError> {
         for (number, object) in self.objects.iter().enumerate() {
             let taken = self.objects[..number].iter().any(|other| other.name == object.name)
@@ -159,7 +158,7 @@ impl Scene {
     }
 }
 
-/// Whether a body of the robot moves.
+/// Returns whether a body of the robot moves.
 fn robot_moves(robot: &Robot, mut body: Option<BodyId>) -> bool {
     while let Some(segment) = body.and_then(|body| robot.segments.get(body.index())) {
         if segment.joint.kind != farsa_body::robot::JointKind::Fixed {
@@ -171,10 +170,13 @@ fn robot_moves(robot: &Robot, mut body: Option<BodyId>) -> bool {
 }
 
 impl SceneObject {
+    fn fault(&self, why: String) -> RapierError {
+        RapierError::SceneObject { name: self.name.clone(), why }
+    }
+
     fn check(&self) -> Result<(), RapierError> {
         let value = |field: &'static str, value: f64, good: bool| {
-            let wrong = || RapierError::SceneObject { name: self.name.clone(), field, value };
-            if good { Ok(()) } else { Err(wrong()) }
+            if good { Ok(()) } else { Err(self.fault(format!("{field} is {value}"))) }
         };
         let positive = |field, x: f64| value(field, x, (1e-6..=1e6).contains(&x));
         for x in self.placement.position {
@@ -191,7 +193,7 @@ impl SceneObject {
             far.map_or(Ok(()), |x| value("coordinate of a point", f64::from(*x), false))
         };
         let still = |geometry: &'static str| match self.mass {
-            Some(_) => Err(RapierError::Immovable { name: self.name.clone(), geometry }),
+            Some(_) => Err(self.fault(format!("a {geometry} does not move, so it has no mass"))),
             None => Ok(()),
         };
         match &self.geometry {
@@ -215,8 +217,9 @@ impl SceneObject {
                 let lost = |vertex: &u32| *vertex as usize >= count;
                 for (number, triangle) in triangles.iter().enumerate() {
                     if let Some(vertex) = triangle.iter().find(|vertex| lost(vertex)) {
-                        let (name, vertex) = (self.name.clone(), *vertex);
-                        return Err(RapierError::Triangle { name, triangle: number, vertex, count });
+                        let last = count.saturating_sub(1);
+                        let why = format!("triangle {number} has vertex {vertex}; the last of {count} is {last}");
+                        return Err(self.fault(why));
                     }
                 }
                 Ok(())
@@ -225,8 +228,10 @@ impl SceneObject {
                 still("height field")?;
                 let [rows, columns] = *size;
                 if rows < 2 || columns < 2 || rows.checked_mul(columns) != Some(heights.len()) {
-                    let (name, size) = (self.name.clone(), *size);
-                    return Err(RapierError::Grid { name, size, heights: heights.len() });
+                    let heights = heights.len();
+                    let why =
+                        format!("{heights} heights for {rows} rows of {columns}, of which there are at least two");
+                    return Err(self.fault(why));
                 }
                 let far = heights.iter().find(|x| !(x.is_finite() && x.abs() <= 1e6));
                 far.map_or(Ok(()), |x| value("height", f64::from(*x), false))?;
@@ -237,9 +242,9 @@ impl SceneObject {
 
     /// The geometry as rapier has it, and its frame in the object's.
     pub(crate) fn shape(&self) -> Result<(SharedShape, Frame), RapierError> {
-        let unusable = |why: String| RapierError::Unusable { name: self.name.clone(), why };
+        let unusable = |why: String| self.fault(why);
         let quarter = core::f32::consts::FRAC_1_SQRT_2;
-        // rapier's cylinders and height fields stand upright along y.
+        // rapier's cylinders and height fields are upright along y.
         let upright = Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter));
         Ok(match &self.geometry {
             Geometry::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
@@ -249,7 +254,7 @@ impl SceneObject {
             Geometry::Hull(points) => {
                 let points: Vec<Vector> = points.iter().map(|point| Vector::from(*point)).collect();
                 let hull = (points.len() > 3).then(|| SharedShape::convex_hull(&points)).flatten();
-                // A flat hull has no mass of its own.
+                // A flat hull has no mass.
                 let hull = hull.filter(|hull| hull.mass_properties(1.0).mass() > 0.0);
                 let why = || unusable(format!("{} points span no solid", points.len()));
                 (hull.ok_or_else(why)?, Frame::IDENTITY)
@@ -261,7 +266,7 @@ impl SceneObject {
                 (mesh.map_err(|error| unusable(format!("{error}")))?, Frame::IDENTITY)
             }
             Geometry::HeightField { heights, size: [rows, columns], extent: [x, y] } => {
-                // Upright, rapier's rows run towards -y; its grid lies column after column.
+                // Upright, rapier's rows run towards -y. Its grid lies column after column.
                 let at = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
                 let data = (0..*columns).flat_map(|column| (0..*rows).map(move |row| at(row, column))).collect();
                 let grid = Array2::new(*rows, *columns, data);

@@ -11,7 +11,7 @@ const HEAD: usize = 5;
 /// Bytes in a word.
 const BYTES: usize = 3;
 
-/// What a snapshot holds.
+/// The content of a snapshot.
 pub(crate) struct Kept {
     pub(crate) physics: PhysicsWorld,
     pub(crate) commands: Vec<[f32; 2]>,
@@ -20,7 +20,7 @@ pub(crate) struct Kept {
 }
 
 fn bytes_of(physics: &PhysicsWorld, commands: &[[f32; 2]]) -> Vec<u8> {
-    // Only a map of unknown length or a format without one can fail; rapier's state has none.
+    // Only a map of unknown length or a format without one can fail, rapier's state has none.
     postcard::to_allocvec(&(physics, commands)).unwrap_or_default()
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn pack(physics: &PhysicsWorld, commands: &[[f32; 2]], [lost, moved]:
     words
 }
 
-/// What [`pack`] has packed; `None` if it is damaged.
+/// Returns the content that [`pack`] has packed, or `None` if it is damaged.
 pub(crate) fn unpack(words: &[f32]) -> Option<Kept> {
     let (head, body) = words.split_at_checked(HEAD)?;
     let whole = |k: usize| head[k] as u32;
@@ -58,7 +58,7 @@ pub(crate) fn unpack(words: &[f32]) -> Option<Kept> {
     Some(Kept { physics, commands, lost: whole(4) & 1 != 0, moved: whole(4) & 2 != 0 })
 }
 
-/// A copy of rapier's state with workspaces of its own.
+/// Returns a copy of rapier's state with its own workspaces.
 pub(crate) fn copy(physics: &PhysicsWorld) -> PhysicsWorld {
     PhysicsWorld {
         gravity: physics.gravity,

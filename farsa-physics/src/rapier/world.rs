@@ -25,15 +25,15 @@ pub(crate) const LEAST_STIFFNESS: f32 = 1e-6;
 
 /// One world of rapier, from the same description as [`crate::articulated::World`] and with the same ports.
 ///
-/// A world that has broken down (rapier took a body out because of non-finite values, or an actuator's law gave
-/// one) does not step, and every port of it returns NaN, until it is cleared or restored.
+/// A world fails if rapier removes a body because of non-finite values, or if an actuator's law returns one. After a
+/// failure it does not step, and every port returns NaN, until it is cleared or restored.
 pub struct World {
     pub(crate) plan: RobotPlan,
     pub(crate) physics: PhysicsWorld,
     initial: PhysicsWorld,
     pub(crate) commands: Vec<[f32; 2]>,
     pub(crate) lost: bool,
-    /// Whether something was placed since links, colliders and neighbours were brought up to date.
+    /// True if something was placed since links, colliders and neighbors were brought up to date.
     pub(crate) moved: bool,
     /// Forces from outside that act in the next control step.
     pub(crate) pushes: Pushes,
@@ -75,13 +75,13 @@ impl World {
         &self.physics
     }
 
-    /// The same, to be changed; no promise of this crate holds for what is done to it, nor is rapier's interface stable.
+    /// Returns rapier's state for changes. They void all promises of this crate, and rapier's interface is not stable.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
         self.moved = true;
         &mut self.physics
     }
 
-    /// rapier's name of what a body rides on; `None` for what does not move or exist.
+    /// rapier's name of what a body rides on, or `None` for what does not move or exist.
     pub fn body_handle(&self, body: BodyId) -> Option<RigidBodyHandle> {
         self.carrier(body).map(|carrier| carrier.body)
     }
@@ -91,7 +91,7 @@ impl World {
         self.plan.colliders.get(collider).copied()
     }
 
-    /// Whether the world has not broken down.
+    /// Returns whether the world has not broken down.
     pub fn is_finite(&self) -> bool {
         !self.lost
     }
@@ -101,7 +101,7 @@ impl World {
         frame.carrier.map(|carrier| &self.plan.carriers[carrier])
     }
 
-    /// The carrier of a joint; `None` for one that has no position.
+    /// The carrier of a joint, or `None` for one that has no position.
     fn joint(&self, joint: JointId) -> Option<Carrier> {
         let single = self.plan.kinds.get(joint.index())?.is_single();
         if single { self.carrier(BodyId(joint.0)).copied() } else { None }
@@ -113,7 +113,7 @@ impl World {
         Some((self.physics.multibody_joints.get_multibody(multibody)?, link, dof))
     }
 
-    /// Position and speed of a joint; zero for one that has none.
+    /// Position and speed of a joint, or zero for one that has none.
     pub(crate) fn joint_state(&self, joint: JointId) -> [f32; 2] {
         if self.lost {
             return [f32::NAN; 2];
@@ -126,7 +126,7 @@ impl World {
         Some([multibody.link(link)?.joint().coords()[carrier.axis], multibody.generalized_velocity()[dof]])
     }
 
-    /// Pose of a body's frame; the identity for a body that does not exist.
+    /// Pose of a body's frame. The identity for a body that does not exist.
     pub(crate) fn pose_of(&self, body: BodyId) -> Pose {
         let Some(frame) = self.plan.frames.get(body.index()) else { return Pose::identity() };
         let Some(carrier) = frame.carrier else { return frame.pose };
@@ -156,9 +156,9 @@ impl World {
         Twist { linear: (centre + angular.cross(arm)).into(), angular: angular.into() }
     }
 
-    /// Evaluates the actuators' laws and gives rapier what comes of them: torque and stiffness as a spring, and damping.
+    /// Evaluates the actuators' laws and passes the results to rapier: torque and stiffness as a spring, and damping.
     ///
-    /// rapier adds `-k (q - rest) - k h v - d v`; the torque at this instant is all in `rest`.
+    /// rapier adds `-k (q - rest) - k h v - d v`. The torque at this instant is all in `rest`.
     fn actuate(&mut self) {
         for drive in &self.plan.drives {
             let carrier = self.plan.carriers[drive.carrier];
@@ -176,7 +176,7 @@ impl World {
             }
             let stiffness = stiffness.max(LEAST_STIFFNESS);
             let rest = position + (torque + damping * speed) / stiffness;
-            // rapier would replace an acceleration that is none by zero and go on.
+            // rapier would replace an acceleration of NaN by zero and continue.
             self.lost |= !(rest.is_finite() && stiffness.is_finite() && damping.is_finite());
             found.joint.set_spring(carrier.axis, stiffness, rest);
             multibody.damping_mut()[dof] = carrier.damping + damping;
@@ -215,7 +215,7 @@ impl World {
         self.lost |= !self.physics.quarantine().is_empty() || !multibodies.into_iter().all(finite);
     }
 
-    /// Back to the start, with everything forgotten.
+    /// Restores the start, without commands, forces or contacts.
     pub(crate) fn reset(&mut self) {
         self.physics = copy(&self.initial);
         self.pushes.clear();
@@ -223,7 +223,7 @@ impl World {
         (self.lost, self.moved) = (false, false);
     }
 
-    /// Whether a snapshot is of a world of this description, as far as numbers of parts say.
+    /// Returns whether a snapshot is of a world of this description, judged by the numbers of parts.
     pub(crate) fn fits(&self, kept: &crate::rapier::snapshot::Kept) -> bool {
         let parts = |p: &PhysicsWorld| {
             let dofs: Vec<_> = p.multibody_joints.multibodies().map(Multibody::ndofs).collect();
@@ -245,7 +245,7 @@ impl World {
         self.moved = true;
     }
 
-    /// Puts a floating body somewhere; nothing happens to another.
+    /// Puts a floating body somewhere, nothing happens to another.
     pub(crate) fn put_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
         if self.plan.kinds.get(body.index()) != Some(&JointKind::Floating) {
             return;

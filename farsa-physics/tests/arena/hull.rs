@@ -4,7 +4,7 @@
 use farsa_body::ports::{Rays, Sight};
 use farsa_body::robots::MobileRobot;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, Convex, World};
+use farsa_physics::arena::{Arena, ArenaError, Convex, ConvexFault, World};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -258,7 +258,7 @@ fn many_points_have_a_hull() {
                     assert!(1.0 - f64::from(hit.distance) > z - 1e-5, "{kind} {hit:?} {z}");
                 }
             }
-            Err(ArenaError::NoHull { .. }) => refused[kind] += 1,
+            Err(ArenaError::Convex { fault: ConvexFault::NoHull { .. }, .. }) => refused[kind] += 1,
             Err(other) => panic!("{other}"),
         }
     }

@@ -194,7 +194,12 @@ fn what_it_has_not_is_refused_by_name() {
     let refused = |scene: &ArenaScene| ArenaWorld::new(scene, &ArenaOptions::default()).unwrap_err();
     let mut holding = scene();
     holding.arena.robots[2].robot.attachment = Some(0.02);
-    assert_eq!(refused(&holding), RapierError::Attachment { robot: 2 });
+    assert_eq!(
+        refused(&holding),
+        RapierError::Unsupported {
+            why: "robot 2 has an attachment device, which holds nothing in rapier: take it off (`None`)".into()
+        }
+    );
     let mut short = scene();
     short.chassis.pop();
     assert_eq!(refused(&short).to_string(), "2 chassis for 3 robots: one for each");
@@ -212,7 +217,7 @@ fn what_it_has_not_is_refused_by_name() {
     assert!(depth(&refused(&within)) > 0.01, "in a robot: {}", refused(&within));
     let mut none = scene();
     (none.arena.robots, none.chassis) = (Vec::new(), Vec::new());
-    assert_eq!(refused(&none), RapierError::Arena(ArenaError::NoRobots));
+    assert_eq!(refused(&none), RapierError::Arena(ArenaError::Count { what: "robots", count: 0, range: [1, 32_768] }));
     let mut overlapping = scene();
     overlapping.arena.robots[0].at = [0.2, 0.5];
     let error = refused(&overlapping);

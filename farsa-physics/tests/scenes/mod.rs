@@ -6,7 +6,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId,
 use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
 use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::{Pose, Twist};
-use farsa_models::{MjcfOptions, mjcf};
+use farsa_models::mjcf::{self, MjcfOptions};
 use farsa_num::sin_cos;
 use serde_json::{Value, json};
 

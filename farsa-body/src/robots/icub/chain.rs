@@ -42,7 +42,7 @@ impl Side {
     /// Both sides, the left one first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 
-    /// What stands before the names of its joints, segments and colliders.
+    /// Returns the prefix of the names of its joints, segments and colliders.
     pub fn prefix(self) -> &'static str {
         ["l_", "r_"][self as usize]
     }
@@ -71,7 +71,7 @@ impl Chain {
     /// The chain of this name.
     ///
     /// # Errors
-    /// [`IcubError::Chain`] if there is none, which lists those that there are.
+    /// [`IcubError::Chain`] for an unknown name, with the list of chains.
     pub fn from_name(name: &str) -> Result<Self, IcubError> {
         let found = Self::ALL.into_iter().find(|chain| chain.name() == name);
         found.ok_or_else(|| IcubError::Chain { name: name.into() })
@@ -108,7 +108,7 @@ impl Chain {
         Self::ALL.into_iter().find(|chain| chain.bodies().contains(&body.index()))
     }
 
-    /// What the table says of its parts, those of a left arm as of a right one; nothing of hands.
+    /// Returns the rows of the table for its parts, those of a left arm as of a right one, without hands.
     pub(super) fn parts(self) -> &'static [Part] {
         match self {
             Self::Torso => &TORSO,

@@ -17,7 +17,7 @@ pub(super) fn arm(side: Side) -> [usize; 3] {
     [0, 1, 2].map(|i| 3 + 3 * side as usize + i)
 }
 
-/// Index of the collider of the thumb's proximal phalange; the fifteen phalanges follow each other.
+/// Index of the collider of the thumb's proximal phalange. The fifteen phalanges follow each other.
 pub(super) fn first_phalange(side: Side) -> usize {
     9 + 15 * side as usize
 }
@@ -68,8 +68,8 @@ fn limb_pairs() -> Vec<[usize; 2]> {
     pairs
 }
 
-/// The pairs of fingers with what is not of their own hand nor arm: each hand's with waist, chest and head, with the other
-/// upper arm, forearm and palm, and with the other hand's fingers, a list for each.
+/// Returns the pairs of fingers with parts outside of hand and arm, a list for each. Each hand is paired with waist,
+/// chest and head, with the other upper arm, forearm and palm, and with the other hand's fingers.
 fn finger_pairs() -> Vec<Vec<[usize; 2]>> {
     let phalanges = |side| first_phalange(side)..first_phalange(side) + 15;
     let [left, right] = Side::ALL.map(phalanges);
@@ -81,7 +81,7 @@ fn finger_pairs() -> Vec<Vec<[usize; 2]>> {
     with(left, right_arm).chain(with(right, left_arm)).chain([each]).collect()
 }
 
-/// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves; none for the world.
+/// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves, none for the world.
 pub(super) fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
     let mut body = robot.colliders.get(collider)?.body;
     while let Some(segment) = body.and_then(|b| robot.segments.get(b.index())) {

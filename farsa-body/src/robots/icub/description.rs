@@ -17,11 +17,11 @@ use crate::robots::icub::posture::IcubPosture;
 use crate::robots::icub::table::Part;
 use crate::robots::mirror;
 
-/// The right palm's axes in the world at joint positions 0, where the arm hangs down with the palm to the body: x down,
-/// y forward, z to the right.
+/// The right palm's axes in the world at joint positions 0, where the arm hangs down with the palm to the body. The
+/// axis x points down, y forward and z to the right.
 const RIGHT_PALM: [f64; 4] = [0.5, 0.5, -0.5, 0.5];
 
-/// What the commands of the joints of torso, neck and arms mean.
+/// The meaning of the commands of torso, neck and arms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum JointControl {
@@ -36,30 +36,35 @@ pub enum JointControl {
 /// chains.
 ///
 /// X is forward, Y left and Z up, the file's root frame [Gepetto2025] turned by pi about z, and the origin is its root
-/// link. At joint positions 0 (out of the elbows' limits) the robot is upright and its arms hang; all segments' axes
+/// link. At joint positions 0 (out of the elbows' limits) the robot is upright and its arms hang. All segments' axes
 /// are then those of the world but those of the palms and what they carry, whose frames [`Hand`] describes. Joints have
-/// the names, signs and limits of the file; those of the hands are `l_J8` to `l_J27` and `r_J8` to `r_J27`. Segments
-/// and joints are numbered alike, in the order of [`Chain::ALL`], whichever chains are actuated. Actuators are numbered
-/// in the same order without the rigid chains'.
+/// the names, signs and limits of the file. The hands have `l_J8` to `l_J27` and `r_J8` to `r_J27`. Segments and joints
+/// are numbered alike, in the order of [`Chain::ALL`], whichever chains are actuated. Actuators are numbered in the
+/// same order without the rigid chains'.
 ///
 /// The left side is the mirror image of the right one: at equal joint angles the robot is symmetric.
 ///
-/// Deviations from the file: it has no fingers, so the hands are those of [`crate::robots::ArmAndHand`], made as light as the
-/// file's hand of 0.213 kg, whose centre of mass they miss by 7 mm; its left side is not quite the image of its right
-/// one, which stands for both (the first shoulder segment's inertia is half of the right one's, the second one's centre
-/// of mass 0.18 mm off); where it has no inertia (neck, head, wrist) there are balls of our choice; its damping of 1 N
-/// m s/rad in every joint, more than the wrist's motors could overcome, is replaced by one in proportion to the effort;
-/// armature, gains and surfaces are our choice; there are no legs.
+/// Deviations from the file:
+///
+/// The file has no fingers, so the hands are those of [`crate::robots::ArmAndHand`], as light as the file's hand of
+/// 0.213 kg. They miss its center of mass by 7 mm.
+///
+/// The file's left side is not quite the image of its right one, which is used for both. The first shoulder segment's
+/// inertia is half of the right one's, the second one's center of mass 0.18 mm off.
+///
+/// Balls of our choice have the inertia of neck, head and wrist, for which the file has none. The file's damping of 1 N
+/// m s/rad in every joint, more than the wrist's motors could overcome, is replaced by one in proportion to the effort.
+/// Armature, gains and surfaces are our choice. There are no legs.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Icub {
     /// Where the root link is in the world [m].
     pub root: [f64; 3],
-    /// The chains that are actuated, in any order; the joints of the others are fixed.
+    /// The chains that are actuated, in any order. The joints of the others are fixed.
     pub actuated: Vec<Chain>,
     /// The joint angles at which rigid chains are fixed, and a start for the others.
     pub posture: IcubPosture,
-    /// What the commands of the joints of torso, neck and arms mean; hands have position servos.
+    /// The meaning of the commands of torso, neck and arms. Hands have position servos.
     pub control: JointControl,
     /// The error at which a position servo exerts its joint's effort [rad].
     pub saturation_angle: f64,
@@ -107,7 +112,7 @@ impl Icub {
     pub const CHEST: BodyId = BodyId(2);
     /// The head.
     pub const HEAD: BodyId = BodyId(5);
-    /// The left and the right eye's centre in the head's frame [m], 68 mm apart; they do not turn.
+    /// The left and the right eye's center in the head's frame [m], 68 mm apart. They do not turn.
     ///
     /// From neck yaw to eyes as in [Pattacini2011], whose neck is of another version than the file's.
     pub const EYES: [[f64; 3]; 2] = [[0.054, 0.034, 0.0825], [0.054, -0.034, 0.0825]];
@@ -119,7 +124,7 @@ impl Icub {
         BodyId(side.arm().bodies().end as u16 - 1)
     }
 
-    /// The point on a palm's inner face that counts as its centre, in the palm's frame [m].
+    /// The point on a palm's inner face that counts as its center, in the palm's frame [m].
     pub fn palm_centre(&self, side: Side) -> [f64; 3] {
         on_side(side, self.hand.palm_centre)
     }
@@ -186,23 +191,23 @@ impl Icub {
         Ok(self.hand.servo_groups(first))
     }
 
-    /// The robot: segments `torso_1`, `torso_2`, `chest`, `neck_1`, `neck_2`, `head`; `l_shoulder_1`, `l_shoulder_2`,
-    /// `l_upper_arm`, `l_elbow_1`, `l_forearm`, `l_wrist_1`, `l_palm` and the same with `r_`; then the fingers as those
+    /// The robot: segments `torso_1`, `torso_2`, `chest`, `neck_1`, `neck_2`, `head`. `l_shoulder_1`, `l_shoulder_2`,
+    /// `l_upper_arm`, `l_elbow_1`, `l_forearm`, `l_wrist_1`, `l_palm` and the same with `r_`. Then the fingers as those
     /// of [`crate::robots::ArmAndHand`] with `l_`, with `r_`.
     ///
-    /// Colliders, sized after the file's collision meshes: capsules `waist` (of `torso_1`, the hip belt), `chest`,
-    /// `head`, upper arms and forearms; boxes, the palms; capsules, the phalanges. The meshes of forearms and hands lie
-    /// 20 mm beside their links, those of the hands are turned by 90 degrees: the forearms' capsules lie on their axes
-    /// instead, the palms are those of [`Hand`].
+    /// Colliders have the sizes of the file's collision meshes. Capsules are `waist` (of `torso_1`, the hip belt),
+    /// `chest`, `head`, upper arms, forearms and phalanges, and the palms are boxes. The meshes of forearms and hands
+    /// are 20 mm away from their links, and those of the hands are turned by 90 degrees. Here the forearms' capsules
+    /// are on their axes, and the palms are those of [`Hand`].
     ///
-    /// What is drawn are visuals instead, sized by eye: covers, a face with two eyes at [`Icub::EYES`].
+    /// Views draw visuals instead, sized by eye: covers, and a face with two eyes at [`Icub::EYES`].
     ///
-    /// Pairs that may touch: forearms and palms with waist, chest and head; upper arms with the head; every part of one
-    /// arm with every one of the other but their upper arms, which cannot reach each other; within each hand, as in
-    /// [`crate::robots::ArmAndHand`]; fingers with the trunk and the other arm, its hand included. Upper arms have no pair with
-    /// the chest, into which the shoulders are built, nor neighbours along an arm with each other; no hand comes near its
-    /// own forearm or upper arm. Pairs whose colliders cannot move relative to each other, because the joints between are
-    /// rigid, are left out.
+    /// Pairs that may touch: forearms and palms with waist, chest and head. Upper arms with the head. Every part of one
+    /// arm with every one of the other but their upper arms, which cannot reach each other. Within each hand, as in
+    /// [`crate::robots::ArmAndHand`]. Fingers with the trunk and the other arm, its hand included. Upper arms have no
+    /// pair with the chest, into which the shoulders are built, nor neighbors along an arm with each other. No hand
+    /// comes near its own forearm or upper arm. Pairs whose colliders cannot move relative to each other, because the
+    /// joints between are rigid, are left out.
     ///
     /// # Errors
     /// [`IcubError::Twice`], [`IcubError::Posture`] and [`IcubError::Value`] for fields, [`IcubError::Robot`] for what

@@ -1,11 +1,11 @@
-//! What can be wrong with the robot's configuration, or with a name that it is asked for.
+//! Errors of the robot's configuration or of a requested name.
 
 use alloc::string::String;
 use core::fmt;
 
 use crate::robot::validation::RobotError;
 
-/// What is wrong with the iCub's configuration, or with a name that it is asked for.
+/// The error of the iCub's configuration or of a requested name.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum IcubError {
@@ -47,7 +47,7 @@ pub enum IcubError {
         /// Its value.
         value: f64,
     },
-    /// What is wrong with the description that the numbers make.
+    /// An error of the description from these numbers.
     Robot(RobotError),
 }
 

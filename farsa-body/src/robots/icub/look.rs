@@ -1,4 +1,4 @@
-//! What the iCub looks like: shapes that are drawn in place of its colliders, sized by eye. Nothing depends on them.
+//! The look of the iCub: shapes that views draw instead of its colliders, sized by eye. Nothing depends on them.
 
 use alloc::vec::Vec;
 
@@ -36,7 +36,7 @@ impl Parts {
         self
     }
 
-    /// The same shapes, or with `left` their mirror images on the left side's body.
+    /// Returns the shapes, or with `left` their mirror images on the left side's body.
     fn on_side(mut self, left: bool) -> Self {
         if left {
             self.1.iter_mut().for_each(|visual| visual.placement = mirror::pose(visual.placement));
@@ -82,7 +82,7 @@ fn head(eyes: [[f64; 3]; 2]) -> Parts {
     head
 }
 
-/// Covers of a side's shoulder, upper arm, elbow, forearm and wrist; the right one's are given.
+/// Covers of a side's shoulder, upper arm, elbow, forearm and wrist. The right one's are given.
 fn arm(side: Side) -> Vec<Parts> {
     let first = side.arm().bodies().start;
     let part = |body: usize| Parts(BodyId((first + body) as u16), Vec::new());
@@ -104,7 +104,7 @@ fn arm(side: Side) -> Vec<Parts> {
     parts.into_iter().map(|part| part.on_side(side == Side::Left)).collect()
 }
 
-/// Palms and fingers are drawn as their colliders, in colours: fingertips are dark.
+/// Palms and fingers are drawn as their colliders, in colors: fingertips are dark.
 fn hands(robot: &Robot) -> Vec<Visual> {
     let of_hand = |collider: &&Collider| {
         let own = collider.body.map_or(0, BodyId::index);

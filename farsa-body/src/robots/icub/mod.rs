@@ -1,7 +1,7 @@
 //! The upper body of the iCub [Metta2010] as data: 60 joints in six chains.
 //!
-//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::robots::ArmAndHand`]. A table of masses and
-//! limits beside those of the file and the Denavit-Hartenberg table is in docs/icub-tables.md.
+//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::robots::ArmAndHand`].
+//! docs/icub-tables.md compares masses and limits with the file and has the Denavit-Hartenberg table.
 
 /// The six chains, the two sides, and which joints and bodies are theirs.
 pub(crate) mod chain;
@@ -9,9 +9,9 @@ pub(crate) mod chain;
 mod colliders;
 /// The robot with its fields, and how it is put together.
 pub(crate) mod description;
-/// What can be wrong with it.
+/// The error of its configuration.
 pub(crate) mod error;
-/// What is drawn of it.
+/// The shapes that views draw.
 mod look;
 /// The joint angles of all chains.
 pub(crate) mod posture;

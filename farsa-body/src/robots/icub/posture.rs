@@ -48,7 +48,7 @@ impl IcubPosture {
 }
 
 impl Default for IcubPosture {
-    /// Upright, both forearms in front of the trunk, hands open; our own choice.
+    /// Upright, both forearms in front of the trunk, hands open, our own choice.
     fn default() -> Self {
         let arm = [deg(-30.0), deg(30.0), 0.0, deg(60.0), 0.0, 0.0, 0.0];
         Self {

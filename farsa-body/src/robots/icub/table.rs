@@ -1,9 +1,9 @@
 //! Joints and masses of torso, neck and right arm: numbers of the file `icub.urdf` [Gepetto2025].
 //!
-//! All axes, places and inertias are in the axes of the world at joint positions 0, the file's turned by pi about z,
-//! and were computed after its angles, which have six digits, were set to the multiples of 15 degrees that they mean.
-//! Links that the file joins without a joint are one segment: `shoulder_3`, the force sensor and the upper arm; the
-//! chest and the neck's base of 0.1 kg. Limits are the degrees that the file's radians are.
+//! All axes, places and inertias are in the axes of the world at joint positions 0, which are the file's turned by pi
+//! about z. They were computed after the file's angles, which have six digits, were set to the multiples of 15 degrees
+//! that they mean. Links that the file joins without a joint are one segment: `shoulder_3`, the force sensor and the
+//! upper arm, and the chest with the neck's base of 0.1 kg. Limits are the file's radians in degrees.
 
 use crate::robot::mass_properties::MassProperties;
 use crate::robots::hand::deg;
@@ -11,7 +11,7 @@ use crate::robots::hand::deg;
 /// Where a segment's inertia comes from.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
-    /// The file: about the centre of mass [xx, yy, zz, xy, xz, yz; kg m2].
+    /// The file: about the center of mass [xx, yy, zz, xy, xz, yz, kg m2].
     File([f64; 6]),
     /// A ball of this radius [m]: the file has no inertia there.
     Chosen(f64),
@@ -34,14 +34,14 @@ pub(super) struct Part {
     pub(super) effort: f64,
     /// Mass [kg].
     mass: f64,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     centre: [f64; 3],
     /// Inertia about it.
     inertia: Source,
 }
 
 impl Part {
-    /// Mass, centre of mass and inertia.
+    /// Mass, center of mass and inertia.
     pub(super) fn body(&self) -> MassProperties {
         let inertia = match self.inertia {
             Source::File(inertia) => inertia,
@@ -54,7 +54,7 @@ impl Part {
 /// Sine and cosine of the 15 degrees by which the axes of the shoulder are turned.
 const SHOULDER: [f64; 2] = [0.258_819_045_102_520_74, 0.965_925_826_289_068_3];
 
-/// Pitch, roll and yaw of the trunk; the first is in the world.
+/// Pitch, roll and yaw of the trunk. The first is in the world.
 pub(super) const TORSO: [Part; 3] = [
     Part {
         joint: "torso_pitch",
@@ -91,7 +91,7 @@ pub(super) const TORSO: [Part; 3] = [
     },
 ];
 
-/// Pitch, roll and yaw of the head; the first is on the chest.
+/// Pitch, roll and yaw of the head. The first is on the chest.
 pub(super) const NECK: [Part; 3] = [
     Part {
         joint: "neck_pitch",
@@ -128,8 +128,8 @@ pub(super) const NECK: [Part; 3] = [
     },
 ];
 
-/// The right arm; its first joint is on the chest. The last segment is the palm of [`crate::robots::Hand`], so its mass here,
-/// that of the file's whole hand, is not used.
+/// The right arm. Its first joint is on the chest. The last segment is the palm of [`crate::robots::Hand`], so its mass
+/// here, that of the file's whole hand, is not used.
 pub(super) const ARM: [Part; 7] = [
     Part {
         joint: "shoulder_pitch",

@@ -10,7 +10,7 @@ use crate::robots::icub::colliders;
 use crate::robots::icub::description::Icub;
 use crate::robots::icub::error::IcubError;
 
-/// A table before the iCub, with a ball on it; every number a field.
+/// A table before the iCub, with a ball on it. Every number a field.
 ///
 /// All numbers are our own choice.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,15 +22,15 @@ pub struct IcubTabletop {
     pub table_y: [f64; 2],
     /// Height of the table's top [m].
     pub table_top: f64,
-    /// How far the solid table goes down [m].
+    /// The thickness of the solid table [m].
     pub table_depth: f64,
-    /// Colour of the table, red, green and blue [0..1].
+    /// Color of the table, red, green and blue [0..1].
     pub table_color: [f64; 3],
     /// Radius of the ball [m].
     pub ball_radius: f64,
     /// Mass of the ball, solid [kg].
     pub ball_mass: f64,
-    /// Colour of the ball, red, green and blue [0..1].
+    /// Color of the ball, red, green and blue [0..1].
     pub ball_color: [f64; 3],
     /// Where the ball rests on the table at first, X and Y [m].
     pub ball_start: [f64; 2],
@@ -68,12 +68,12 @@ impl IcubTabletop {
 
     /// Robot, ball and table in one description, the robot's parts first.
     ///
-    /// After the robot's own pairs come those of the `ball` with waist, chest and head, with forearm, palm and phalanges of
-    /// the left side and of the right, then those of the `table` with the ball, chest and head, and with upper arm, forearm,
-    /// palm and phalanges of either side.
+    /// Pairs in order: the robot's own, those of the `ball` with waist, chest and head, and with forearm, palm and
+    /// phalanges of the left side and of the right. The last are those of the `table` with the ball, chest and head,
+    /// and with upper arm, forearm, palm and phalanges of either side.
     ///
     /// # Errors
-    /// Those of [`Icub::robot`], and what [`Robot::validate`] finds with the numbers given.
+    /// The errors of [`Icub::robot`], and of [`Robot::validate`] for the given numbers.
     pub fn scene(&self, icub: &Icub) -> Result<Robot, IcubError> {
         let mut robot = icub.robot()?;
         let [x, y] = self.ball_start;
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(robot.segments.len(), 61);
         assert_eq!(robot.body("ball"), Some(IcubTabletop::BALL));
         assert_eq!(robot.colliders.len(), own.colliders.len() + 2);
-        // Ball with trunk, forearms, palms and phalanges, and the table; table with chest, head, upper arms and those.
+        // Ball with trunk, forearms, palms and phalanges, and the table. Table with chest, head, upper arms and those.
         assert_eq!(robot.pairs.len(), own.pairs.len() + (3 + 2 * 17) + 1 + (2 + 2 * 18));
         assert_eq!(robot.pairs[..own.pairs.len()], own.pairs[..]);
         for name in ["head", "l_forearm", "r_palm", "r_little_distal", "table"] {

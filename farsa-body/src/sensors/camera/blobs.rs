@@ -1,4 +1,4 @@
-//! Where colours are in a camera's image, and how large.
+//! Where colors are in a camera's image, and how large.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,10 +8,11 @@ use crate::ports::{BodyId, Channels, Kinematics, Sensor, Vision};
 use crate::sensors::camera::Camera;
 use crate::sensors::linear_camera::ColorBand;
 
-/// Reads where each of some colours is in a camera's image, 3 channels a colour: how far to the left and upwards the middle of the
-/// pixels that show it is, in halves of the image's width, and the share of all pixels in [0, 1]; three zeros where none does.
+/// Reads the places of some colors in a camera's image, 3 channels a color. They are the middle of the color's pixels,
+/// to the left and upwards, in halves of the image's width, and the share of all pixels in [0, 1]. All three are zero
+/// where no pixel has the color.
 ///
-/// What hides a part of a thing moves the middle of the rest, as in a real image.
+/// A hidden part of a thing moves the middle of the rest, as in a real image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorBlobs<B = BodyId> {
     camera: Camera<B>,
@@ -21,10 +22,10 @@ pub struct ColorBlobs<B = BodyId> {
 }
 
 impl<B: Copy> ColorBlobs<B> {
-    /// The blobs of these colours.
+    /// The blobs of these colors.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for no colours, [`ChannelError::Range`] for a band that is not finite or runs backwards.
+    /// [`ChannelError::Groups`] for no colors, [`ChannelError::Range`] for a band that is not finite or runs backwards.
     pub fn new(camera: Camera<B>, bands: Vec<ColorBand>) -> Result<Self, ChannelError> {
         groups("colours", bands.len(), 1)?;
         bands.iter().try_for_each(ColorBand::check)?;

@@ -3,8 +3,8 @@
 use crate::ports::{BodyId, Channels, Kinematics, Sensor, Vision};
 use crate::sensors::camera::Camera;
 
-/// Reads a camera's image, rows x columns x 3 channels in [0, 1]: red, green and blue of the upper left pixel first, row by row;
-/// 0 where there is nothing, or nothing with a colour.
+/// Reads a camera's image, rows x columns x 3 channels in [0, 1]. The order is red, green and blue of the upper left
+/// pixel first, row by row. A pixel is 0 where there is no surface, or one without a color.
 ///
 /// The cost is that of one ray a pixel.
 ///

@@ -1,13 +1,12 @@
 //! Cameras with an image, on any body.
-//!
-//! - `pinhole`: where a camera is, where its pixels look to, and where a point is in its image
-//! - `image`: all pixels as channels
-//! - `blobs`: where colours are in the image, and how large
-//! - `offset`: how far apart two things are in the image
 
+/// The places and sizes of colors in the image.
 mod blobs;
+/// All pixels as channels.
 mod image;
+/// The distance of two things in the image.
 mod offset;
+/// The place of a camera, the rays of its pixels, and the image of a point.
 mod pinhole;
 
 pub use blobs::ColorBlobs;

@@ -1,13 +1,13 @@
-//! How far apart two things are in a camera's image.
+//! The distance of two things in a camera's image.
 
 use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 use crate::sensors::camera::Camera;
 
-/// Reads how far one thing is from another in a camera's image, 2 channels in [-1, 1]: to the left and upwards, in widths of the
-/// image; 0 where one of them is behind the camera.
+/// Reads the distance between two things in a camera's image, 2 channels in [-1, 1]: to the left and upwards, in widths
+/// of the image. Both are 0 where a thing is behind the camera.
 ///
-/// Both are points of bodies and count as seen whether or not something hides them. Of the camera only its place and field of view
-/// matter, so one pixel is enough.
+/// Both are points of bodies and count as seen whether or not something hides them. Only the place and the field of
+/// view of the camera matter, so one pixel is enough.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisualOffset<B = BodyId> {
     camera: Camera<B>,

@@ -11,13 +11,13 @@ use crate::pose::Pose;
 use crate::recorder::Recorder;
 
 /// More pixels than this are not needed, and a mistake could run out of memory.
-const MOST_PIXELS: usize = 1 << 20;
+const MAX_PIXELS: usize = 1 << 20;
 
-/// A pinhole camera on a body. Its own frame looks along x, with y to the left and z up; its pixels are squares, numbered row by row
-/// from the upper left.
+/// A pinhole camera on a body. Its own frame looks along x, with y to the left and z up. Its pixels are squares,
+/// numbered row by row from the upper left.
 ///
-/// A place (x, y, z) of its frame appears at (y, z) / (x w) in the image, with w the tangent of half the field of view: 1 is the
-/// left edge, -1 the right one, and the vertical axis has the same unit.
+/// A place (x, y, z) of its frame appears at (y, z) / (x w) in the image, with w the tangent of half the field of view.
+/// The left edge is at 1, the right one at -1, and the vertical axis has the same unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera<B = BodyId> {
     body: B,
@@ -33,12 +33,13 @@ pub struct Camera<B = BodyId> {
 }
 
 impl<B: Copy> Camera<B> {
-    /// A camera on `body` at `placement` in that body's frame, with an image of `size` [columns, rows], a horizontal field of view
-    /// [rad], that sees as far as `range` [m].
+    /// Builds a camera on `body` at `placement` in that body's frame. The image has `size` [columns, rows], a
+    /// horizontal field of view [rad] and a `range` [m].
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for an image without pixels or of more than 2^20; [`ChannelError::Value`] if the field of view is not
-    /// within 0 and pi, `range` is not a finite number > 0, or the placement is not finite or its rotation no unit quaternion.
+    /// [`ChannelError::Groups`] for an image without pixels or of more than 2^20. [`ChannelError::Value`] for a field
+    /// of view outside (0, pi), a `range` that is not a finite number > 0, or a placement that is not finite or has no
+    /// unit quaternion.
     pub fn new(
         body: B,
         placement: Pose,
@@ -48,7 +49,7 @@ impl<B: Copy> Camera<B> {
     ) -> Result<Self, ChannelError> {
         let [columns, rows] = size;
         let pixels = columns.saturating_mul(rows);
-        if pixels == 0 || pixels > MOST_PIXELS {
+        if pixels == 0 || pixels > MAX_PIXELS {
             return Err(ChannelError::Groups { field: "pixels", count: pixels, size: columns });
         }
         if !(field_of_view > 0.0 && field_of_view < core::f64::consts::PI) {
@@ -66,7 +67,7 @@ impl<B: Copy> Camera<B> {
         let mut own = Vec::with_capacity(pixels);
         for row in 0..rows {
             for column in 0..columns {
-                // The middle of the pixel; pixels are square, so rows count in columns' widths.
+                // The middle of the pixel. Pixels are square, so rows count in columns' widths.
                 let left = tangent * (columns as f64 - 1.0 - 2.0 * column as f64) / columns as f64;
                 let up = tangent * (rows as f64 - 1.0 - 2.0 * row as f64) / columns as f64;
                 let length = Scalar::sqrt(1.0 + left * left + up * up);
@@ -93,7 +94,8 @@ impl<B: Copy> Camera<B> {
         world.pose(self.body).compose(&self.placement)
     }
 
-    /// Looks: what each pixel meets [rows x columns], the upper left first. The camera's own body is not seen.
+    /// Returns the first surface of each pixel [rows x columns], the upper left first. The camera's own body is
+    /// invisible.
     pub fn look<W: Kinematics<Body = B> + Vision + ?Sized>(&mut self, world: &W) -> &[Option<Seen<B>>] {
         let pose = self.pose(world);
         for (ray, own) in self.rays.iter_mut().zip(&self.own) {
@@ -103,13 +105,13 @@ impl<B: Copy> Camera<B> {
         &self.seen
     }
 
-    /// What colour each pixel showed when it looked last, the upper left first.
+    /// Returns the color of each pixel at the last look, the upper left first.
     pub fn colors(&self) -> impl Iterator<Item = Option<[f32; 3]>> {
         self.seen.iter().map(|seen| seen.as_ref().and_then(|seen| seen.color))
     }
 
-    /// Tells a recorder what it showed when it looked last, as the image of this number; black where there was nothing, or nothing
-    /// with a colour.
+    /// Passes the image of the last look to a recorder under this number. It is black where there was no surface, or
+    /// one without a color.
     pub fn record<R: Recorder + ?Sized>(&self, image: usize, recorder: &mut R) {
         for (pixel, color) in self.colors().enumerate() {
             recorder.pixel(image, pixel, color.unwrap_or_default());
@@ -123,8 +125,8 @@ impl<B: Copy> Camera<B> {
         [(columns - 1.0 - 2.0 * column) / columns, (rows - 1.0 - 2.0 * row) / columns]
     }
 
-    /// Where a place of the world [m] is in the image, to the left and upwards in halves of its width, beyond 1 if beside it;
-    /// `None` for one that is not in front of the camera.
+    /// Returns the position of a place of the world [m] in the image, to the left and upwards in halves of its width.
+    /// It is beyond 1 outside of the image, and `None` for a place that is not in front of the camera.
     pub fn project(&self, pose: &Pose, place: [f32; 3]) -> Option<[f32; 2]> {
         let [ahead, left, up] = pose.transform_back(place);
         (ahead > 0.0).then(|| [left, up].map(|x| x / (ahead * self.tangent)))

@@ -34,15 +34,15 @@ use crate::sensors::beam::Beam;
 pub struct InfraredDrawing {
     /// Where each ray leaves the hull, and its direction, in the robot's frame.
     rays: Vec<Beam>,
-    /// How far the sensors see from the hull [m].
+    /// The range of the sensors from the hull [m].
     range: f32,
-    /// How high they sit [m].
+    /// The height of the sensors [m].
     height: f32,
 }
 
 impl InfraredDrawing {
-    /// Of a ring of sensors in so many groups of neighbours, the first sensor of each standing for it, or each alone where
-    /// they cannot be divided so.
+    /// Builds the rays of a ring of sensors in `groups` groups of neighbors, at the first sensor of each. Every sensor
+    /// has its own ray where the ring cannot be divided so.
     pub fn for_robot(robot: &MobileRobot, groups: usize) -> Self {
         let angles = &robot.infrared.angles;
         let divided = groups > 0 && angles.len().is_multiple_of(groups);
@@ -62,8 +62,8 @@ impl InfraredDrawing {
     /// Records a ray for each channel: it ends where a thing would be that gives the same reading by
     /// [`InfraredRays`](crate::sensors::infrared::InfraredRays).
     ///
-    /// `x` is what each channel read when the robot was at `pose`; `met`: only those that read something, where a crowd has too
-    /// many others.
+    /// `x` is what each channel read when the robot was at `pose`. `met`: only those that read something, where a crowd
+    /// has too many others.
     pub fn record(&self, pose: Pose, x: &[f32], met: bool, recorder: &mut dyn Recorder) {
         for (ray, &x) in self.rays.iter().zip(x).filter(|(_, x)| !met || **x > 0.0) {
             let length = self.range * (1.0 - x);

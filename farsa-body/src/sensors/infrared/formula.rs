@@ -14,9 +14,9 @@ use crate::sensors::stance::Stance;
 
 /// Reads a ring of infrared sensors by the model [`InfraredModel`], one channel each in [0, 1].
 ///
-/// Every wall and every other body adds its response, from the distance of its nearest point to the hull, its radius and
-/// the angle between the sensor's axis and that point's bearing from the robot's centre; nothing hides anything. How far
-/// the sensors see is the model's: 33 mm for a wall, less for a cylinder.
+/// Every wall and every other body adds its response, and nothing hides anything. The response depends on the distance
+/// of the nearest point to the hull, the radius, and the angle between the sensor's axis and that point's bearing from
+/// the robot's center. The range is the model's: 33 mm for a wall, less for a cylinder.
 ///
 /// The axes are any list of unit vectors in the robot's frame. Wrap it in [`crate::wrappers::Noisy`] for noise, as
 /// [`crate::sensors::infrared::InfraredRays`] shows.
@@ -47,7 +47,7 @@ impl<B> InfraredFormula<Vec<[f32; 2]>, B> {
     /// The ring of a robot whose body this is, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
-    /// Those of [`InfraredFormula::new`].
+    /// The errors of [`InfraredFormula::new`].
     pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let axis = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1).direction;
         Self::new(body, robot.infrared.angles.iter().map(axis).collect(), robot.radius as f32)

@@ -1,4 +1,4 @@
-//! Infrared sensors by rays in groups of neighbours, for worlds that know what is near.
+//! Infrared sensors by rays in groups of neighbors, for worlds that list near surfaces.
 
 use alloc::{vec, vec::Vec};
 
@@ -10,11 +10,11 @@ use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 use crate::sensors::infrared::rays::InfraredRays;
 
-/// Reads a ring of [`InfraredRays`] in groups of neighbours, each of which gives its largest reading, one channel each in
-/// [0, 1].
+/// Reads a ring of [`InfraredRays`] in groups of neighbors, each of which gives its largest reading, one channel each
+/// in [0, 1].
 ///
-/// The middle of group i is sensor i * size of the ring. Rays that what is near cannot meet are not cast: the readings are
-/// the same.
+/// The middle of group i is sensor i * size of the ring. Rays that no near surface can reach are not cast, which does
+/// not change the readings.
 #[derive(Clone, Debug)]
 pub struct InfraredGroups<B = BodyId> {
     body: B,
@@ -22,7 +22,7 @@ pub struct InfraredGroups<B = BodyId> {
     groups: usize,
     /// Readings of all sensors of the ring.
     ring: Vec<f32>,
-    /// What is near, as far as there is room for it.
+    /// Near surfaces, up to the available room.
     obstacles: Vec<Obstacle>,
     /// From the middle of the robot to where its sensors see [m].
     reach: f32,
@@ -35,18 +35,18 @@ enum Obstacle {
     Round { centre: [f32; 2], radius: f32 },
 }
 
-/// Obstacles that are looked at one by one; among more all rays are cast.
+/// Obstacles that are looked at one by one. Among more all rays are cast.
 const ROOM: usize = 64;
 
 /// For rounding [m].
 const HAIR: f32 = 1e-4;
 
-/// Where the nearest point of a body or wall is closer to the robot's middle than this, its direction is not known, and all rays
+/// The distance of the nearest point from the robot's middle below which its direction is undefined, so that all rays
 /// are cast [m].
 const CLOSE: f32 = 0.01;
 
 impl Obstacle {
-    /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
+    /// Returns whether some of it may lie on a way from one place to another. Sometimes also if none does.
     fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         match self {
             // All of it lies beyond its nearest point.
@@ -66,7 +66,7 @@ impl Obstacle {
 }
 
 impl<B: Copy> InfraredGroups<B> {
-    /// The ring of a robot whose body this is, in so many groups.
+    /// Builds the ring of the robot with this body in `count` groups.
     ///
     /// # Errors
     /// [`ChannelError::Groups`] for a ring that has no such number of groups of the same size, and those of
@@ -86,7 +86,7 @@ impl<B: Copy> InfraredGroups<B> {
 }
 
 impl<B> InfraredGroups<B> {
-    /// What all sensors of the ring read last, in the order of [`crate::robots::InfraredRing::angles`].
+    /// Returns the last readings of all sensors of the ring, in the order of [`crate::robots::InfraredRing::angles`].
     pub fn ring(&self) -> &[f32] {
         &self.ring
     }
@@ -129,7 +129,7 @@ where
             }
         });
         if obstacles.is_empty() && !crowded {
-            // What the rays would read, too: nothing is within their range.
+            // Rays would read 0, too, because nothing is within their range.
             ring.fill(0.0);
         } else {
             rays.read_where(world, ring, |[x, y, _], [u, v, _]| {

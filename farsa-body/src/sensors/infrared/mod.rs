@@ -7,8 +7,8 @@
 //! | [`InfraredFormula`] | a formula of distance, bearing and radius, [`InfraredModel`] | are felt, too | `Sight` |
 //! | [`SampledInfrared`] | what a real robot's sensors read, from [`InfraredTables`] | are felt, too | `Sight`, measured tables |
 //!
-//! Take rays for a world of your own or walls that hide each other, the formula for speed, tables to come nearest to a
-//! robot that was measured.
+//! Take rays for a custom world or for walls that hide each other, the formula for speed, and tables to reproduce a
+//! measured robot.
 
 /// Channels as rays to be drawn.
 #[cfg(feature = "alloc")]

@@ -1,14 +1,15 @@
-//! How strongly an infrared sensor answers a surface: the analytic model.
+//! The response of an infrared sensor to a surface: the analytic model.
 
 use farsa_num::Scalar;
 
-/// What a surface of one radius does to an infrared sensor, as a formula instead of a table.
+/// The response of an infrared sensor to a surface of one radius, as a formula instead of a table.
 ///
 /// A sensor reads the sum over all surfaces of `distance_term * angle_term`, brought into [0, 1].
 /// - `distance_term = clamp((far - d) / (far - near), 0, 1)`, with `d` the distance from the robot's hull to the nearest
 ///   point of the surface [m].
-/// - `angle_term = s^2`, `s = max((cos(a) - cos(width)) / (1 - cos(width)), 0)`, with `a` the angle between the sensor's
-///   axis and the bearing of that point from the robot's centre: 1 ahead, 1/2 at about half the width, smoothly 0 at it.
+/// - `angle_term = s^2`, `s = max((cos(a) - cos(width)) / (1 - cos(width)), 0)`, with `a` the angle between the
+///   sensor's axis and the bearing of that point from the robot's center. It is 1 ahead, 1/2 at about half the width,
+///   and smoothly 0 at the width.
 ///
 /// | | curvature [1/m] | near [mm] | far [mm] | width [deg] |
 /// |---|---|---|---|---|
@@ -18,9 +19,10 @@ use farsa_num::Scalar;
 ///
 /// Between these rows everything is linear in the curvature, the width by its cosine.
 ///
-/// Near and far are those of FARSA2's analytic sensor. The widths are where the mean of seven sensors of its measured
-/// Khepera falls to half of its peak at distances at which nothing saturates (25 degrees for a wall, 17 for either
-/// cylinder). Deviations from those measurements: all sensors are alike, and all look where they sit.
+/// Near and far are those of FARSA2's analytic sensor. The widths come from the mean of seven sensors of its measured
+/// Khepera, at distances without saturation. They are the angles at which the mean falls to half of its peak (25
+/// degrees for a wall, 17 for either cylinder). Deviations from those measurements: all sensors are alike, and each
+/// points away from the robot's center.
 ///
 /// ```
 /// use farsa_body::sensors::infrared::InfraredModel;
@@ -64,7 +66,7 @@ impl InfraredModel {
     /// Both ends of a table of channels: between them a reading falls in proportion to the distance, and with the angle.
     pub const WALL_ENDS: [f64; 2] = [WALL[1], WALL[0]];
 
-    /// The model of a surface with this radius [m]; 0, negative and NaN are a wall's.
+    /// The model of a surface with this radius [m]. 0, negative and NaN are a wall's.
     pub fn for_radius(radius: f32) -> Self {
         let curvature = if radius > 0.0 { 1.0 / f64::from(radius) } else { 0.0 };
         let part = Scalar::min(curvature / SMALL_CURVATURE, 1.0);
@@ -83,10 +85,11 @@ impl InfraredModel {
         self.far
     }
 
-    /// What one surface adds to a sensor's reading [0..1].
+    /// Returns the response to one surface [0..1].
     ///
-    /// `distance` is that from the robot's hull to the surface's nearest point [m], `cosine` that of the angle between the
-    /// sensor's axis and the bearing of this point from the robot's centre. 0 for a distance or an angle that is NaN.
+    /// `distance` is that from the robot's hull to the surface's nearest point [m]. `cosine` is that of the angle
+    /// between the sensor's axis and the bearing of this point from the robot's center. The response is 0 for a
+    /// distance or an angle that is NaN.
     #[inline(always)]
     pub fn response<S: Scalar>(&self, distance: S, cosine: S) -> S {
         self.distance_term(distance) * self.angle_term(cosine)
@@ -110,7 +113,7 @@ impl InfraredModel {
         s * s
     }
 
-    /// What a sensor reads of all surfaces together: the sum of their responses brought into [0, 1].
+    /// Returns the reading for all surfaces: the sum of their responses, clamped to [0, 1].
     #[inline(always)]
     pub fn reading<S: Scalar>(sum: S) -> S {
         sum.clamp(sum.constant(0.0), sum.constant(1.0))

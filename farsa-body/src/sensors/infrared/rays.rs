@@ -11,12 +11,13 @@ use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
 use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::{Beam, BeamFrame};
 
-/// Reads how near the nearest thing in each cone of a ring of infrared sensors is, one channel each in [0, 1]:
-/// 1 - distance / range, 1 at the hull, 0 where nothing is within the range.
+/// Reads the nearness of the first surface in each cone of a ring of infrared sensors, one channel each in [0, 1]. It
+/// is 1 - distance / range: 1 at the hull, 0 where nothing is within the range.
 ///
-/// The distance is that of the nearest hit of all rays of a cone, from the hull along the ray: so that the number of rays
-/// changes how finely a cone is searched but not what a wall across it reads. A real sensor sums up the light that comes
-/// back from the whole cone; [`SampledInfrared`](crate::sensors::infrared::SampledInfrared) is nearer to that. Nothing sees the own body.
+/// The distance is that of the nearest hit of all rays of a cone, from the hull along the ray. So the number of rays
+/// changes how finely a cone is searched, and not the reading of a wall across it. A real sensor sums the light from
+/// the whole cone. [`SampledInfrared`](crate::sensors::infrared::SampledInfrared) is closer to that. The robot's own
+/// body is invisible.
 ///
 /// The beams are any list, in groups of one sensor each. Noise comes from the wrapper:
 ///
@@ -49,7 +50,7 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
     /// from the hull.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if the beams are none or no whole sensors, [`ChannelError::Value`] if a beam's direction
+    /// [`ChannelError::Groups`] if the beams do not form whole sensors, [`ChannelError::Value`] if a beam's direction
     /// is no unit vector, a number is not finite or `range` is not > 0.
     pub fn new(body: B, beams: L, rays: usize, height: f32, range: f32) -> Result<Self, ChannelError> {
         groups("beams", beams.as_ref().len(), rays)?;
@@ -59,11 +60,10 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
 }
 
 impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
-    /// Reads as [`Sensor::read`] does, without casting rays that are known to meet nothing, where what is near is
-    /// known.
+    /// Reads as [`Sensor::read`] does, without the rays that certainly hit nothing.
     ///
-    /// `meets` gets the ends of a ray \[m\] and says whether there may be something between them; a ray of which it says
-    /// no reads 0.
+    /// `meets` receives the ends of a ray \[m\] and returns whether there may be something between them. A ray without
+    /// reads 0.
     #[inline]
     pub fn read_where<W>(&self, world: &W, out: &mut [f32], mut meets: impl FnMut([f32; 3], [f32; 3]) -> bool)
     where
@@ -87,7 +87,7 @@ impl<B> InfraredRays<Vec<Beam>, B> {
     /// The ring of a robot whose body this is, at half its height, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
-    /// Those of [`InfraredRays::new`].
+    /// The errors of [`InfraredRays::new`].
     pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let (ring, rays) = (&robot.infrared, robot.infrared.rays);
         let cone =

@@ -20,7 +20,7 @@ pub struct InfraredTables {
 impl InfraredTables {
     /// A table for walls, and tables for round bodies with the radii [m] at which they were measured.
     ///
-    /// A body takes the table whose radius is nearest to its own, of two equally near the earlier; without any, that of
+    /// A body takes the table whose radius is nearest to its own, of two equally near the earlier. Without any, that of
     /// the walls.
     ///
     /// # Errors
@@ -64,10 +64,10 @@ impl InfraredTables {
 
 /// Reads a ring of infrared sensors from measured tables, one channel each in [0, 1].
 ///
-/// Every wall and every other body adds what its table holds for the distance of its nearest point to the hull and for
-/// that point's bearing from the robot's centre; the sum is cut at 1, and nothing hides anything. The nearest point of a
-/// round body lies towards its centre. That of a wall is the foot of the perpendicular, or the wall's end where that is
-/// nearer: two walls of a corner answer both, each for its own nearest point.
+/// Every wall and every other body adds the value of its table for the distance of its nearest point to the hull and
+/// for that point's bearing from the robot's center. The sum is cut at 1, and nothing hides anything. The nearest point
+/// of a round body is towards its center. That of a wall is the foot of the perpendicular, or the wall's end where that
+/// is nearer. The two walls of a corner both respond, each for its own nearest point.
 ///
 /// The tables are owned, borrowed, or shared by an `Rc` or `Arc`. Wrap it in [`crate::wrappers::Noisy`] for noise, as
 /// [`crate::sensors::infrared::InfraredRays`] shows.
@@ -112,7 +112,7 @@ impl<T: Borrow<InfraredTables>, B> SampledInfrared<T, B> {
     /// Only the first sensors: of a Khepera's eight the first six are those in front.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are not so many, [`ChannelError::Groups`] if it is none.
+    /// [`ChannelError::Selection`] if there are fewer sensors, [`ChannelError::Groups`] for 0.
     pub fn first(self, sensors: usize) -> Result<Self, ChannelError> {
         groups("sensors", sensors, 1)?;
         let channels = self.tables.borrow().sensors();

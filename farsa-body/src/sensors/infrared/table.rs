@@ -4,10 +4,11 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// What a robot's infrared sensors read of one surface at sampled distances and angles, as measured on a real robot.
+/// The readings of a robot's infrared sensors for one surface at sampled distances and angles, measured on a real
+/// robot.
 ///
 /// Distances are from the robot's hull to the surface's nearest point, angles those of this point's bearing from the
-/// robot's centre, counted clockwise from its heading.
+/// robot's center, counted clockwise from its heading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InfraredTable {
     sensors: usize,
@@ -21,17 +22,17 @@ pub struct InfraredTable {
 }
 
 /// The largest reading of the ten-bit converter that the tables were measured with.
-const LARGEST: u16 = 1023;
+const MAX_READING: u16 = 1023;
 
 /// The most readings that a table may announce: 4096 times those of a Khepera's.
-const MOST: usize = 4096 * 8 * 180 * 20;
+const MAX_READINGS: usize = 4096 * 8 * 180 * 20;
 
 impl InfraredTable {
     /// Reads the text of one of FARSA's `.sam` files.
     ///
-    /// A first line `sensors angles distances first step`, the last two in whole millimetres; for each distance a line
-    /// `TURN k`, k from 0, and for each angle a line of readings in 0..=1023, one a sensor; a last line `END`. Empty lines
-    /// do not count.
+    /// A first line `sensors angles distances first step`, the last two in whole millimeters. For each distance a line
+    /// `TURN k`, k from 0, and for each angle a line of readings in 0..=1023, one a sensor. A last line `END`. Empty
+    /// lines do not count.
     ///
     /// ```
     /// use farsa_body::sensors::infrared::InfraredTable;
@@ -46,7 +47,7 @@ impl InfraredTable {
     /// ```
     ///
     /// # Errors
-    /// What is wrong, with the number of its line.
+    /// The fault, with the number of its line.
     pub fn parse(text: &str) -> Result<Self, InfraredTableError> {
         let mut lines = Lines { lines: text.lines().enumerate(), last: 0 };
         let (line, header) = lines.next("the sizes `sensors angles distances first step`")?;
@@ -64,7 +65,7 @@ impl InfraredTable {
         let (first, step) = (number("first distance", first, 0)?, number("step", step, 1)?);
         // Three numbers of 16 bits fit into 64.
         let readings = sensors as u64 * angles as u64 * distances as u64;
-        if readings > MOST as u64 {
+        if readings > MAX_READINGS as u64 {
             return Err(InfraredTableError::TooLarge { line, readings });
         }
         let mut table =
@@ -82,10 +83,10 @@ impl InfraredTable {
                 let (line, text) = lines.next("readings")?;
                 let before = table.readings.len();
                 for word in text.split_whitespace() {
-                    let reading = word.parse::<u16>().ok().filter(|&reading| reading <= LARGEST);
+                    let reading = word.parse::<u16>().ok().filter(|&reading| reading <= MAX_READING);
                     let reading =
                         reading.ok_or_else(|| InfraredTableError::Reading { line, found: word.to_string() })?;
-                    table.readings.push(f32::from(reading) / f32::from(LARGEST + 1));
+                    table.readings.push(f32::from(reading) / f32::from(MAX_READING + 1));
                 }
                 let found = table.readings.len() - before;
                 if found != sensors {
@@ -113,11 +114,12 @@ impl InfraredTable {
         (self.first + self.step * self.distances as f32) / 1000.0
     }
 
-    /// What the sensors read of a surface at this `distance` from the hull [m] and this `bearing` [rad], counter-clockwise
-    /// from ahead; [sensors] in [0, 1).
+    /// Returns the readings for a surface at this `distance` from the hull [m] and this `bearing` [rad],
+    /// counter-clockwise from ahead. [sensors] in [0, 1).
     ///
-    /// The row is that of FARSA: the distance's number is trunc((distance - first) / step), 0 below the first, `None` past
-    /// the last; the angle's trunc(angle / 360 angles) of the clockwise angle in [0, 360) degrees. Readings are divided by
+    /// The row is that of FARSA: the distance's number is trunc((distance - first) / step), 0 below the first, `None`
+    /// past the last. The angle's trunc(angle / 360 angles) of the clockwise angle in [0, 360) degrees. Readings are
+    /// divided by
     /// 1024. `None` for NaN.
     pub fn response(&self, distance: f32, bearing: f32) -> Option<&[f32]> {
         const FULL: f32 = 2.0 * core::f32::consts::PI;
@@ -164,30 +166,30 @@ pub enum InfraredTableError {
         line: usize,
         /// Which size.
         field: &'static str,
-        /// What stands there.
+        /// The text of the file.
         found: String,
     },
     /// The first line announces more readings than follow.
     TooLarge {
         /// Its line.
         line: usize,
-        /// How many.
+        /// The number of readings.
         readings: u64,
     },
     /// A line has too few or too many numbers.
     Width {
         /// Its number.
         line: usize,
-        /// How many numbers it should have.
+        /// The expected number.
         expected: usize,
-        /// How many it has.
+        /// The actual number.
         found: usize,
     },
     /// A reading is no whole number from 0 to 1023.
     Reading {
         /// Its line.
         line: usize,
-        /// What stands there.
+        /// The text of the file.
         found: String,
     },
     /// The readings of a distance do not begin with their number, or there are more or fewer rows before it than angles.
@@ -196,28 +198,28 @@ pub enum InfraredTableError {
         line: usize,
         /// The number that should follow `TURN`.
         expected: usize,
-        /// What stands there.
+        /// The text of the file.
         found: String,
     },
     /// The text ends too early.
     Truncated {
         /// The line that is missing.
         line: usize,
-        /// What it should hold.
+        /// The expected content.
         expected: &'static str,
     },
     /// The readings are not followed by `END`.
     End {
-        /// The line where it should stand.
+        /// The line at which it is expected.
         line: usize,
-        /// What stands there.
+        /// The text of the file.
         found: String,
     },
     /// Something follows `END`.
     Garbage {
         /// Its line.
         line: usize,
-        /// What stands there.
+        /// The text of the file.
         found: String,
     },
 }
@@ -235,11 +237,15 @@ impl fmt::Display for InfraredTableError {
                 write!(f, "line {line}: {field} `{}`, but it is a whole number from {least} to 65535", head(found))
             }
             Self::TooLarge { line, readings } => {
-                write!(f, "line {line}: {readings} readings, at most {MOST} are taken")
+                write!(f, "line {line}: {readings} readings, at most {MAX_READINGS} are taken")
             }
             Self::Width { line, expected, found } => write!(f, "line {line}: {found} numbers instead of {expected}"),
             Self::Reading { line, found } => {
-                write!(f, "line {line}: a reading of {}, but they are whole numbers from 0 to {LARGEST}", head(found))
+                write!(
+                    f,
+                    "line {line}: a reading of {}, but they are whole numbers from 0 to {MAX_READING}",
+                    head(found)
+                )
             }
             Self::Turn { line, expected, found } => {
                 write!(f, "line {line}: `{}` instead of `TURN {expected}`", head(found))

@@ -8,13 +8,13 @@ use crate::testing::probe::Probe;
 use crate::testing::promise::{ConformanceError, Promise, ensure};
 use crate::testing::trace::{HOLD, Instant, parting, saved, trace};
 
-/// How far what is read may be from where it was placed; a world may keep other coordinates.
+/// The tolerance between a reading and the placed value. A world may keep other coordinates.
 const NEAR: f32 = 1e-4;
 
 /// Checks what every world promises about being set up for a new episode, on worlds that `make` makes all alike.
 ///
-/// A cleared world knows nothing of its past, joints, floating and planar bodies are where they were placed, and what the ports
-/// report after [`Arrange::finish_placement`] is what a snapshot brings back.
+/// A cleared world has no trace of its past, and joints, floating and planar bodies are where they were placed. The
+/// ports report the same after [`Arrange::finish_placement`] as after a snapshot is restored.
 ///
 /// # Errors
 /// The first broken promise.
@@ -138,7 +138,7 @@ where
     })
 }
 
-/// Whether two orientations are the same; either quaternion will do.
+/// Returns whether two orientations are the same, either quaternion will do.
 fn same_turn(a: &Pose, b: &Pose) -> bool {
     let same: f32 = a.rotation.iter().zip(b.rotation).fold(0.0, |sum, (a, b)| sum + a * b);
     same.abs() > 1.0 - NEAR

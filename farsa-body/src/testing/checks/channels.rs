@@ -12,7 +12,7 @@ const BEYOND: usize = 3;
 /// Checks what every sensor promises, in the state in which the world is.
 ///
 /// It fills its channels with finite values and no value beyond, in a shorter slice the first, and after a reset reads
-/// the same bits again; noise is no exception, because a reset rewinds it.
+/// the same bits again. Noise is no exception, because a reset rewinds it.
 ///
 /// # Errors
 /// The first broken promise.
@@ -28,7 +28,7 @@ where
         sensor.read(world, &mut out);
         out.into_iter().map(f32::to_bits).collect()
     };
-    // What keeps both backgrounds was not written.
+    // A value that keeps both backgrounds was not written.
     let backgrounds = [-12_345.5_f32, 0.062_5];
     let [a, b] = backgrounds.map(|background| read(background, channels + BEYOND));
     for (beyond, background) in [&a, &b].into_iter().zip(backgrounds) {
@@ -56,9 +56,9 @@ where
 
 /// Checks what every motor promises, on worlds that `make` makes all alike.
 ///
-/// After a reset the same values give the same commands, values beyond the channels are not looked at, an empty slice
-/// commands nothing, and no value, NaN and infinity included, makes a command that is not finite. Commands are seen by
-/// their traces in the world's snapshot.
+/// After a reset the same values give the same commands. Values beyond the channels are ignored, an empty slice
+/// commands nothing, and no value, NaN and infinity included, makes a command that is not finite. Commands are observed
+/// through the world's snapshot.
 ///
 /// # Errors
 /// The first broken promise.
@@ -82,7 +82,7 @@ where
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, -0.5, 1.5, -0.0, f32::MIN_POSITIVE];
     let values = [0.0, 0.25, 0.5, 1.0].into_iter().chain(odd);
     let rows = values.map(|x| vec![x; channels]);
-    // Every channel differs from its neighbour, by ordinary values and by odd ones.
+    // Every channel differs from its neighbor, by ordinary values and by odd ones.
     let mixed = [&[0.125, 0.75, 0.375][..], &odd[..]].map(|some| some.iter().copied().cycle().take(channels).collect());
     for mut y in rows.chain(mixed) {
         let commanded = drive(&y);

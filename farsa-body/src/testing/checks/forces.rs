@@ -9,8 +9,9 @@ use crate::testing::trace::{Instant, parting, saved, trace};
 
 /// Checks what every world with the port [`ExternalForces`] promises, on worlds that `make` makes all alike.
 ///
-/// A force on one of the bodies `pushed`, upwards and to the side, moves it that way, in the next step alone; forces on one body add
-/// up; no force changes no bit, nor does one on a body that does not exist (`nobody`); a world that is restored has none.
+/// A force on one of the bodies `pushed`, upwards and to the side, moves it that way, in the next step alone. Forces on
+/// one body add up. No force changes no bit, nor does one on a body that does not exist (`nobody`). A world that is
+/// restored has none.
 ///
 /// # Errors
 /// The first broken promise.
@@ -26,7 +27,7 @@ where
 {
     let broken = |detail| Err(ConformanceError { promise: Promise::ForceActs, detail });
     let force = [0.25, 0.125, 0.5];
-    // The same world one step later, under what `apply` does to it before, and what it reports in the steps after.
+    // The world one step later, after `apply`, and its reports in the following steps.
     let after = |apply: &dyn Fn(&mut W)| {
         let mut world = make();
         apply(&mut world);
@@ -48,7 +49,7 @@ where
         if let Some(detail) = pushed.difference(&twice) {
             return broken(format!("body {index}: two halves of a force are not the whole: {detail}"));
         }
-        // Later steps are those of a world in the same state that nobody has pushed.
+        // Later steps equal those of a world in the same state without a push.
         let (mut world, mut restored) = (world, make());
         let state = saved(&world);
         world.restore(&state);

@@ -6,11 +6,11 @@ mod arrange;
 mod channels;
 /// Forces from outside.
 mod forces;
-/// What a world of the plane shows.
+/// Surfaces and lines of sight of a planar world.
 mod planar;
 /// Ray casts.
 mod rays;
-/// What eyes see.
+/// Rays of cameras.
 mod vision;
 /// A world that steps.
 mod world;

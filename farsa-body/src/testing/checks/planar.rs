@@ -10,16 +10,16 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 /// Number of directions looked in from every place.
 const LOOKS: usize = 256;
 
-/// How far two ways to the same point may differ [m].
+/// The tolerance between two ways to the same point [m].
 const CLOSE: f32 = 1e-4;
 
 /// Checks what every world promises about what is near and in sight, at these places [m] and as far as `range` [m].
 ///
-/// What is near is reported within its range, with the distance of its point, and again within twice the range; what is
-/// seen in a random direction is the nearest object there, reported as near and not seen without its body; a round body
-/// that is near is in sight or behind something nearer. Colours and signals are in [0, 1].
+/// Near surfaces are reported within their range, with the distance of their point, and again within twice the range.
+/// The first surface in a random direction is the nearest object there, reported as near and absent without its body. A
+/// near round body is visible or behind something nearer. Colors and signals are in [0, 1].
 ///
-/// `bodies` are all bodies of the world; no place lies within a wall. Something must be near and something in sight.
+/// `bodies` are all bodies of the world. No place lies within a wall. Something must be near and something in sight.
 ///
 /// # Errors
 /// [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with what was wrong.
@@ -114,7 +114,7 @@ where
         shown(&near.color, what)?;
         shown(near.signal.as_slice(), what)?;
         ensure(farther.contains(near), Promise::Near, || broken("not told within twice the range"))?;
-        // A wall may be looked at along its edge; a round body cannot be missed in its middle.
+        // A wall may be looked at along its edge. A round body cannot be missed in its middle.
         if near.radius > 0.0 && distance > CLOSE {
             let sight = world.cast_planar(from, way.map(|x| x / apart), 2.0 * range, None);
             ensure(sight.is_some_and(|sight| sight.distance <= distance + CLOSE), Promise::Look, || {
@@ -125,7 +125,7 @@ where
     Ok(())
 }
 
-/// Whether something was seen.
+/// Returns whether something was seen.
 fn check_look<W>(
     world: &W,
     bodies: &[W::Body],

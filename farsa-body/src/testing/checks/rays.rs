@@ -12,7 +12,7 @@ const RAYS: usize = 256;
 
 /// Checks what every world promises about rays, with many of `range` [m] in random directions from every origin [m].
 ///
-/// `bodies` are all bodies of the world. Some of the rays must meet something.
+/// `bodies` are all bodies of the world. Some of the rays must hit something.
 ///
 /// # Errors
 /// [`Promise::Ray`] with what was wrong.

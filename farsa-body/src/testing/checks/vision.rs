@@ -13,10 +13,11 @@ const RAYS: usize = 256;
 
 /// Checks what every world promises about eyes, with many rays of `range` [m] in random directions from every origin [m].
 ///
-/// What is met is a body of the world within the range, with a colour in [0, 1]; it is met again by the ray alone and within twice the
-/// range, not within less than its distance, and not without its body. No ray beyond the shorter slice is answered.
+/// A hit is a body of the world within the range, with a color in [0, 1]. The ray alone hits it again, also within
+/// twice the range, but not within less than its distance and not without its body. Rays beyond the shorter slice have
+/// no result.
 ///
-/// `bodies` are all bodies of the world. Some of the rays must meet a body.
+/// `bodies` are all bodies of the world. Some of the rays must hit a body.
 ///
 /// # Errors
 /// [`Promise::Vision`] with what was wrong.
@@ -29,7 +30,7 @@ where
     let mut met = 0;
     for &from in origins {
         let directions: Vec<[f32; 3]> = (0..RAYS).map(|_| direction(&mut stream)).collect();
-        // What is left of an earlier look must not survive.
+        // The result of an earlier look must not survive.
         let stale = Seen { distance: 0.0, body: None, color: Some([0.5; 3]) };
         let mut seen = vec![Some(stale); RAYS + 1];
         world.look(from, &directions, range, None, &mut seen);
@@ -42,7 +43,7 @@ where
     ensure(met > 0, Promise::Vision, || format!("none of {} rays met a body", RAYS * origins.len()))
 }
 
-/// Checks a ray; whether it met a body.
+/// Checks a ray. True if it hit a body.
 fn check_ray<W>(
     world: &W,
     bodies: &[W::Body],

@@ -10,9 +10,9 @@ use crate::testing::trace::{HOLD, Instant, command, pairs, parting, saved, trace
 
 /// Checks what every world promises, on worlds that `make` makes all alike.
 ///
-/// They are stepped under random commands within the probe's ranges: the same commands give the same bits, snapshots
-/// hold everything, commands hold and act, and what the ports report fits together. The mean velocity over each step
-/// must lie as near to that of its ends as these to each other, give or take [`Probe::slack`], in nine steps of ten.
+/// The worlds are stepped under random commands within the probe's ranges. The same commands give the same bits,
+/// snapshots hold everything, commands hold and act, and the ports are consistent. In nine steps of ten the mean
+/// velocity over a step is as near to that of its ends as these are to each other, within [`Probe::slack`].
 ///
 /// # Errors
 /// The first broken promise.
@@ -134,10 +134,10 @@ where
     Ok(())
 }
 
-/// One step in so many may be odd: an impact within it leaves no trace in the velocities at its ends.
+/// One step in this number may be odd, because an impact within it leaves no trace in the velocities at its ends.
 const USUAL: usize = 10;
 
-/// The steps in which a part moved otherwise than its velocities say.
+/// The steps in which a part's motion differs from its velocities.
 #[derive(Clone, Default)]
 struct Odd {
     steps: usize,
@@ -226,7 +226,7 @@ where
     }
     for pair in pairs(world) {
         let contact = world.pair_contact(pair);
-        // A depth of minus infinity says that nothing is near.
+        // A depth of minus infinity means that nothing is near.
         let told = finite(&contact.force)
             && finite(&contact.point)
             && contact.normal_force.is_finite()

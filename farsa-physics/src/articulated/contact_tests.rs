@@ -127,7 +127,7 @@ fn between(a: (V, V), b: (V, V)) -> f64 {
     least(1.0, &mut |t| point_to(at(a, t)))
 }
 
-/// Whether a plane separates two boxes: the fifteen axes of [Ericson2005] section 4.4.1.
+/// Returns whether a plane separates two boxes: the fifteen axes of [Ericson2005] section 4.4.1.
 fn separated(ha: V, pa: &Pose<f64>, hb: V, pb: &Pose<f64>) -> bool {
     let axes = |p: &Pose<f64>| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| p.rotate(e));
     let (a, b) = (axes(pa), axes(pb));
@@ -198,7 +198,7 @@ fn any_pair() -> impl Strategy<Value = [Shape; 2]> {
     ]
 }
 
-/// How far the search along an axis may miss the deepest place.
+/// The tolerance of the search along an axis for the deepest place.
 fn slack(shapes: [Shape; 2]) -> f64 {
     let search = |s: Shape| match s {
         Shape::Capsule { half_length, .. } => half_length,
@@ -238,7 +238,7 @@ proptest! {
                 // A corner or edge of the one on its surface or beneath, the other's surface met exactly.
                 prop_assert!(da <= 1e-9 && db <= 1e-9 && da.max(db).abs() <= 1e-9, "{da} {db}");
             } else {
-                // Of a capsule that reaches deep into a box, or lies flat on it, an end's ball may be within the capsule.
+                // On a capsule that is deep in a box, or flat on it, an end's ball may be within the capsule.
                 let round_first = matches!(shapes[0], Shape::Sphere { .. } | Shape::Capsule { .. });
                 let (round, other) = if round_first { (da, db) } else { (db, da) };
                 prop_assert!(round <= 1e-9 && other.abs() <= 1e-9, "{da} {db}");
@@ -264,7 +264,7 @@ proptest! {
 
     #[test]
     fn exchanging_the_two_reverses_the_normal(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
-        // Of two boxes the first one's corners are looked at: another set of points.
+        // The corners of the first of two boxes are tested: another set of points.
         prop_assume!(!boxes(shapes));
         let (ab, ba) = (points((shapes[0], pa), (shapes[1], pb)), points((shapes[1], pb), (shapes[0], pa)));
         prop_assert_eq!(ab.len(), ba.len());
@@ -316,7 +316,7 @@ proptest! {
     }
 }
 
-/// What of two boxes is nearest.
+/// The nearest features of two boxes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, PartialOrd, Ord)]
 enum Nearest {
     CornerOfFirst,
@@ -371,18 +371,18 @@ fn moving_boxes_find_corners_of_both_and_edges_of_the_second() {
     assert!(counts.iter().all(|n| *n > 100));
     assert_eq!(misses, [0; 3]);
     assert_eq!([without[0], without[2]], [0; 2], "corners of the first, edges");
-    // A known limit: a corner of a still box that pokes the first one's face is seen when its edges are.
+    // A limit: a corner of a still box that pokes the first one's face is seen when its edges are.
     assert!(without[1] > 0);
 }
 
 #[test]
 fn a_capsule_across_an_edge_touches_with_its_middle() {
-    // A box with its top at z = 0; the capsule lies across its edge at x = 0.1, tilted, both ends clear.
+    // A box with its top at z = 0. The capsule lies across its edge at x = 0.1, tilted, both ends clear.
     let table = (Shape::Box { half: [0.1, 0.1, 0.1] }, Pose::at([0.0, 0.0, -0.1]));
     for degrees in [30.0_f64, 45.0, 60.0] {
         let (s, c) = farsa_num::sin_cos(degrees.to_radians());
         for gap_wanted in [0.002, -0.001] {
-            // Out of the edge between the two faces' normals; the axis falls across it.
+            // Out of the edge between the two faces' normals. The axis falls across it.
             let n = [s, 0.0, c];
             let direction = [c, 0.0, -s];
             let radius = 0.006;
