@@ -13,7 +13,8 @@ use farsa_models::mjcf::{self, Keyframe, MjcfOptions};
 use farsa_models::urdf;
 use serde_json::Value;
 
-/// How far the readers' numbers may be from ours: relative to the largest of a kind, or absolute where that is below 1.
+/// The tolerance between the readers' numbers and ours: relative to the largest of a kind, or absolute where that is
+/// below 1.
 const TOLERANCE: f64 = 1e-9;
 
 fn tabletop() -> (Robot, MjcfOptions) {
@@ -25,8 +26,9 @@ fn unit(q: [f64; 4]) -> [f64; 4] {
     q.map(|x| x / n)
 }
 
-/// Everything a description can say that the arm and hand do not: turned frames, axes of any length, sliding, fixed and
-/// floating segments, full inertias, a plane, all laws, an endless joint, a list that is not depth-first.
+/// Builds the parts of a description that the arm and hand do not have. They are turned frames, axes of any length,
+/// sliding, fixed and floating segments, full inertias, a plane, all laws, an endless joint, and a list that is not
+/// depth-first.
 fn zoo() -> (Robot, MjcfOptions) {
     let mut robot = Robot::new("zoo & \"co\"");
     let endless = [f64::NEG_INFINITY, f64::INFINITY];
@@ -73,7 +75,7 @@ fn fixtures() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures"))
 }
 
-/// The committed texts; new ones are put beside the tests' other files, for an intended change.
+/// The committed texts. New texts are written next to the tests' other files, for an intended change.
 #[test]
 fn the_texts_are_the_committed_ones() {
     let mut others = Vec::new();

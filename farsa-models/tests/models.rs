@@ -12,16 +12,16 @@ use farsa_models::mjcf::{self, MjcfOptions};
 use farsa_models::{Imported, Meshes, ReadOptions, Repair, urdf};
 use serde_json::Value;
 
-/// How far a body may be from where the other program has it [m, and parts of the unit quaternion].
+/// The tolerance of a body's pose against the other program [m, and parts of the unit quaternion].
 const PLACES: f64 = 1e-6;
-/// The same of masses, inertias and joints, relative to the largest of a kind.
+/// The tolerance of masses, inertias and joints, relative to the largest of a kind.
 const NUMBERS: f64 = 1e-6;
 
 fn list(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-/// How a model is to be read: strictly, unless its masses or meshes need more.
+/// Returns the options for a model: strict, unless its masses or meshes need more.
 fn options(folder: &Path, how: &str) -> ReadOptions {
     let repair = Repair { least_mass: 1e-6, least_inertia: 1e-9, balance: true };
     ReadOptions {
@@ -43,7 +43,7 @@ fn close(what: &str, found: &[f64], ours: &[f64], tolerance: f64, worst: &mut f6
     }
 }
 
-/// Limits, armatures and damping, as far as the other program tells them.
+/// Limits, armatures and damping, as far as the other program reports them.
 fn joints(name: &str, model: &Value, robot: &Robot, worst: &mut f64) {
     let theirs = model["joints"].as_object().unwrap();
     assert_eq!(theirs.len(), robot.joints().count(), "{name}: joints");
@@ -64,7 +64,7 @@ fn joints(name: &str, model: &Value, robot: &Robot, worst: &mut f64) {
     }
 }
 
-/// Masses, centres and inertias, in the frames of the file's bodies.
+/// Masses, centers and inertias, in the frames of the file's bodies.
 fn masses(name: &str, model: &Value, reading: &Imported, worst: &mut f64) {
     for (body, numbers) in model["bodies"].as_object().unwrap() {
         let frame = reading.frame(body).unwrap_or_else(|| panic!("{name}: body {body}"));
@@ -137,7 +137,7 @@ fn models_of_others_are_what_other_programs_read_in_them() {
         if model["bodies"].is_object() {
             masses(name, model, &reading, &mut worst_number);
         }
-        // What was read can be written, and read again.
+        // The result can be written, and read again.
         for text in
             [mjcf::write(&reading.robot, &MjcfOptions::default()).unwrap(), urdf::write(&reading.robot).unwrap()]
         {

@@ -1,4 +1,4 @@
-//! What no planar world is built from, and places that there are not.
+//! Faults of planar worlds, and places that do not exist.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::ports::{BodyId, Sight};
@@ -155,7 +155,7 @@ fn obstacles_lie_in_the_arena_and_on_nobody() {
     let outside = of_convex(Convex::prism(&[[0.9, 0.5], [1.01, 0.5], [0.9, 0.6]], 0.1));
     let expected = ArenaError::Outside { part: Part::Convex(1), at: [1.01, 0.5], radius: 0.0, size: [1.0, 0.8] };
     assert_eq!(outside, expected);
-    // Beside the robot at (0.5, 0.4), and around the cylinder at (0.2, 0.2).
+    // Next to the robot at (0.5, 0.4), and around the cylinder at (0.2, 0.2).
     let overlap = of_convex(Convex::prism(&[[0.53, 0.3], [0.6, 0.3], [0.6, 0.5], [0.53, 0.5]], 0.1));
     let ArenaError::Overlap { parts: [Part::Robot(0), Part::Convex(1)], depth } = overlap else {
         panic!("{overlap:?}")

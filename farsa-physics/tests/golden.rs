@@ -21,7 +21,7 @@ fn add<R: Precision>(digest: &mut Digest, world: &World<R>) {
     }
 }
 
-/// What the ports make of the state: poses and velocities of the bodies, contacts of the pairs, a fan of rays.
+/// Adds the readings of the ports: poses and velocities of the bodies, contacts of the pairs, a fan of rays.
 fn add_ports<R: Precision>(digest: &mut Digest, world: &World<R>, robot: &Robot) {
     for body in 0..robot.segments.len() {
         let (pose, twist) = (world.pose(BodyId(body as u16)), world.velocity(BodyId(body as u16)));
@@ -75,7 +75,7 @@ fn babbling<R: Precision>() -> u64 {
     digest.finish()
 }
 
-/// The hand closes on the sphere, holds it when gravity sets in, and squeezes it at random; with rolling friction.
+/// The hand closes on the sphere, holds it when gravity sets in, and squeezes it at random. With rolling friction.
 fn squeezing<R: Precision>() -> u64 {
     let arm = ArmAndHand::default();
     let surface = Surface { rolling_friction: 0.002, ..arm.surface };

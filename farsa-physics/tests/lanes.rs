@@ -22,7 +22,7 @@ use farsa_body::{Pose, Twist};
 use farsa_num::{Digest, Domain, Instructions, Stream, sin_cos};
 use farsa_physics::articulated::{Batch, LANES, Lane, Model, ModelError, Options, World};
 
-/// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
+/// Control steps of every lane. Ten times as many with `FARSA_LONG=1`.
 fn steps() -> usize {
     if std::env::var_os("FARSA_LONG").is_some() { 20_000 } else { 2000 }
 }
@@ -33,12 +33,12 @@ const EPISODE_STEPS: usize = 600;
 /// The lane that loses a joint, and when.
 const LOST: (usize, usize) = (3, 700);
 
-/// Those of this machine, and none.
+/// Returns the instruction sets of this machine, and none.
 fn all_instructions() -> impl Iterator<Item = Instructions> {
     Batch::instructions().chain([Instructions::Fallback])
 }
 
-/// What a lane does before step `t`: the number of the episode that begins there, if one does.
+/// Returns the number of the episode that begins in a lane before step `t`, if any.
 fn begins(lane: usize, t: usize) -> Option<u32> {
     let shifted = t + 37 * lane;
     (t == 0 || shifted.is_multiple_of(EPISODE_STEPS)).then_some((lane + WORLDS * (shifted / EPISODE_STEPS)) as u32)
@@ -151,7 +151,7 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     let contacts: Vec<usize> = truths.iter().map(|t| t.contacts).collect();
     println!("steps with contacts of the hand: {contacts:?}");
     assert!(contacts.iter().enumerate().all(|(lane, n)| lane == LOST.0 || *n > steps() / 20));
-    // The lost lane forgets when it is refilled.
+    // The failed lane is restored when it is refilled.
     assert!(truths[LOST.0].last.iter().all(|x| x.is_finite()));
     let mut ran = 0;
     for instructions in all_instructions() {
@@ -166,7 +166,7 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     assert!(ran >= 100_000 || Batch::instructions().count() < 3);
 }
 
-/// A step of an arm that pushes balls over the ground: every so often it begins anew, and its motors get other speeds.
+/// A step of an arm that pushes balls over the ground: every so often it begins again, and its motors get other speeds.
 fn push<W>(world: &mut W, slides: &[JointId], stream: &mut Stream, step: usize)
 where
     W: Arrange + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
@@ -246,8 +246,8 @@ fn box_on_an_edge() -> (Robot, BodyId) {
     (robot, small)
 }
 
-/// A box that is moved away from an edge, without [`Arrange::clear`], forgets what kept it from rolling there, whether a
-/// neighbour still leans on that edge or not.
+/// A box that is moved away from an edge, without [`Arrange::clear`], has no memory of the edge, whether a neighbor
+/// still leans on that edge or not.
 #[test]
 fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
     let (robot, small) = box_on_an_edge();
@@ -304,7 +304,7 @@ fn a_number_of_lanes_that_there_is_not_is_refused() {
     }
 }
 
-/// One lane of a batch that is stepped whenever the lane is: a world as the kit wants it.
+/// One lane of a batch that is stepped with the lane, as a world for the conformance checks.
 struct Alone {
     batch: RefCell<Batch>,
     lane: usize,

@@ -51,7 +51,7 @@ struct Figures {
     /// Depth as a share of half the thinner body.
     share_of_body: Worst,
     depth: Worst,
-    /// How far the sphere's centre is below the table's top inside its outline [m].
+    /// The depth of the sphere's center below the table's top inside its outline [m].
     sunk: Worst,
 }
 
@@ -171,7 +171,7 @@ fn print(f: &Figures) {
     }
 }
 
-/// A million control steps; ten million where the environment has `FARSA_LONG`.
+/// A million control steps. Ten million where the environment has `FARSA_LONG`.
 #[test]
 fn random_commands_break_nothing() {
     let steps = if std::env::var_os("FARSA_LONG").is_some() { 10_000_000 } else { 1_000_000 };

@@ -1,4 +1,4 @@
-//! Arenas, scenes and options survive being written and read; what no world can be made of is refused.
+//! Arenas, scenes and options survive being written and read. Invalid arenas are refused.
 #![cfg(all(feature = "serde", feature = "alloc"))]
 #![allow(missing_docs)]
 
@@ -66,7 +66,7 @@ fn a_typing_mistake_is_refused_with_its_name() {
     assert!(error.to_string().contains("substep"));
 }
 
-/// A file says what it likes; no world is made of it.
+/// A file may contain anything. An invalid one makes no world.
 #[test]
 fn what_no_world_can_be_made_of_is_refused_with_its_number() {
     let refused = |change: &dyn Fn(&mut Arena)| {

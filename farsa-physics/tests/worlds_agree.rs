@@ -1,5 +1,5 @@
-//! One suite of scenes in all worlds that answer the ports, beside MuJoCo (fixtures/worlds); docs/agreement.md has the table
-//! that `cargo test -p farsa-physics --features rapier --test worlds_agree -- --nocapture` prints, and the reason for each gap.
+//! One suite of scenes in all worlds with the ports, compared with MuJoCo (fixtures/worlds). The table in
+//! docs/agreement.md is printed by `cargo test -p farsa-physics --features rapier --test worlds_agree -- --nocapture`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod common;
@@ -13,7 +13,7 @@ use farsa_physics::articulated::{Model, Options, Precision, World};
 use scenes::{Scene, TIME_STEP, scenes};
 use serde::Deserialize;
 
-/// What MuJoCo made of a scene: rows at its model's step and at a 25th of it.
+/// MuJoCo's results of a scene: rows at its model's step and at a 25th of it.
 #[derive(Deserialize)]
 struct Reading {
     own: Vec<Vec<f64>>,
@@ -27,7 +27,7 @@ struct Readings {
     scenes: BTreeMap<String, Reading>,
 }
 
-/// How far a world is from another: at most over the way, and at the end.
+/// The difference of two worlds: the largest over the way, and the final one.
 #[derive(Clone, Copy, PartialEq, Debug)]
 struct Gap([f64; 2]);
 
@@ -62,7 +62,7 @@ fn readings() -> Readings {
     serde_json::from_str(&fs::read_to_string(fixtures().join("readings.json")).unwrap()).unwrap()
 }
 
-/// Our world, with so many dynamics steps per control step.
+/// Plays a scene in our world, with `substeps` dynamics steps per control step.
 fn ours<R: Precision>(scene: &Scene, substeps: u32) -> World<R> {
     World::new(Model::new(&scene.robot, &Options { time_step: TIME_STEP, substeps, ..Options::default() }).unwrap())
 }
@@ -72,7 +72,7 @@ fn kept(rows: &[Vec<f64>], every: usize) -> Vec<Vec<f64>> {
     rows.iter().skip(every - 1).step_by(every).cloned().collect()
 }
 
-/// The worlds of the table, in its order; the others' tolerances follow from these.
+/// The worlds of the table, in its order. The others' tolerances follow from these.
 const WORLDS: [&str; 7] =
     ["f64", "f32 beside f64", "f64, 0.1 ms", "rapier", "rapier, 0.1 ms", "MuJoCo", "MuJoCo, 0.1 ms"];
 
@@ -230,7 +230,7 @@ const ALLOWED: [Allowed; 12] = [
     },
 ];
 
-/// All gaps of a scene; rapier's are missing without the feature.
+/// All gaps of a scene. Rapier's are missing without the feature.
 fn gaps(scene: &Scene, reading: &Reading, every: usize) -> [Option<Gap>; 7] {
     let rows = |rows: Vec<Vec<f64>>| kept(&rows, every);
     let own = rows(scene.play(&mut ours::<f64>(scene, 4)));
@@ -284,7 +284,7 @@ fn the_worlds_agree() {
     assert!(beyond.is_empty(), "{beyond:#?}");
 }
 
-/// The committed models and timetables; new ones are put beside the tests' other files, for an intended change.
+/// The committed models and timetables. New ones are written next to the tests' other files, for an intended change.
 #[test]
 fn the_scenes_are_the_committed_ones() {
     let scenes = scenes();

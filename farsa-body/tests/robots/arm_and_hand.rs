@@ -16,7 +16,7 @@ const RADIUS: f64 = 0.025;
 /// The four places of the sphere, forward and left [m].
 const SPHERES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
-/// J1 to J7 [deg] with the palm down, its centre 5 cm above the sphere's, rounded to whole degrees.
+/// J1 to J7 [deg] with the palm down, its center 5 cm above the sphere's, rounded to whole degrees.
 const PALM_DOWN: [[f64; 7]; 4] = [
     [-92.0, -8.0, 53.0, -102.0, -28.0, -48.0, 11.0],
     [-82.0, -26.0, 18.0, -66.0, -18.0, -25.0, 6.0],
@@ -246,7 +246,7 @@ fn labels_are_true_in_anatomy() {
         q[labels.iter().position(|l| *l == label).expect(label)] += degrees.to_radians();
         tree.poses(&q)
     };
-    // How far something of the arm, its palm or a finger gets when the joint of a label turns by 20 degrees.
+    // Returns the growth of a measure of the arm, its palm or a finger when the joint of a label turns by 20 degrees.
     let grows = |start: &[f64], label: &str, measure: &dyn Fn(&[Pose<f64>]) -> f64| {
         measure(&turned(start, label, 20.0)) - measure(&turned(start, label, 0.0))
     };
@@ -393,7 +393,7 @@ fn muscles_hold_the_listed_postures() {
     }
 }
 
-/// Every start of the sphere within its displacement can be reached from above: the palm's centre 5 cm above the
+/// Every start of the sphere within its displacement can be reached from above: the palm's center 5 cm above the
 /// sphere's and facing down, inside the limits.
 #[test]
 fn palm_gets_above_every_start_of_the_sphere() {

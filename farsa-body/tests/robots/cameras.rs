@@ -1,4 +1,4 @@
-//! What cameras and light sensors see in the world of the plane.
+//! Readings of cameras and light sensors in the world of the plane.
 
 use core::f32::consts::PI;
 
@@ -19,14 +19,14 @@ fn a_camera_tells_sides_and_colours_and_hides_what_is_behind() {
     let values = read(&mut camera, &world);
     let width = 2.0 * (0.2 / 1.25_f32.sqrt()).asin();
     assert!((values[0] - width).abs() < 0.011 && values[1..] == [0.0; 3], "{values:?}");
-    // A blue disc before it in part; then before all of it.
+    // A blue disc before it in part. Then before all of it.
     let blue = world.add_disc([-0.35, 0.5], 0.05, BLUE);
     let part = read(&mut camera, &world);
     assert!(part[0] > 0.0 && part[0] < values[0] && part[1] > 0.0, "{part:?}");
     world.place(blue, [-0.1, 0.2], 0.0);
     let hidden = read(&mut camera, &world);
     assert!(hidden[0] == 0.0 && hidden[1] > 0.4 && hidden[2] == 0.0 && hidden[3] < 0.5, "{hidden:?}");
-    // Other colours are seen as nothing, but they hide; what is out of range neither.
+    // Other colors are seen as nothing, but they hide. Surfaces out of range are invisible, too.
     world.place(blue, [0.0, -1.0], 0.0);
     let green = world.add_disc([-0.25, 0.5], 0.15, GREEN);
     assert_eq!(read(&mut camera, &world), [0.0; 4]);
@@ -36,7 +36,7 @@ fn a_camera_tells_sides_and_colours_and_hides_what_is_behind() {
     assert_eq!(read(&mut camera, &world), [0.0; 4]);
 }
 
-/// Discs around a robot at the origin: bearing, distance of the centre, radius as a share of it, colour.
+/// Discs around a robot at the origin: bearing, distance of the center, radius as a share of it, color.
 fn discs() -> impl Strategy<Value = Vec<(f32, f32, f32, usize)>> {
     prop::collection::vec((-PI..PI, 0.2_f32..2.0, 0.05_f32..0.6, 0_usize..3), 1..8)
 }
@@ -71,7 +71,7 @@ proptest! {
                     let off = off.min(2.0 * std::f64::consts::PI - off);
                     let (apart, share) = (f64::from(apart), f64::from(share));
                     if off < share.asin() {
-                        // The triangle of the two centres and the point that is seen, by the law of sines.
+                        // The triangle of the two centers and the point that is seen, by the law of sines.
                         let at_point = std::f64::consts::PI - (farsa_num::sin_cos(off).0 / share).asin();
                         let at_centre = std::f64::consts::PI - at_point - off;
                         let distance = if off < 1e-9 { apart * (1.0 - share) } else {
@@ -95,8 +95,8 @@ proptest! {
         }
     }
 
-    /// Rays that cannot meet a colour are left out; that must not show, be the discs few, many, near or around the robot, and the
-    /// view narrow or wide.
+    /// Rays that cannot hit a color are left out. That must not change readings for few, many, near or surrounding
+    /// discs, and for narrow or wide views.
     #[test]
     fn a_camera_reads_what_all_of_its_rays_see(
         discs in prop::collection::vec((-PI..PI, 0.01_f32..2.0, 0.05_f32..1.5, 0_usize..3), 0..24),
@@ -115,7 +115,7 @@ proptest! {
         let mut from_pose = vec![f32::NAN; values.len()];
         camera.read_from(&world, &world.pose(BodyId(0)), &mut from_pose);
         prop_assert_eq!(&values, &from_pose);
-        // The robot stands at the origin and looks along x.
+        // The robot is at the origin and looks along x.
         let sights = beams.iter().map(|beam| world.cast_planar(beam.from, beam.direction, 1.5, Some(BodyId(0))));
         let seen: Vec<_> = sights.map(|sight| sight.map(|sight| sight.color)).collect();
         for (sector, colors) in seen.chunks(10).enumerate() {

@@ -20,7 +20,7 @@ fn probe() -> Probe {
     Probe::numbered(POINTS as u16, [[-20.0, 0.0], [20.0, 1.0]])
 }
 
-/// What is wrong with a [`Broken`] world.
+/// The fault of a [`Broken`] world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     NoTime,
@@ -328,7 +328,7 @@ fn every_broken_promise_of_setting_up_is_named() {
         let checked = check_arrange(|| Broken::new(Some(fault)), &probe());
         assert_eq!(promise(checked.clone()), Some(expected), "{fault:?}: {checked:?}");
     }
-    // A body said to float that cannot be placed.
+    // A body that is declared as floating and cannot be placed.
     let floating = Probe { floating: vec![BodyId(0)], ..probe() };
     assert_eq!(promise(check_arrange(|| PointWorld::new(POINTS), &floating)), Some(Promise::BodyPlaced));
 }
@@ -375,7 +375,7 @@ impl<F: FnMut(&mut [f32])> Sensor<PointWorld> for Made<F> {
     }
 }
 
-/// Only to tell the two closures' types apart.
+/// A number that separates the types of the two closures.
 struct Driven<F>(usize, F);
 
 impl<F> Channels for Driven<F> {

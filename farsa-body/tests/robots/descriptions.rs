@@ -22,7 +22,7 @@ fn pose() -> impl Strategy<Value = Pose<f64>> {
     })
 }
 
-/// How far two bodies are from being the same.
+/// Returns the difference of two bodies.
 fn apart(a: &MassProperties, b: &MassProperties) -> f64 {
     let centre = (Vector3::from(a.centre) - Vector3::from(b.centre)).norm();
     (a.mass - b.mass).abs() + centre + (matrix(a.inertia) - matrix(b.inertia)).norm()
@@ -79,7 +79,7 @@ proptest! {
 
 const SURFACE: Surface = Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e4, damping: 10.0 };
 
-/// Beads on a string, each turning on the one before, all pairs of every other one in groups; and a puck that slides.
+/// Beads on a string, each turning on the one before, all pairs of every other one in groups. And a puck that slides.
 fn beads(count: u16) -> Robot {
     let mut robot = Robot::new("beads");
     let ball = MassProperties::sphere(1.0, 0.1);
@@ -137,7 +137,7 @@ fn merged_robots_move_and_meet_as_before() {
             let merged = &all.pairs[offset.pairs + i];
             assert_eq!(merged.colliders, pair.colliders.map(|collider| offset.collider(collider)));
             assert_eq!(merged.surface, pair.surface);
-            // Grouped with the same ones of its own robot, and with none of another one.
+            // Grouped with the pairs of the same robot only.
             let row = &together(&all)[offset.pairs + i];
             let own_pairs = offset.pairs..offset.pairs + one.pairs.len();
             assert_eq!(row[own_pairs.clone()], groups[i][..]);
@@ -192,7 +192,7 @@ fn same(a: [f64; 3], b: [f64; 3]) -> bool {
 }
 
 proptest! {
-    /// A table fills what it is said to fill; what lies on it touches its top in one point.
+    /// A table fills its declared volume. An object on it touches its top in one point.
     #[test]
     fn things_lie_on_tables(
         x in (-0.5_f64..0.5, 0.1_f64..2.0), y in (-0.5_f64..0.5, 0.1_f64..2.0), top in -0.5_f64..0.5, depth in 0.05_f64..1.0,
@@ -245,7 +245,7 @@ proptest! {
     }
 }
 
-/// The axis of a ball, a capsule or a box and the radius around it [m]; of a box from its middle, as far as its smallest half.
+/// The axis of a ball, a capsule or a box and the radius around it [m]. For a box, its smallest half from its middle.
 fn axis(shape: &Shape, placement: &Pose<f64>) -> ([[f64; 3]; 2], f64) {
     let (half, radius) = match *shape {
         Shape::Capsule { radius, half_length } => (half_length, radius),
@@ -263,7 +263,7 @@ fn beside(point: [f64; 3], [a, b]: [[f64; 3]; 2]) -> [f64; 2] {
     [share, share.clamp(0.0, 1.0)].map(|share| (a + (b - a) * share - point).norm())
 }
 
-/// Covers of the arms are drawn over the colliders that stand for them: along the same bones, and hardly beyond.
+/// Covers of the arms are drawn over their colliders: along the same bones, and hardly beyond.
 #[test]
 fn covers_of_the_arms_lie_on_their_colliders() {
     let robot = Icub::default().robot().unwrap();
@@ -286,7 +286,7 @@ fn covers_of_the_arms_lie_on_their_colliders() {
     }
 }
 
-/// What is drawn on the left is the image of what is drawn on the right.
+/// The look of the left side is the image of the right one.
 #[test]
 fn looks_are_symmetric() {
     let robot = Icub::default().robot().unwrap();
@@ -355,7 +355,7 @@ fn the_hand_of_an_arm_has_the_arms_numbers() {
         ..ArmAndHand::default()
     };
     assert_eq!(arm.hand(), hand);
-    // Of the robot: the palm, and what the fingers weigh.
+    // The palm of the robot, and the weight of its fingers.
     let robot = arm.robot().unwrap();
     assert_eq!(robot.segments[ArmAndHand::PALM.index()].mass, 0.21);
     let fingers: f64 = robot.segments[7..].iter().map(|segment| segment.mass).sum();

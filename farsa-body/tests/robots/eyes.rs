@@ -1,4 +1,4 @@
-//! Cameras with an image, by hand and by the kit; a head that follows a thing.
+//! Cameras with an image, by hand and by the kit. A head that follows a thing.
 
 use farsa_body::motors::{HeadTracking, ServoRange};
 use farsa_body::ports::{
@@ -23,7 +23,7 @@ fn balls() -> PointWorld {
     world
 }
 
-/// On the first ball, which turns by 10 rad per metre of height; its own rotation turns that back.
+/// On the first ball, which turns by 10 rad per meter of height. Its own rotation turns that back.
 fn ahead(size: [usize; 2], field_of_view: f64) -> Camera {
     let rotation = {
         let (sine, cosine) = sin_cos(-5.0);
@@ -64,7 +64,8 @@ fn a_blob_is_as_large_as_the_ball_looks() {
     let mut blobs = ColorBlobs::new(ahead([200, 200], 1.0), green()).unwrap();
     let mut x = [0.0; 3];
     blobs.read(&world, &mut x);
-    // A ball of radius r at distance d is a disc of radius r / sqrt(d^2 - r^2) at distance 1, in a square of half width tan 0.5.
+    // A ball of radius r at distance d is a disc of radius r / sqrt(d^2 - r^2) at distance 1, in a square of half width
+    // tan 0.5.
     let radius = 0.02 / (0.1_f64 * 0.1 - 0.02 * 0.02).sqrt() / tangent(0.5);
     let share = core::f64::consts::PI * radius * radius / 4.0;
     assert!((f64::from(x[2]) - share).abs() < 0.01 * share, "{x:?}, {share}");
@@ -89,7 +90,7 @@ fn offsets_are_those_of_the_projection() {
     // The third ball's point 4 cm above its middle, 20 cm ahead: 0.2 upwards, half of that in widths.
     VisualOffset::new(ahead([1, 1], 1.0), (BodyId(2), [0.0, 0.0, 0.04]), from).read(&world, &mut x);
     assert!(x[0].abs() < 1e-5 && (x[1] - 0.1 / tangent(0.5) as f32).abs() < 1e-4, "{x:?}");
-    // Far aside is 1 at most; behind is 0.
+    // Far aside is 1 at most, behind is 0.
     VisualOffset::new(ahead([1, 1], 1.0), (BodyId(1), [0.0, 0.0, 9.0]), from).read(&world, &mut x);
     assert!(x[1] == 1.0, "{x:?}");
     VisualOffset::new(ahead([1, 1], 1.0), (BodyId(0), [0.0, 0.0, 0.0]), from).read(&world, &mut x);
@@ -245,7 +246,7 @@ fn a_head_turns_to_what_it_follows() {
     let [left, up] = reflex.angles(&world).unwrap();
     assert!(left.abs() < 1e-4 && up.abs() < 1e-4, "{left} {up}");
     assert!((world.desired[0] - core::f32::consts::FRAC_PI_4).abs() < 1e-4, "{:?}", world.desired);
-    // Beyond a limit it stays there; what is behind it does not move it.
+    // Beyond a limit it stays there. Things behind it do not move it.
     world.target = [0.5, 1.0, 0.0];
     (0..60).for_each(|_| reflex.step(&mut world));
     assert_eq!(world.desired[0], 0.8);
@@ -257,7 +258,7 @@ fn a_head_turns_to_what_it_follows() {
     assert_eq!(reflex.desired(), [0.0; 2]);
 }
 
-/// A servo whose positions grow to the right and downwards comes to the same with its range the other way round.
+/// A servo whose positions grow to the right and downwards is equivalent to one with the reversed range.
 #[test]
 fn the_sign_of_a_servo_is_that_of_its_range() {
     let servos =

@@ -20,7 +20,7 @@ struct Segment {
     inertia: [f64; 6],
 }
 
-/// What the file says, as Pinocchio reads it.
+/// The content of the file according to Pinocchio.
 #[derive(Deserialize)]
 struct Fixture {
     segments: Vec<Segment>,
@@ -112,7 +112,7 @@ fn names_limits_and_efforts_are_the_files() {
     }
 }
 
-/// Masses, centres of mass and inertias, in the axes at joint positions 0, which are the world's but for the palms.
+/// Masses, centers of mass and inertias, in the axes at joint positions 0, which are the world's but for the palms.
 #[test]
 fn bodies_are_those_of_the_file() {
     let (robot, fixture) = (robot(), fixture());
@@ -141,7 +141,7 @@ fn bodies_are_those_of_the_file() {
         "mass {mass:.1e} kg, centre {centre:.1e} m, inertia {inertia:.1e} kg m2; left {left_centre:.1e} m, {left_inertia:.1e} kg m2"
     );
     assert!(mass < 1e-9 && centre < 1e-9 && inertia < 1e-12);
-    // What the documentation says of the file's left side.
+    // The figures of the file's left side in the documentation.
     assert!(left_centre < 1.9e-4 && left_inertia < 7e-5);
     assert_eq!(without, ["neck_1", "neck_2", "head", "l_wrist_1", "r_wrist_1"]);
 }
@@ -187,7 +187,7 @@ fn masses_and_centres_of_subtrees_are_pinocchios() {
     assert!(worst < 1e-9, "{worst}");
 }
 
-/// The hand is as heavy as the file's, and its centre of mass where the documentation says.
+/// The hand is as heavy as the file's, and its center of mass is where the documentation places it.
 #[test]
 fn the_hand_is_as_heavy_as_the_files() {
     let (robot, fixture) = (robot(), fixture());
@@ -248,7 +248,7 @@ fn the_left_side_is_the_image_of_the_right() {
             for (own, images) in [([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0])] {
                 assert!(distance(&a.rotate(own), &image(b.rotate(images))) < 1e-13, "segment {i}");
             }
-            // Of the segments in the middle only the sides are each other's images.
+            // Only the sides of segments in the middle are each other's images.
             if i != j {
                 let centres = [a.transform(robot.segments[i].centre), b.transform(robot.segments[j].centre)];
                 assert!(distance(&centres[0], &image(centres[1])) < 1e-13, "segment {i}");
@@ -414,7 +414,7 @@ fn nothing_overlaps_at_rest() {
     let mut least = (f64::INFINITY, String::new());
     for pair in &robot.pairs {
         let [(a, ra), (b, rb)] = pair.colliders.map(|i| &filled[i]);
-        // Of a box's 68921 points one in 35 is enough: a box that overlaps would hold many of the other's balls.
+        // One in 35 of a box's 68921 points is enough: an overlapping box would contain many of the other's balls.
         let thin = |points: &[[f64; 3]]| points.len().div_ceil(2000).max(1);
         for p in a.iter().step_by(thin(a)) {
             for q in b.iter().step_by(thin(b)) {

@@ -24,7 +24,7 @@ fn goal(body: BodyId, position: [f64; 3]) -> Goal {
     Goal { body, point: [0.0; 3], position, orientation: Orientation::Free }
 }
 
-/// Which start of so many is nearest to a place: without a step, that is the answer.
+/// Returns the start that is nearest to a place, which is the answer without a step.
 fn nearest_start(ranges: &[[f64; 2]], attempts: usize, first: &[f64], position: [f64; 3]) -> Vec<f64> {
     let (tree, body) = slides(ranges);
     let solver = InverseKinematics { attempts, iterations: 0, position_tolerance: 0.0, ..InverseKinematics::default() };
@@ -39,7 +39,7 @@ fn nearest_start(ranges: &[[f64; 2]], attempts: usize, first: &[f64], position: 
     }
 }
 
-/// Starts reach from end to end of a range; half a turn beyond zero or the other end where there is no limit.
+/// Starts reach from end to end of a range. Half a turn beyond zero or the other end where there is no limit.
 #[test]
 fn starts_are_spread_over_the_ranges() {
     const NONE: f64 = f64::INFINITY;
@@ -86,7 +86,7 @@ fn starts_are_spread_over_all_joints_together() {
 }
 
 proptest! {
-    /// The more attempts, the less far the closest; it is as far as it says.
+    /// The closest error decreases with the number of attempts, and is reported correctly.
     #[test]
     fn the_closest_of_all_attempts_is_kept(position in prop::array::uniform3(-2.0_f64..2.0), angle_weight in 0.05_f64..1.0) {
         let (mut robot, mut parent) = (Robot::new("arm"), None);

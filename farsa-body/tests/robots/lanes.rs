@@ -18,7 +18,7 @@ fn laws() -> [Law<f32>; 5] {
     ]
 }
 
-/// Rest, saturation, both sides of the active part's ends, blow-up, NaN; neighbours in different phases.
+/// Rest, saturation, both sides of the active part's ends, blow-up, NaN, neighbors in different phases.
 fn inputs() -> Vec<Input> {
     let mut inputs = vec![];
     let positions = [-1.9, 0.31, f32::NAN, -40.0, 1.6, -0.0, 0.0, -3.2, 1e30, -1.0, f32::NEG_INFINITY, 0.77, -2.97];

@@ -85,7 +85,7 @@ fn infrared_rays_read_the_nearest_thing_of_their_cone() {
     }
     world.place(disc, [1.0 + 0.035 + 0.0125 + 0.0501, 2.0], 0.0);
     assert_eq!(read(&mut sensor, &world), [0.0]);
-    // Of a cone the nearest ray: a disc beside the axis is met by the outer rays only.
+    // The nearest ray of a cone counts: a disc next to the axis is hit by the outer rays only.
     let cone: Vec<Beam> = (0..3).map(|i| Beam::in_cone(0.035, 0.0, 0.5, i, 3)).collect();
     world.place(disc, [1.0 + 0.035 + 0.03, 2.0 + 0.03 * 0.5463], 0.0);
     assert_eq!(read(&mut sensor, &world), [0.0]);
@@ -118,7 +118,7 @@ fn the_analytic_ring_adds_what_is_near() {
     assert!((read(&mut sensor, &world)[0] - 0.75).abs() < 1e-5);
     world.place(disc, [0.035 + 0.0125, 0.0], 0.0);
     assert_eq!(read(&mut sensor, &world), [1.0]);
-    // With its edge beyond the robot's centre it is still on the same side.
+    // With its edge beyond the robot's center it is still on the same side.
     world.place(disc, [0.01, 0.0], 0.0);
     assert_eq!(read(&mut sensor, &world), [1.0]);
     assert_eq!(read(&mut InfraredFormula::new(parts.body, [[-1.0, 0.0]], 0.035).unwrap(), &world), [0.0]);
@@ -228,7 +228,7 @@ fn the_felt_wheel_is_the_driven_wheel() {
     assert_eq!(read(&mut speed, &world)[0], 1.0);
 }
 
-/// A robot whose wheels do not move it as they want, and who is told anything else.
+/// A robot whose wheels do not move it as commanded, with arbitrary readings.
 struct Odd {
     velocity: [f32; 3],
     speed: f32,
@@ -269,7 +269,8 @@ impl Rays for Odd {
 #[test]
 fn traction_is_felt_towards_where_one_is_pulled() {
     let h = core::f32::consts::FRAC_1_SQRT_2;
-    // Heading along y; the wheels want 0.2 m/s, a wall holds it; then it is dragged backwards and to its left.
+    // Heading along y. The wheels are commanded to 0.2 m/s, and a wall stops the robot. Then it is dragged backwards
+    // and to its left.
     let mut world = Odd { velocity: [0.0; 3], speed: 10.0, rotation: [0.0, 0.0, h, h], place: 0.0, distance: 1.0 };
     let mut traction = Traction::new(BodyId(0), [JointId(0), JointId(1)], 0.02, 0.4).unwrap();
     let near = |a: &[f32], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
@@ -357,7 +358,7 @@ proptest! {
         }
     }
 
-    /// What moves away straight is read less and less, and not at all out of range.
+    /// A surface that moves straight away has decreasing readings, and none out of range.
     #[test]
     fn infrared_falls_with_distance(
         radius in 0.005_f32..0.05, distance in 0.0_f32..0.1, further in 0.0_f32..0.05, sensor in 0_usize..8,

@@ -29,7 +29,7 @@ fn bodies() -> Vec<BodyId> {
     (0..4).map(BodyId).collect()
 }
 
-/// What is wrong with a [`Broken`] world.
+/// The fault of a [`Broken`] world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     ToldTooFar,

@@ -30,7 +30,7 @@ fn scene() -> (PlaneWorld, MobileParts) {
     (world, parts)
 }
 
-/// A table of a Khepera's size whose readings tell where they stand.
+/// Builds a table of a Khepera's size whose readings encode their place.
 fn table(sensors: usize, offset: usize) -> InfraredTable {
     let mut lines = vec![format!("{sensors} 4 3 5 2")];
     for distance in 0..3 {
@@ -107,7 +107,7 @@ fn light_falls_with_the_square_of_the_distance_and_the_cosine_and_is_hidden() {
     let values = read(&mut light, &world);
     assert!((values[0] - 0.25).abs() < 1e-6 && (values[1] - 0.25 * 0.877_58).abs() < 1e-5, "{values:?}");
     assert_eq!(values[2], 0.0);
-    // A second lamp adds; close by all is cut at 1.
+    // A second lamp adds. Close by all is cut at 1.
     world.add_lamp([0.2, 0.0], 0.01, 1.0);
     world.place(lamp, [0.4, 0.1], 0.0);
     let both = read(&mut light, &world)[0];
@@ -205,7 +205,7 @@ fn measured_readings_are_looked_up_and_added() {
     assert_eq!(read(&mut sensor, &world), expect(&[420]));
     world.place(small, at(0.035 + 0.0125 + 0.0112, 190.0), 0.0);
     assert_eq!(read(&mut sensor, &world), expect(&[]));
-    // Of two tables that of the nearer radius: of 19 mm the small one's, of 20 mm the large one's.
+    // The table of the nearer radius is used: the small one's for 19 mm, the large one's for 20 mm.
     for (radius, row) in [(0.001, 300), (0.019, 300), (0.020, 600), (1.0, 600)] {
         world.place(small, at(5.0, 0.0), 0.0);
         let disc = world.add_disc(at(0.035 + radius + 0.0032, 10.0), radius, RED);
@@ -229,9 +229,10 @@ fn measured_readings_are_looked_up_and_added() {
     assert_eq!(read(&mut sensor.first(6).unwrap(), &world).len(), 6);
 }
 
-/// The three measured tables of the Khepera: in the folder `khepera` of `FARSA_FIXTURES`, or in that beside the repository.
+/// Returns the three measured tables of the Khepera, from the folder `khepera` of `FARSA_FIXTURES`, or of the folder
+/// next to the repository.
 ///
-/// They are not ours to keep. In CI they must be there; elsewhere the test says that it is skipped.
+/// The tables are not part of the repository. CI must have them. In other places the test reports that it is skipped.
 fn fixtures(test: &str) -> Option<InfraredTables> {
     let named = std::env::var_os("FARSA_FIXTURES").map(PathBuf::from);
     let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
@@ -252,7 +253,7 @@ fn the_measured_khepera_reads_what_was_measured() {
     let Some(tables) = fixtures("the_measured_khepera_reads_what_was_measured") else { return };
     assert_eq!(tables.sensors(), 8);
     assert!((tables.range() - 0.045).abs() < 1e-6);
-    // Surface, distance from the hull [mm], clockwise bearing [degrees], readings; copied by hand from the files.
+    // Surface, distance from the hull [mm], clockwise bearing [degrees], readings. Copied by hand from the files.
     let rows: [(f32, f32, f32, [u16; 8]); 9] = [
         (0.0, 6.0, 1.0, [2, 1023, 1023, 1023, 1023, 0, 4, 4]),
         (0.0, 2.0, 20.5, [6, 0, 1023, 1023, 1023, 753, 0, 9]),
@@ -321,7 +322,7 @@ fn bad_configurations_are_refused_with_their_numbers() {
     assert_eq!(sampled.first(9).unwrap_err(), ChannelError::Selection { start: 0, end: 9, channels: 8 });
 }
 
-/// A world that tells anything.
+/// A world with arbitrary readings.
 struct Odd([f32; 8]);
 
 impl Handles for Odd {

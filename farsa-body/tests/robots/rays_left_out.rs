@@ -1,4 +1,4 @@
-//! Rays that are not cast because they cannot meet anything: infrared groups and cameras against all of their rays.
+//! Rays that are not cast because they cannot hit anything: infrared groups and cameras against all of their rays.
 
 use core::cell::{Cell, RefCell};
 use core::f32::consts::PI;
@@ -24,7 +24,7 @@ struct Watched<'a> {
     /// The height of the last ray that was cast in space [m].
     height: Cell<f32>,
     phantom_wall: bool,
-    /// Whether discs are told of as bodies of another form, whose radius is 0.
+    /// True if discs are reported as bodies of another form, whose radius is 0.
     without_radius: bool,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Watched<'a> {
         }
     }
 
-    /// What a sensor reads, and which rays it cast for that.
+    /// Returns the reading of a sensor, and the rays that it cast.
     fn read(&self, sensor: &mut impl Sensor<Self>) -> (Vec<f32>, Vec<Line>) {
         self.cast.borrow_mut().clear();
         (read(sensor, self), self.cast.take())
@@ -186,7 +186,7 @@ proptest! {
             prop_assert!(is_cast || gap > 0.0, "a ray that meets is left out: {:?}", ray);
             prop_assert!(!is_cast || gap < 3e-4, "a ray that passes at {} m is cast: {:?}", gap, ray);
         }
-        // What is out of reach is no reason to cast any.
+        // A surface out of reach causes no ray.
         world.place(BodyId(1), from(at, bearing, hull + range + radius + 1e-3), 0.0);
         if !wall {
             let (values, cast) = Watched::new(&world).read(&mut InfraredGroups::for_robot(robot, body, 2).unwrap());
@@ -198,7 +198,7 @@ proptest! {
 #[test]
 fn of_many_things_the_last_is_read_too() {
     let robot = MobileRobot::marxbot();
-    // So many behind the robot, then one before it.
+    // Several behind the robot, then one in front of it.
     let scene = |behind: u8| {
         let mut world = PlaneWorld::new();
         let body = world.add_robot(&robot, [0.3, -0.4], 0.0).body;
@@ -216,8 +216,8 @@ fn of_many_things_the_last_is_read_too() {
     }
 }
 
-/// Bodies may be put where a robot is, before the first step moves them apart: of a body or wall that reaches over the
-/// robot's middle rays are met that leave the robot beside it.
+/// Bodies may be placed over a robot before the first step moves them apart. Rays that leave the robot next to a body
+/// or wall over its middle hit it.
 #[test]
 fn what_lies_over_the_middle_of_the_robot_is_read_as_well() {
     let robot = MobileRobot::marxbot();
@@ -281,7 +281,8 @@ fn eye(scale: f32, body: BodyId, aside: [f64; 2], field: f64) -> LinearCamera<Ve
     LinearCamera::new(body, beams, 20, [ColorBand::around(RED, 0.2)], 3.0 * scale).unwrap()
 }
 
-/// A robot among red and green discs, all lengths scaled; bearing, distance from its centre to the hull of the disc, radius.
+/// A robot among red and green discs, all lengths scaled. Bearing, distance from its center to the hull of the disc,
+/// radius.
 fn among(scale: f32, (at, heading): ([f32; 2], f32), discs: &[(f32, f32, f32, bool)]) -> (PlaneWorld, MobileParts) {
     let mut world = PlaneWorld::new();
     let parts = world.add_robot(&MobileRobot::khepera(), at.map(|x| x * scale), heading);
@@ -297,7 +298,8 @@ fn red_and_green(most: usize) -> impl Strategy<Value = Vec<(f32, f32, f32, bool)
 }
 
 proptest! {
-    /// With a red wall somewhere a camera has to cast all of its rays; without it, it sees the same, wherever it stands.
+    /// With a red wall anywhere a camera has to cast all of its rays. Without it, the reading is equal at every place
+    /// of the camera.
     #[test]
     fn a_camera_sees_the_same_with_all_rays(
         stance in stance(), discs in red_and_green(30), aside in prop::array::uniform2(-0.3_f64..0.3),
@@ -327,7 +329,7 @@ proptest! {
         }
     }
 
-    /// Of one red disc rays are cast that meet it, and hardly any other.
+    /// Rays that hit a red disc are cast, and hardly any other.
     #[test]
     fn a_camera_leaves_out_rays_that_pass(
         stance in stance(), bearing in -PI..PI, distance in 0.3_f32..2.9, radius in 0.005_f32..0.5, behind in 0_usize..40,
@@ -347,14 +349,15 @@ proptest! {
         for (ray, is_cast) in all.iter().zip(which(&all, &cast)) {
             let gap = nearest(*ray, 8.0, |p| apart(p, centre) - radius);
             prop_assert!(is_cast || gap > 0.0, "a ray that meets is left out: {:?}", ray);
-            // A hundredth of the radius and 2 mm a metre are for rounding.
+            // A hundredth of the radius and 2 mm a meter are for rounding.
             let much = 0.012 * radius + 2e-3 * (distance + radius) + 1e-3;
             prop_assert!(!is_cast || gap < much, "a ray that passes at {} m is cast: {:?}", gap, ray);
         }
     }
 }
 
-/// Of a small thing far away every ray that meets it is cast; also of one near a robot whose rays begin far behind it.
+/// Every ray that hits a small distant thing is cast, and every ray that hits one near a robot whose rays begin far
+/// behind it.
 #[test]
 fn a_camera_sees_small_things_to_their_edges() {
     for (distance, behind) in [(0.5, 0.0), (1.0, 0.0), (2.0, 0.0), (2.9, 0.0), (0.05, 1.0)] {
@@ -383,7 +386,7 @@ fn a_camera_sees_the_last_of_many_and_nothing_behind_it() {
         assert!(values[2] > 0.3, "{count}: {values:?}");
         assert_eq!(cast.len() == 60, count > 15, "{count}: {} rays", cast.len());
     }
-    // The line of a ray backwards meets the disc; the ray does not.
+    // The backward extension of a ray hits the disc. The ray does not.
     let (world, parts) = among(1.0, ([0.5, -0.25], 0.3), &[(0.3 + PI, 1.0, 0.1, true)]);
     assert_eq!(Watched::new(&world).read(&mut eye(1.0, parts.body, [0.0; 2], 2.0 * f64::from(PI))).1.len(), 2);
     assert_eq!(Watched::new(&world).read(&mut eye(1.0, parts.body, [0.0; 2], 5.0)), (vec![0.0; 3], vec![]));

@@ -58,7 +58,7 @@ impl Contacts for Lane<'_> {
     }
 }
 
-/// Points at heights 0.1, 0.2, 0.3 m; the last sinks into the floor.
+/// Points at heights 0.1, 0.2, 0.3 m. The last sinks into the floor.
 fn world() -> PointWorld {
     let mut world = PointWorld::new(4);
     for (i, height) in [0.1, 0.2, 0.3, -0.01].into_iter().enumerate() {
@@ -167,7 +167,7 @@ fn places_are_read_in_either_axes() {
     assert!(near(&way, &[10.0, 0.0, 100.0 * rise]), "{way:?}");
     let way = read(&mut TargetPosition::new(target, own, Axes::Body, 1.0).unwrap(), &world);
     assert!(near(&way, &[0.0, -0.1, rise]), "{way:?}");
-    // From a point of its own body the way is short by that point, whatever the pose.
+    // The way from a point of the sensor's body is shorter by that point in any pose.
     let own = Point { body: BodyId(0), at: [0.0, -0.1, 0.2] };
     let way = read(&mut TargetPosition::new(target, own, Axes::Body, 1.0).unwrap(), &world);
     assert!(near(&way, &[0.0, 0.0, rise - 0.2]), "{way:?}");

@@ -27,7 +27,7 @@ fn a_robot_reads_back_as_it_was() {
     }
 }
 
-/// What the arm and its table do not have: every kind of joint and shape, the other laws.
+/// The parts that the arm and its table do not have: every kind of joint and shape, the other laws.
 #[test]
 fn every_kind_of_part_reads_back_as_it_was() {
     let mut robot = Robot::new("parts");

@@ -1,4 +1,4 @@
-//! What several of these tests look through.
+//! Shared parts of several of these tests.
 
 use farsa_body::ports::Sensor;
 use farsa_body::robots::MobileRobot;

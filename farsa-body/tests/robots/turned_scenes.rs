@@ -1,4 +1,4 @@
-//! What sensors of mobile robots read does not depend on where the scene lies, how it is turned, or whether the robot tilts.
+//! Readings of mobile robots' sensors do not depend on the place and rotation of the scene, or on a tilt of the robot.
 
 use core::f32::consts::PI;
 use std::sync::OnceLock;
@@ -17,8 +17,8 @@ use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
 use proptest::prelude::*;
 
-/// A `MarXbot` among things of every kind, moved and turned as one; by the scene's own axes it stands at (0.1, 0.2) and looks
-/// to 0.5 rad.
+/// Builds a `MarXbot` among things of every kind, moved and turned as one. In the scene's axes it is at (0.1, 0.2) and
+/// looks to 0.5 rad.
 fn scene([dx, dy]: [f32; 2], turn: f32) -> (PlaneWorld, BodyId) {
     let (sine, cosine) = sin_cos(turn);
     let at = |x: f32, y: f32| [dx + cosine * x - sine * y, dy + sine * x + cosine * y];
@@ -77,7 +77,7 @@ fn planar<W: Planar<Body = BodyId> + Kinematics>(b: BodyId) -> Vec<(Box<dyn Sens
     ]
 }
 
-/// Those that cast rays in space.
+/// The sensors that cast rays in space.
 fn rays(b: BodyId) -> Vec<(Box<dyn Sensor<PlaneWorld>>, f32)> {
     let robot = MobileRobot::marxbot();
     let fan: Vec<_> = (0..7).map(|i| farsa_body::sensors::Beam::in_cone(0.085, 0.3, 1.0, i, 7)).collect();
@@ -145,7 +145,7 @@ proptest! {
         }
     }
 
-    /// A robot that pitches and rolls is seen from above: it stands where it stood and looks the same way.
+    /// A robot that pitches and rolls is seen from above: its place and heading are unchanged.
     #[test]
     fn a_tilted_robot_is_seen_from_above(turn in -3.1_f32..3.1, pitch in -1.4_f32..1.4, roll in -3.0_f32..3.0) {
         let (world, b) = scene([0.2, -0.3], turn);

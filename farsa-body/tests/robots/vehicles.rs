@@ -1,4 +1,4 @@
-//! Wheeled robots as bodies: where their parts are, what they weigh, how they stand on the ground.
+//! Wheeled robots as bodies: places of parts, weights, contact with the ground.
 
 use std::f64::consts::PI;
 
@@ -21,8 +21,9 @@ fn collider<'a>(robot: &'a Robot, name: &str) -> &'a Collider {
     &robot.colliders[robot.collider(name).unwrap()]
 }
 
-/// Computed outside this crate from the radius, height and radius of the wheels that the robots are documented with and
-/// 750 kg/m3: mass of all, inertia of the hull across and about its axis, of a wheel across and about its axle, largest torque of a wheel's motor.
+/// Computed outside this crate from the documented radius, height and radius of the wheels, and 750 kg/m3. The columns
+/// are the mass of all, the inertia of the hull across and about its axis, of a wheel across and about its axle, and
+/// the largest torque of a wheel's motor.
 #[test]
 fn masses_and_torques_are_those_of_discs_and_cylinders() {
     let known = [
@@ -55,7 +56,7 @@ fn masses_and_torques_are_those_of_discs_and_cylinders() {
     }
 }
 
-/// On level ground a robot stands on its wheels, pressed in by 0.1 mm; the skids hang just above it.
+/// On level ground a robot rests on its wheels, pressed in by 0.1 mm. The skids are just above it.
 #[test]
 fn robots_stand_on_their_wheels() {
     for mobile in robots() {
@@ -149,7 +150,7 @@ fn sensors_sit_where_the_robots_have_them() {
 
 #[test]
 fn sensors_of_the_robots_look_where_the_documentation_has_them() {
-    // Degrees from ahead; Khepera: left to right in front, then the two behind.
+    // Degrees from ahead. Khepera: left to right in front, then the two behind.
     let khepera = [60, 36, 12, -12, -36, -60, -160, 160];
     let e_puck = [90, 54, 18, -18, -54, -90, -150, 150];
     let marxbot: Vec<i32> = (0..24).map(|i| 15 * i).collect();
@@ -189,7 +190,7 @@ impl Recorder for Drawn {
     fn tick(&mut self, _: f64) {}
 }
 
-/// What infrared sensors read of a wall is drawn from the hull to the wall; of nothing, as far as they see.
+/// Rays of infrared sensors are drawn from the hull to a wall, and to the end of the range without one.
 #[test]
 fn infrared_rays_are_drawn_to_what_they_meet() {
     for robot in robots() {

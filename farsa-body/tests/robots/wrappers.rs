@@ -1,4 +1,4 @@
-//! What the wrappers do to a sensor's and to a motor's values, tick by tick.
+//! The effect of wrappers on a sensor's and a motor's values, tick by tick.
 
 use farsa_body::ChannelError;
 use farsa_body::ports::{Channels, Motor, Sensor};
@@ -24,7 +24,7 @@ impl Motor<Vec<Vec<f32>>> for Log {
     }
 }
 
-/// What a wrapped sensor reads while its signal takes these values, tick by tick.
+/// Returns the readings of a wrapped sensor while its signal takes these values, tick by tick.
 fn sensed<S: Sensor<()>>(sensor: &mut S, set: impl Fn(&mut S, [f32; N]), ticks: &[[f32; N]]) -> Vec<Vec<f32>> {
     ticks
         .iter()
@@ -38,7 +38,7 @@ fn sensed<S: Sensor<()>>(sensor: &mut S, set: impl Fn(&mut S, [f32; N]), ticks: 
         .collect()
 }
 
-/// What arrives at the motor in a wrapper.
+/// Returns the values at the motor in a wrapper.
 fn driven(mut motor: impl Motor<Vec<Vec<f32>>>, ticks: &[[f32; N]]) -> Vec<Vec<f32>> {
     let mut log = Vec::new();
     for values in ticks {
@@ -47,7 +47,7 @@ fn driven(mut motor: impl Motor<Vec<Vec<f32>>>, ticks: &[[f32; N]]) -> Vec<Vec<f
     log
 }
 
-/// Reads a sensor in a wrapper over these ticks; the wrapper is made anew.
+/// Reads a sensor in a wrapper over these ticks. The wrapper is made again.
 macro_rules! sensed {
     ($wrapper:expr, $ticks:expr) => {{
         let mut sensor = $wrapper;

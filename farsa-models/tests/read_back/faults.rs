@@ -1,4 +1,4 @@
-//! Faults, told with their place and the nearest name, and MuJoCo's rules.
+//! Faults with their place and the nearest name, and MuJoCo's rules.
 
 use std::fmt::Write as _;
 
@@ -168,7 +168,7 @@ fn mujocos_rules_are_followed() {
     assert_eq!((knee.joint.damping, knee.joint.armature, knee.joint.axis), (2.0, 3.0, [0.0, 1.0, 0.0]));
     assert_eq!(knee.joint.range, [-1.0, 2.0]);
     assert_eq!(knee.mass, 2.0);
-    // The segment is at the joint, the body half a metre below it.
+    // The segment is at the joint, the body half a meter below it.
     assert_eq!(frames[1].placement.position, [0.0, 0.0, -0.5]);
     let tree = KinematicTree::new(&robot).unwrap();
     let pose = tree.poses(&[0.5])[1].compose(&frames[1].placement);
@@ -187,7 +187,7 @@ fn mujocos_rules_are_followed() {
         warnings.iter().any(|note| note.what == "actuator muscle" && note.why.starts_with("left out")),
         "{warnings:?}"
     );
-    // Hip and knee do not touch, one carries the other; the hip's bits meet nothing of the floor's but by its affinity.
+    // Hip and knee do not touch, because one carries the other. The hip's bits match the floor's by its affinity only.
     let pairs: Vec<[&str; 2]> =
         robot.pairs.iter().map(|p| p.colliders.map(|i| robot.colliders[i].name.as_str())).collect();
     assert_eq!(pairs, [["floor", "geom1"], ["floor", "geom2"]]);

@@ -98,7 +98,8 @@ fn included_files_stand_where_they_are_named() {
     assert_eq!(error, "leg.xml line 2: unknown element of body `join`; the nearest is `joint`");
 }
 
-/// A pipe into which a thread writes as much of this as is read; it waits if nobody does, and dies with the tests.
+/// Opens a pipe into which a thread writes the text as far as it is read. The thread waits for a reader and ends with
+/// the tests.
 #[cfg(unix)]
 fn pipe(path: &Path, text: String) {
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());

@@ -1,6 +1,7 @@
 //! Models as large as the limits allow are read and written in time and memory proportional to them.
 //!
-//! What once went with the square is here at a size that would not end, or not fit: no test has a clock.
+//! Operations that once took quadratic time are tested here at a size that would not end, or not fit. No test has a
+//! clock.
 use std::fmt::Write as _;
 
 use farsa_body::robot::{Robot, Shape};
@@ -9,7 +10,7 @@ use farsa_models::{Imported, Limits, ReadOptions, urdf};
 
 use crate::read;
 
-/// What was written has more elements than what was read.
+/// The written text has more elements than the first one.
 fn read_back(text: &str) -> Robot {
     let limits = Limits { elements: 1_000_000, ..Limits::default() };
     Imported::from_text(text, &ReadOptions { limits, ..ReadOptions::default() }).unwrap().robot
@@ -84,7 +85,7 @@ fn classes_hold_from_the_nearest_on() {
         _ => f64::NAN,
     };
     assert_eq!([0, 1, 2, 3, 4].map(radius), [4.0, 3.0, 4.0, 1.0, 5.0]);
-    // Of several ways to say a rotation the nearest class's counts.
+    // The nearest class decides between several forms of a rotation.
     let turns = [0, 1, 4].map(|i| robot.colliders[i].placement.rotation[2]);
     let expected = [1.0, std::f64::consts::FRAC_1_SQRT_2, 0.0];
     assert!(turns.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{turns:?}");

@@ -1,4 +1,4 @@
-//! What is only drawn: visuals of URDF files, geoms of MJCF files that touch nothing.
+//! Visuals of URDF files, and geoms of MJCF files that touch nothing.
 
 use farsa_body::Pose;
 use farsa_body::robot::{Shape, Visual};

@@ -1,7 +1,7 @@
-//! What was written is read as it was; what is wrong, hostile or damaged is refused with its place.
+//! Written robots are read unchanged. Wrong, hostile or damaged files are refused with the place of the fault.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-/// Faults, told with their place and the nearest name, and MuJoCo's rules.
+/// Faults with their place and the nearest name, and MuJoCo's rules.
 mod faults;
 /// The files that a model names.
 mod files;
@@ -11,7 +11,7 @@ mod hostile;
 mod icub;
 /// Models as large as the limits.
 mod large;
-/// What is only drawn.
+/// Visuals.
 mod looks;
 /// Whatever is read is written and read back.
 mod round_trip;

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use crate::{message, read};
 
-/// A robot by its names: files list parts in an order of their own.
+/// A robot by its names, because each format has its own order of parts.
 #[derive(Debug, PartialEq)]
 struct Named {
     segments: BTreeMap<String, (Option<String>, Joint, MassProperties)>,
@@ -88,7 +88,8 @@ impl Named {
         self
     }
 
-    /// The same but for angles and directions, which a URDF has as other numbers: those of `other` where they are close.
+    /// Returns the but for angles and directions, which a URDF has as other numbers: those of `other` where they are
+    /// close.
     fn turned_as(mut self, other: &Self) -> Self {
         let same = |a: &mut Pose<f64>, b: &Pose<f64>| {
             let along: f64 = a.rotation.iter().zip(b.rotation).map(|(a, b)| a * b).sum();
@@ -111,7 +112,7 @@ impl Named {
     }
 }
 
-/// What becomes of a robot that was read, on its way through both formats; what is wrong, if anything.
+/// Writes and reads a robot through both formats, and returns the first difference.
 pub(crate) fn lost(robot: &Robot) -> Result<(), String> {
     let told = |kind: &str, text: &str| {
         let back = read(text).map_err(|error| format!("{kind}: {error}\n{text}"))?.robot;
@@ -202,7 +203,7 @@ fn as_urdf(parts: &[Part]) -> String {
         };
         let (origin, [mass, moment]) =
             (format!("<origin xyz='{}' rpy='{}'/>", list(&part.at), list(&part.angles)), part.body);
-        // What is fixed may have an inertia and no mass.
+        // A fixed segment may have an inertia and no mass.
         let mass = if part.kinds[0].is_multiple_of(8) { 0.0 } else { mass };
         let moments = format!("ixx='{moment:?}' iyy='{moment:?}' izz='{moment:?}' ixy='0' ixz='0' iyz='0'");
         let kind = ["fixed", "revolute", "continuous", "prismatic"][usize::from(part.kinds[0] % 4)];

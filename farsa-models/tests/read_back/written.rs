@@ -14,7 +14,7 @@ fn scene() -> Robot {
     Tabletop::default().scene(&ArmAndHand::default()).unwrap()
 }
 
-/// The same robot, but for the laws and surfaces that a format does not have; those are compared by the caller.
+/// Returns the robot, but for the laws and surfaces that a format does not have. The caller compares them.
 fn same(written: &Robot, read: &Robot, tolerance: f64) {
     assert_eq!(read.name, written.name);
     assert_eq!(read.segments.len(), written.segments.len());
@@ -50,14 +50,14 @@ fn mjcf_is_read_as_it_was_written() {
     for (name, robot) in [("tabletop", scene()), ("zoo", read(&fixture("zoo.xml")).unwrap().robot)] {
         let text = mjcf::write(&robot, &MjcfOptions::default()).unwrap();
         let reading = read(&text).unwrap();
-        // To the last bit but for what the format does not say.
+        // To the last bit, except for the parts that the format does not have.
         let mut expected = robot.clone();
         for actuator in &mut expected.actuators {
             if let Law::MusclePair(_) | Law::Held(_) = actuator.law {
                 actuator.law = Law::Torque(Torque { limit: f64::INFINITY });
             }
         }
-        // Geoms stand with their bodies, bodies depth first: the lists may be in another order.
+        // Geoms follow their bodies, and bodies are depth first, so the lists may have another order.
         same(&expected, &reading.robot, 0.0);
         assert_eq!(reading.robot.actuators, expected.actuators, "{name}");
         assert_eq!(reading.robot.segments, expected.segments, "{name}");
@@ -97,7 +97,7 @@ fn the_zoo_is_described_as_the_readers_of_the_fixtures_say() {
 fn urdf_is_read_as_it_was_written() {
     for robot in [scene(), read(&fixture("zoo.xml")).unwrap().robot] {
         let reading = read(&urdf::write(&robot).unwrap()).unwrap();
-        // A plane is a block in a URDF, whose middle is elsewhere.
+        // A plane is a block in a URDF, whose middle is in other places.
         let mut expected = robot.clone();
         for collider in &mut expected.colliders {
             if collider.shape == Shape::Plane {

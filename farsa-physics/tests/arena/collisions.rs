@@ -33,7 +33,7 @@ fn crowd(robots: usize, search: Search, collisions: CollisionRule) -> Arena {
 fn babble(world: &mut World, stream: &mut Stream) {
     for robot in 0..world.robots() {
         for motor in world.parts(robot).motors {
-            // Rather forward, so that they meet.
+            // Mostly forward, so that the robots collide.
             world.command(motor, [stream.range(-3.0, 7.0), 0.0]);
         }
     }
@@ -184,7 +184,7 @@ fn a_blocked_robot_stays_where_it_was_and_tells_what_it_met() {
     assert_eq!((contact.points, contact.force, contact.normal_force), (1, [-1.0, 0.0, 0.0], 1.0));
     assert!((contact.depth - 0.002).abs() < 1e-6 && (contact.point[0] - 0.4).abs() < 1e-6, "{contact:?}");
     assert_eq!(world.pair_bodies(PairId(0)), [Some(parts.body), None]);
-    // Back it goes, and the contact is forgotten.
+    // The robot returns, and the contact ends.
     for motor in parts.motors {
         world.command(motor, [-6.0, 0.0]);
     }
@@ -251,7 +251,7 @@ fn those_that_hold_together_move_as_one() {
         let (_, mut world) = pair_in_a_row(search);
         assert_eq!(world.attached(BodyId(0)), None);
         let at = |world: &World, body: u16| world.pose(BodyId(body)).position;
-        // One pushes with 0.27 m/s, the other stands: both go at half of that.
+        // One robot pushes with 0.27 m/s, the other rests: both move at half of that.
         for motor in world.parts(0).motors {
             world.command(motor, [10.0, 0.0]);
         }
@@ -263,7 +263,7 @@ fn those_that_hold_together_move_as_one() {
             assert!((way - 0.5 * 0.27 * 0.05).abs() < 1e-6, "{way}");
             assert!((world.velocity(BodyId(i)).linear[0] - 0.135).abs() < 1e-6);
         }
-        // Whatever the wheels do, the distance stays; each chassis turns by its own.
+        // Whatever the wheels do, the distance stays. Each chassis turns by its own.
         let mut stream = Stream::new(4, Domain::Motor, 0, 0, 0);
         let mut turn = 0.0;
         for _ in 0..100 {

@@ -1,4 +1,4 @@
-//! The planar world keeps what `farsa_body::testing` says that every world promises.
+//! The planar world keeps the promises of `farsa_body::testing`.
 
 use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robots::MobileRobot;

@@ -49,7 +49,7 @@ fn signed(corners: &[Point2], p: Point2) -> f64 {
     if within { -nearest } else { nearest }
 }
 
-/// Where a ray crosses a side first, side by side; `None` from within.
+/// Where a ray crosses a side first, side by side. `None` from within.
 fn crossed(corners: &[Point2], p: Point2, way: Point2) -> Option<f64> {
     if signed(corners, p) < 0.0 {
         return None;
@@ -64,7 +64,7 @@ fn crossed(corners: &[Point2], p: Point2, way: Point2) -> Option<f64> {
     hits.min_by(f64::total_cmp)
 }
 
-/// A Khepera that starts where it meets nothing.
+/// Builds a world with a Khepera that starts without a contact.
 fn with_robot(mut arena: Arena) -> World {
     arena.add_robot(MobileRobot::khepera(), [900.0, 900.0], 0.0);
     World::new(&arena).unwrap()
@@ -87,7 +87,7 @@ fn put(world: &mut World, at: Point2) {
     world.finish_placement();
 }
 
-/// What rounding may do at a place so far away [m].
+/// Returns the rounding at such a distance [m].
 fn close(corners: &[Point2]) -> f64 {
     1e-6 + 3e-7 * corners.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
@@ -123,14 +123,14 @@ proptest! {
     ) {
         let world = among(std::slice::from_ref(&corners));
         let from = [corners[0][0] + off[0], corners[0][1] + off[1]].map(|x| f64::from(x as f32));
-        // Half of the rays go to a place within, so that many meet.
+        // Half of the rays go to a place within, so that many hit.
         let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64 - from[k]);
         let heading = if aimed { farsa_num::atan2(middle[1], middle[0]) } else { heading };
         let (s, c) = farsa_num::sin_cos(heading);
         let way = [c, s].map(|x| f64::from(x as f32));
         let slack = close(&corners);
         prop_assume!(signed(&corners, from).abs() > slack);
-        // A ray a little to either side of one that grazes a corner meets something else.
+        // A ray a little to either side of one that grazes a corner hits something else.
         let beside = [-1.0, 1.0].map(|k| [from[0] - k * 3.0 * slack * s, from[1] + k * 3.0 * slack * c]);
         let truths = [crossed(&corners, from, way), crossed(&corners, beside[0], way), crossed(&corners, beside[1], way)];
         let sight = world.cast_planar(narrow(from), narrow(way), 3.0, None);
@@ -211,7 +211,7 @@ proptest! {
         let hits: [Option<Hit<BodyId>>; 2] =
             [0, 1].map(|i| worlds[i].cast(origin, narrow([c * level, s * level, up]), 3.0));
         match hits {
-            // The ground or an edge may be met instead of a face beside it: not by more than rounding.
+            // A ray may hit the ground or an edge instead of a neighboring face, within rounding.
             [Some(wall), Some(convex)] => prop_assert!((wall.distance - convex.distance).abs() < 1e-3, "{hits:?}"),
             [a, b] => prop_assert!(a.is_none() && b.is_none(), "{hits:?}"),
         }
@@ -221,7 +221,8 @@ proptest! {
         }
         if let [Some(wall), Some(convex)] = near {
             prop_assert!((wall.0 - convex.0).abs() < 2e-6);
-            // Beside a corner two points are equally near to rounding: of relative error e, they lie sqrt(2 e) of the way apart.
+            // Next to a corner two points are equally near to rounding. With relative error e, they are sqrt(2 e) of
+            // the distance apart.
             let slack = 2e-6 + 7e-4 * wall.0;
             prop_assert!((0..2).all(|k| (wall.1[k] - convex.1[k]).abs() < slack), "{near:?}");
         }
@@ -295,7 +296,7 @@ fn nobody_is_ever_left_inside_an_obstacle() {
                     nearest = nearest.min(gap - 0.035);
                     assert!(gap > 0.035 - 1e-6, "{collisions:?}, {robots}, step {step}: {gap}");
                     let pair = PairId(robot as u16);
-                    // What it was kept from is one of them, if it stands this close.
+                    // The body of the contact is one of those at this distance.
                     let met = world.touches(pair) && world.pair_bodies(pair)[1].is_none();
                     obstacles += usize::from(met && gap < 0.04);
                 }

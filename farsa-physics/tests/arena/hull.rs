@@ -95,7 +95,7 @@ proptest! {
     #[test]
     fn rays_meet_the_hull_of_the_points(points in cloud(), seed in any::<u32>()) {
         let world = match world(Convex::hull(&points)) {
-            // Too flat; the planes of the oracle would be none, or both ways.
+            // Too flat. The planes of the oracle would be none, or both ways.
             Err(ArenaError::Range { what: "width" | "thickness", value, .. }) if value < 1e-6 => return Ok(()),
             world => world.unwrap(),
         };
@@ -107,7 +107,7 @@ proptest! {
                 // The ground is there, too.
                 way[2] >= 0.0 || (f64::from(hit.distance) + from[2] / way[2]).abs() > 1e-5
             });
-            // What is grazed or decided by rounding is not asked for.
+            // Grazing cases and cases within rounding are skipped.
             if deep.abs() < 2e-3 || enter.abs() < 1e-5 || (way[2] < 0.0 && (enter + from[2] / way[2]).abs() < 1e-3) {
                 continue;
             }
@@ -186,7 +186,7 @@ fn rays_are_those_of_parry() {
             if other.time_of_impact > 0.0 && hit.normal != [0.0, 0.0, 1.0] {
                 met += 1;
                 worst = worst.max((other.time_of_impact - hit.distance).abs());
-                // What parry's iterations are good to.
+                // The accuracy of parry's iterations.
                 assert!((other.time_of_impact - hit.distance).abs() < 0.01, "{hit:?} {other:?}");
             }
         }

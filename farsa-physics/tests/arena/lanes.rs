@@ -14,7 +14,7 @@ use farsa_physics::arena::{
     Area, Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World,
 };
 
-/// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
+/// Control steps of every lane. Ten times as many with `FARSA_LONG=1`.
 fn steps() -> usize {
     if std::env::var_os("FARSA_LONG").is_some() { 1_000_000 } else { 100_000 }
 }
@@ -43,7 +43,7 @@ fn three(collisions: CollisionRule) -> Arena {
     arena
 }
 
-/// The same with convex obstacles, a hull among them where there is parry.
+/// Builds the world with convex obstacles, a hull among them where parry is enabled.
 fn obstructed(collisions: CollisionRule) -> Arena {
     let mut arena = three(collisions);
     let hexagon: [[f64; 2]; 6] = core::array::from_fn(|i| {
@@ -59,7 +59,7 @@ fn obstructed(collisions: CollisionRule) -> Arena {
     arena
 }
 
-/// What happens in one lane before each step, the same alone and in a batch.
+/// The actions in one lane before each step, equal alone and in a batch.
 struct Script {
     lane: usize,
     stream: Stream,
@@ -245,7 +245,7 @@ fn a_command_for_all_lanes_is_one_for_each() {
     assert_eq!(Batch::new(&arena, 12, Instructions::detect()).err(), Some(ArenaError::Lanes { lanes: 12, nearest: 8 }));
 }
 
-/// One lane of a batch as a world; its neighbours do something else.
+/// One lane of a batch as a world. Its neighbors do something else.
 struct InLane(std::cell::RefCell<Batch>);
 
 impl InLane {
@@ -383,7 +383,7 @@ fn a_lane_conforms() {
     assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, 0.4, 0.05]], 1.0), Ok(()));
 }
 
-/// Something for every sensor: colours, a lamp, and a neighbour to hold, right ahead of the robot that senses.
+/// Something for every sensor: colors, a lamp, and a neighbor to hold, right ahead of the robot that senses.
 fn lively() -> Arena {
     let mut arena = obstructed(CollisionRule::Revert);
     let reach = 2.0 * arena.robots[1].robot.radius + 0.005;

@@ -1,4 +1,4 @@
-//! How wheels move a robot of the planar world.
+//! Motion of a planar robot by its wheels.
 
 use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, PairId, Sight, Snapshot, World as _,
@@ -136,7 +136,7 @@ fn wheels_turn_as_told_within_their_limits() {
     world.step();
     assert_eq!([world.speed(JointId(0)), world.speed(JointId(1))], [0.0, 1.0]);
     assert!((world.position(JointId(0)) - 0.05 * most).abs() < 1e-6);
-    // Commands hold; a long way on, positions are still exact to a fraction of a degree.
+    // Commands hold. A long way on, positions are still exact to a fraction of a degree.
     for _ in 0..100_000 {
         world.step();
     }

@@ -10,7 +10,7 @@ use farsa_physics::arena::{Area, Arena, Cylinder, Search, Wall, World};
 
 const SIZE: f64 = 1.2;
 
-/// The same scene in both worlds, drawn at random: two robots, two cylinders, a lamp.
+/// Returns the scene in both worlds, drawn at random: two robots, two cylinders, a lamp.
 fn scene(robot: &MobileRobot, search: Search, seed: u64) -> (World, PlaneWorld) {
     let mut stream = Stream::new(seed, Domain::Start, 0, 0, 0);
     // Around the first robot, near enough to be felt, without overlaps.
@@ -38,7 +38,7 @@ fn scene(robot: &MobileRobot, search: Search, seed: u64) -> (World, PlaneWorld) 
         let [w, h] = wall.size.map(|x| 0.5 * x as f32);
         let [x, y] = wall.centre.map(|x| x as f32);
         let corners = [[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]];
-        // The arena's wall is one surface; here it is the side that looks inwards.
+        // The arena's wall is one surface. Here it is the side that looks inwards.
         let inner = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).min_by(|a, b| {
             let off = |s: &[[f32; 2]; 2]| {
                 let m = [0.5 * (s[0][0] + s[1][0]) - 0.6, 0.5 * (s[0][1] + s[1][1]) - 0.6];

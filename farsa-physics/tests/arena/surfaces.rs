@@ -6,7 +6,7 @@ use farsa_body::{Pose, Twist};
 use farsa_physics::arena::{Area, Arena, Cylinder, Search, Wall, World};
 use proptest::prelude::*;
 
-/// What a scene is drawn from.
+/// The draws of a scene.
 #[derive(Clone, Debug)]
 struct Scene {
     walls: Vec<([f64; 2], [f64; 2], f64)>,
@@ -26,7 +26,7 @@ fn scene() -> impl Strategy<Value = Scene> {
 }
 
 impl Scene {
-    /// The world; its bodies are put where they belong afterwards, since here they may overlap.
+    /// The world. Its bodies are put where they belong afterwards, since here they may overlap.
     fn build(&self, search: Search) -> (Arena, World) {
         let mut arena = Arena { search, ..Arena::new() };
         for (centre, size, heading) in &self.walls {
@@ -106,7 +106,7 @@ proptest! {
         let (sine, cosine) = farsa_num::sin_cos(heading);
         let range = 2.0;
         let sight = world.cast_planar(from.map(|x| x as f32), [cosine as f32, sine as f32], range as f32, Some(BodyId(but)));
-        // What lies around the start is not seen.
+        // Bodies around the start are invisible.
         let inside: Vec<bool> = scene.distances(&arena, from).iter().map(|(_, d)| *d < 0.0).collect();
         prop_assume!(scene.distances(&arena, from).iter().all(|(_, d)| d.abs() > 1e-4));
         let nearest = |t: f64| {
@@ -133,7 +133,7 @@ proptest! {
             // Rounding may let a ray pass what it grazes, and end short of the range.
             _ => prop_assert!(grazed || (t - range).abs() < 1e-3, "{:?} {:?}", sight, met),
         }
-        // In space, level and below every robot's height, the same, and a ray above everything meets nothing.
+        // In space, level and below every robot's height, the result is equal, and a ray above everything hits nothing.
         let cast = |z: f32| world.cast([from[0] as f32, from[1] as f32, z], [cosine as f32, sine as f32, 0.0], range as f32);
         let flat = world.cast_planar(from.map(|x| x as f32), [cosine as f32, sine as f32], range as f32, None);
         let hit = cast(0.02);
@@ -209,7 +209,7 @@ fn the_last_area_is_seen_where_it_lies() {
     assert_eq!(world.ground([0.605, 0.59]), [0.0, 0.0, 1.0]);
     assert_eq!(world.ground([0.65, 0.5]), [0.9, 0.8, 0.7]);
     assert!((world.pose(arena.area(1)).heading() - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
-    // Nothing stands on the ground there.
+    // There is nothing on the ground there.
     world.query_near([0.6, 0.5], 0.2, &mut |near| panic!("{near:?}"));
 }
 

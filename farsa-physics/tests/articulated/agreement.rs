@@ -113,7 +113,7 @@ fn agrees(name: &str) {
         accelerations((), model.links(), model.gravity(), &state.tau, &armature, work, roots, &mut qdd);
         pinocchio = pinocchio.max(difference(&qdd, &state.acceleration_pinocchio));
         mujoco = mujoco.max(difference(&qdd, &state.acceleration_mujoco));
-        // The efforts of Pinocchio's accelerations are those that it was given; and so are M qdd and the bias together.
+        // The efforts of Pinocchio's accelerations are those that it was given. And so are M qdd and the bias together.
         let (mut tau, mut inertia) = (vec![0.0; n], vec![0.0; n * n]);
         inverse_dynamics((), model.links(), model.gravity(), &state.acceleration_pinocchio, work, &mut tau);
         inverse = inverse.max(difference(&tau, &state.tau));

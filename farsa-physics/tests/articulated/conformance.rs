@@ -1,4 +1,4 @@
-//! The articulated world keeps what `farsa_body::testing` says that every world promises.
+//! The articulated world keeps the promises of `farsa_body::testing`.
 
 use crate::channels::channels_conform;
 use crate::common::{CLOSED, POSES, Wrist, hand_and_sphere, model, pose_hand, put_in_the_palm, scene, start, stream};
@@ -45,7 +45,7 @@ fn a_hand_around_a_sphere_conforms() {
 
 #[test]
 fn it_conforms_in_double_precision_but_for_its_snapshot() {
-    // A snapshot is in single precision: a world in f64 goes on from the rounded state. The other promises stand.
+    // A snapshot is in single precision, so a world in f64 continues from the rounded state. The other promises hold.
     let robot = scene();
     let model = model::<f64>(&robot, Options::default());
     assert_eq!(check_arrange(|| World::new(model.clone()), &Probe::for_robot(&robot)), Ok(()));

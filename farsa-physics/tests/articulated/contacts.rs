@@ -11,8 +11,8 @@ fn world(robot: &Robot, options: Options) -> World<f32> {
     World::new(Model::new(robot, &options).unwrap())
 }
 
-/// A box whose mass lies beside its middle presses most where the mass is: the mean over its corners, weighted by their forces, is
-/// below the centre of mass, or the box would turn.
+/// A box whose mass is off its middle presses most where the mass is. The mean over its corners, weighted by their
+/// forces, is below the center of mass, or the box would turn.
 #[test]
 fn a_box_presses_below_its_centre_of_mass() {
     let centre = [0.03, -0.02, 0.0];
@@ -37,7 +37,7 @@ fn a_box_presses_below_its_centre_of_mass() {
     }
 }
 
-/// Of two balls that wait, one is hit by a third that crosses more than the watched margin in a dynamics step, 30 mm.
+/// A third ball hits one of two resting balls. It crosses more than the watched margin in a dynamics step, 30 mm.
 fn thrown(grouped: bool, distance: f64) -> Vec<u32> {
     const RADIUS: f64 = 0.02;
     let mut robot = Robot::new("balls");
@@ -76,8 +76,8 @@ fn what_is_thrown_at_a_group_meets_it_as_alone() {
     }
 }
 
-/// A ball drives a hand that slides, from just before the end of its way, past it within a step: the stop answers in that step by its
-/// spring, k = I f^2, at the place to which the hand comes.
+/// A ball drives a sliding hand from just before the end of its way past it within a step. The stop acts in that step
+/// by its spring, k = I f^2, at the place that the hand reaches.
 #[test]
 fn a_stop_answers_a_contact_in_the_same_step() {
     let (base_mass, hand_mass, ball_mass) = (1.5, 0.2, 0.5);

@@ -92,7 +92,7 @@ fn a_free_body_keeps_its_momentum() {
     let body = MassProperties { mass: 0.4, centre: [0.02, -0.01, 0.03], inertia };
     let mut robot = Robot::new("free");
     robot.add_segment(Segment::new("body", None, Joint::floating(Pose::identity()), body));
-    // Angular momentum about the centre of mass [N m s], from the pose and the state's own angular velocity.
+    // Angular momentum about the center of mass [N m s], from the pose and the state's own angular velocity.
     let angular = |w: &World<f64>| {
         let pose = w.pose_of(BodyId(0));
         let v = w.velocities();

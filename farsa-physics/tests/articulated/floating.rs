@@ -1,4 +1,4 @@
-//! Free bodies whose origin is away from their centre of mass, against closed forms, and their inertia with joints.
+//! Free bodies whose origin is away from their center of mass, against closed forms, and their inertia with joints.
 
 use crate::common::world;
 use farsa_body::ports::{Arrange, BodyId, World as _};
@@ -10,12 +10,12 @@ use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamic
 const GRAVITY: f64 = 9.81;
 /// The dynamics step [s].
 const STEP: f64 = 1e-3;
-/// Distance of the centre of mass from the origin, along the body's x axis: 3/4 of the bar [m].
+/// Distance of the center of mass from the origin, along the body's x axis: 3/4 of the bar [m].
 const CENTRE: f64 = 0.1875;
 /// Where the origin starts, turned by a third of a turn, so that the body's axes x, y, z lie along y, z, x.
 const START: Pose = Pose { position: [0.5, -0.25, 1.0], rotation: [0.5; 4] };
 
-/// Two balls on a bar without mass; the origin is the centre of the lighter one.
+/// Two balls on a bar without mass. The origin is the center of the lighter one.
 fn dumbbell() -> Robot {
     let mut robot = Robot::new("dumbbell");
     let start = Joint::floating(Pose::identity());
@@ -35,14 +35,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
 }
 
-/// Throws the dumbbell by the velocity of its origin; after every step, `look` is told the time, the origin, where the
-/// centre of mass is on its parabola, and the quaternion.
+/// Throws the dumbbell by the velocity of its origin. After every step `look` receives the time, the origin, the center
+/// of mass on its parabola, and the quaternion.
 fn throw(twist: Twist, mut look: impl FnMut(f64, [f64; 3], [f64; 3], [f64; 4])) {
     let mut world = world(&dumbbell(), STEP, GRAVITY);
     world.place_body(BodyId(0), START, twist);
     world.finish_placement();
     let ([vx, vy, vz], [wx, _, wz]) = (twist.linear.map(f64::from), twist.angular.map(f64::from));
-    // The centre lies along the world's y axis at first: w x (0, c, 0) = (-wz c, 0, wx c).
+    // The center lies along the world's y axis at first: w x (0, c, 0) = (-wz c, 0, wx c).
     let velocity = [vx - wz * CENTRE, vy, vz + wx * CENTRE];
     let centre = [0.5, -0.25 + CENTRE, 1.0];
     for n in 1..=1000 {
@@ -128,7 +128,8 @@ fn the_inertia_of_a_free_body_with_joints_is_what_inverse_dynamics_says() {
     assert!((energy - expected).abs() < 1e-12, "{energy} and {expected} J");
 }
 
-/// Two free balls strike each other beside the line between them, with friction: what one loses the other has.
+/// Two free balls collide off the line between their centers, with friction: each gains the momentum that the other
+/// loses.
 #[test]
 fn free_bodies_that_strike_each_other_keep_their_momentum() {
     let surface = Surface { friction: 0.5, rolling_friction: 0.0, stiffness: 1e5, damping: 20.0 };

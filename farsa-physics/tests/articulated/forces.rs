@@ -21,7 +21,7 @@ fn a_pushed_world_keeps_the_kit_s_promises() {
     assert_eq!(check_external_forces(|| World::new(model.clone()), &probe, &pushed, BodyId(9000)), Ok(()));
 }
 
-/// A force beside the centre of mass of a free bar: momentum and angular momentum are those of Newton and Euler.
+/// A force off the center of mass of a free bar: momentum and angular momentum follow Newton and Euler.
 #[test]
 fn a_free_body_takes_force_and_moment() {
     let mut bar = Robot::new("bar");
@@ -34,7 +34,7 @@ fn a_free_body_takes_force_and_moment() {
     world.apply_force(BodyId(0), point, force);
     world.step();
     let twist = world.velocity_of(BodyId(0));
-    // Moment r x F with r = (0.2, 0.02, 0); inertias m (a^2 + b^2) / 3 about the three axes.
+    // Moment r x F with r = (0.2, 0.02, 0). Inertias m (a^2 + b^2) / 3 about the three axes.
     let force = force.map(f64::from);
     let moment = [0.02 * force[2], -0.2 * force[2], 0.2 * force[1]];
     for k in 0..3 {
@@ -51,7 +51,7 @@ fn a_free_body_takes_force_and_moment() {
     assert!(before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-15), "{before:?} {after:?}");
 }
 
-/// Every link pushed down at its centre of mass by its weight moves as under that much more gravity.
+/// Every link pushed down at its center of mass by its weight moves as under that much more gravity.
 #[test]
 fn weights_as_forces_are_gravity() {
     let robot = ghost(&scene());

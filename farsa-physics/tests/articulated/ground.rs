@@ -106,7 +106,7 @@ fn a_push_moves_what_it_overcomes() {
     }
 }
 
-/// Random pushes, beside an integrator of tiny steps that knows Newton and Coulomb alone.
+/// Random pushes, compared with an integrator of tiny steps by Newton's and Coulomb's laws alone.
 #[test]
 fn random_pushes_move_it_as_newton_and_coulomb_say() {
     let limit = FRICTION * MASS * GRAVITY;
@@ -139,7 +139,7 @@ fn random_pushes_move_it_as_newton_and_coulomb_say() {
     }
 }
 
-/// A puck whose centre of mass lies beside the point that it turns about: what brakes its sliding turns it, and the other way round.
+/// A puck whose center of mass is off its axis of rotation: a force that brakes its sliding turns it, and the reverse.
 #[test]
 fn a_lopsided_puck_moves_as_newton_euler_and_coulomb_say() {
     let (limit, radius, beside) = (FRICTION * MASS * GRAVITY, 0.04, [0.03, -0.015]);
@@ -191,7 +191,8 @@ fn a_lopsided_puck_moves_as_newton_euler_and_coulomb_say() {
     assert!(gone > 0.3 && turned > 3.0, "{gone} m and {turned} rad at most");
 }
 
-/// The same puck where the ground holds it: it turns about the point that does not slide, and the ground bears what that takes.
+/// Returns the puck where the ground holds it: it turns about the point that does not slide, and the ground bears what
+/// that takes.
 #[test]
 fn a_lopsided_puck_that_is_held_turns_about_the_held_point() {
     let (limit, radius, beside) = (FRICTION * MASS * GRAVITY, 0.04, [0.03, -0.015]);
@@ -256,7 +257,7 @@ fn balls_never_pass_through_the_arm_or_each_other() {
         }
         println!("turns {turns}: {deepest} m deep, {fastest} m/s, {touches} touches");
         assert!(touches > 1000);
-        // Half a radius is far from through; two segments in a vice press hardest.
+        // Half a radius is far from through. Two segments in a vice press hardest.
         assert!(deepest < 0.02, "{deepest} m deep");
         assert!(fastest < 12.0, "{fastest} m/s");
     }
@@ -269,7 +270,7 @@ fn collisions_keep_momentum_and_nothing_adds_energy() {
     let mut met = 0;
     for trial in 0..60 {
         let mut robot = arm(trial % 2 == 0);
-        // Motors that exert nothing; every third time there is no ground to rub on either.
+        // Motors that exert nothing. Every third time there is no ground to rub on either.
         for actuator in &mut robot.actuators {
             actuator.law = Law::Torque(Torque { limit: 0.0 });
         }
@@ -281,7 +282,7 @@ fn collisions_keep_momentum_and_nothing_adds_energy() {
         let mut world = World::<f64>::new(Model::new(&robot, &options).unwrap());
         let slides: Vec<JointId> =
             robot.joints().filter(|joint| robot.segments[joint.index()].joint.kind == JointKind::Prismatic).collect();
-        // The arm lies away; the first ball is shot at the second.
+        // The arm lies away. The first ball is shot at the second.
         world.place_joint(JointId(0), 2.9, 0.0);
         world.place_joint(slides[0], 0.5, stream.range(0.8, 1.2));
         world.place_joint(slides[1], -1.03 + stream.range(-0.03, 0.03), stream.range(-1.0, -0.7));
@@ -297,7 +298,7 @@ fn collisions_keep_momentum_and_nothing_adds_energy() {
             world.step();
             let now = world.energy()[0];
             let still = (0..world.pairs()).any(|p| world.pair_contact(farsa_body::ports::PairId(p as u16)).points > 0);
-            // A contact stores some and gives it back; of nothing more comes than there was.
+            // A contact stores some and gives it back. No quantity increases.
             let most = if touching || still { first } else { energy };
             assert!(now <= most * (1.0 + 1e-9), "trial {trial}: {now} J after {most} J");
             (energy, touching, touched) = (now, still, touched || still);

@@ -21,7 +21,7 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The hand has closed on the sphere without gravity; then gravity sets in.
+/// The hand has closed on the sphere without gravity. Then gravity sets in.
 fn held(h: f64) -> World<f64> {
     let arm = ArmAndHand::default();
     let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
@@ -127,7 +127,7 @@ fn impulses_on_sphere_and_hand_are_equal_and_opposite_in_every_step() {
             }
             let sum = |a: [f64; 3], b: [f64; 3]| norm(&[a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
             worst = worst.max(sum(on_hand, on_sphere));
-            // The ports tell forces in single precision.
+            // The ports report forces in single precision.
             words = words.max(sum(of_pairs, on_sphere.map(|x| -x)));
             largest = largest.max(norm(&on_sphere));
         }
@@ -196,8 +196,8 @@ fn a_closing_hand_and_its_sphere_keep_their_momentum_to_first_order() {
 
 #[test]
 fn only_the_integration_of_positions_moves_the_total_momentum() {
-    // With p = A(q) v, dynamics and contacts together owe A(q) (v' - v) = -h A'(q; v) v in every step of any length, A'
-    // being the derivative along v. What then is left of p' - p is (A(q') - A(q)) v' - h A'(q; v) v: the positions' step.
+    // With p = A(q) v, dynamics and contacts together owe A(q) (v' - v) = -h A'(q. V) v in every step of any length, A'
+    // being the derivative along v. The rest of p' - p is (A(q') - A(q)) v' - h A'(q. V) v: the positions' step.
     for damping in DAMPINGS {
         for h in [5e-3, 2e-3, 1e-3] {
             let (robot, mut w) = closing(h, damping);
@@ -231,8 +231,8 @@ fn only_the_integration_of_positions_moves_the_total_momentum() {
     }
 }
 
-/// A throw of the sphere at a hand on which no motor acts: the largest energy of all above that at first, as a share of
-/// the sphere's own; whether they touched; when.
+/// Throws the sphere at a hand without motors. Returns the largest energy of all above the initial one, as a share of
+/// the sphere's, whether they touched, and when.
 fn throw(robot: &Robot, h: f64, gravity: f64, number: u32) -> (f64, bool, String) {
     let mut stream = Stream::new(11, Domain::Start, number, 0, 0);
     let mut uniform = |low: f64, high: f64| stream.range_f64(low, high);
@@ -305,12 +305,12 @@ fn a_sphere_thrown_at_a_passive_hand_never_gains_energy() {
     }
 }
 
-/// How far the sphere falls in two seconds between thumb and index, whose first flexion joints exert a constant torque
-/// [m], and its speed at the end [m/s].
+/// Returns the fall of the sphere in two seconds between thumb and index, whose first flexion joints exert a constant
+/// torque [m], and its final speed [m/s].
 fn pinch(mu: f64, torque: f64, h: f64) -> (f64, f64) {
     let surface = Surface { friction: mu, ..ArmAndHand::default().surface };
     let mut robot = hand_and_sphere(Wrist::Fixed, surface, Some(Law::Torque(Torque { limit: 1.0 })));
-    // Opposition and abduction stay where they are; the outer joints lie against their stops.
+    // Opposition and abduction stay where they are. The outer joints lie against their stops.
     let [thumb_base, index_base] = [8, 12].map(|n: usize| n - 8);
     for a in [thumb_base, index_base] {
         robot.actuators[a].law = Law::Held(Held { stiffness: 100.0, damping: 0.5 });
@@ -320,7 +320,7 @@ fn pinch(mu: f64, torque: f64, h: f64) -> (f64, f64) {
     w.place_joint(JointId(7), right, 0.0);
     w.place_joint(JointId(12), -75.0_f32.to_radians(), 0.0);
     w.command(ActuatorId(thumb_base as u16), [0.0, right]);
-    // Beside the thumb, which points straight down 28 mm from the wrist.
+    // Next to the thumb, which points straight down 28 mm from the wrist.
     let [x, y, z] = common::WRIST;
     w.place_body(
         Tabletop::SPHERE,

@@ -19,22 +19,22 @@ fn at_start<R: Precision>(icub: &Icub, robot: &Robot) -> World<R> {
     world
 }
 
-/// What happens in a while of random commands.
+/// The extremes over a while of random commands.
 #[derive(Debug, Default)]
 struct Worst {
-    /// Of torso, neck and arms, and of hands [rad/s].
+    /// The speeds of torso, neck and arms, and of hands [rad/s].
     speed: [f32; 2],
     /// The joints that were so fast, and when.
     fastest: [String; 2],
     /// Beyond a joint's limits [rad].
     beyond: f64,
-    /// Of a pair's colliders [m].
+    /// The depth of a pair's colliders [m].
     depth: f32,
     pair: String,
     touched: usize,
 }
 
-/// Steps for 2 s; new commands within the joints' limits every 0.5 s.
+/// Steps for 2 s. New commands within the joints' limits every 0.5 s.
 fn driven<R: Precision>(icub: &Icub, robot: &Robot, stream: &mut Stream) -> Worst {
     let mut world = at_start::<R>(icub, robot);
     let mut worst = Worst::default();
@@ -89,7 +89,7 @@ fn random_targets_are_followed_within_bounds() {
         }
         println!("{control:?}: {all:?}, touched {touched}");
         assert!(touched > 1000, "limbs meet: {touched}");
-        // A wrist comes to 15 rad/s and a finger to 38 where an arm strikes against the other hand's fingers.
+        // A wrist reaches 15 rad/s and a finger 38 where an arm hits the other hand's fingers.
         assert!(all.speed[0] < 20.0 && all.speed[1] < 50.0, "{all:?}");
         assert!(all.depth < 0.005, "{all:?}");
         assert!(all.beyond < 0.01, "{all:?}");
@@ -117,7 +117,7 @@ fn the_posture_is_held() {
     assert!(sag < 3.0_f64.to_radians() && speed < 1e-3, "{sag} rad, {speed} rad/s");
 }
 
-/// Every set of chains steps in a world; joints of rigid chains are none there.
+/// Every set of chains steps in a world. Joints of rigid chains do not exist there.
 #[test]
 fn every_set_of_chains_steps() {
     for bits in 0..64 {

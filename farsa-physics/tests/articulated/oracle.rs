@@ -1,4 +1,5 @@
-//! The step against dense algebra: joints, actuators and stops without contacts; impulses, their laws and their response.
+//! The step against dense algebra: joints, actuators and stops without contacts. Impulses, their laws and their
+//! response.
 
 use crate::common;
 use crate::common::{
@@ -158,12 +159,12 @@ fn order(shape: Shape) -> u8 {
     }
 }
 
-/// How far impulses are from their laws.
+/// The deviation of impulses from their laws.
 #[derive(Default, Debug)]
 struct Misfit {
     /// Generalised impulse that no stored impulse explains, relative.
     response: f64,
-    /// Normal velocity that differs from what spring and damper ask for [m/s], largest of every step.
+    /// The deviation of the normal velocity from the law of spring and damper [m/s], the largest of every step.
     normal: Vec<f64>,
     /// Depth or approach at points that carry nothing [m].
     apart: f64,
@@ -254,7 +255,8 @@ impl Checker<'_> {
                     let limit = surface.rolling_friction * w[3];
                     out.cone = out.cone.max((moment.norm() - limit) / limit.max(1e-12));
                 }
-                // Between the ends of a capsule the place on its axis is searched: the point tells it only roughly.
+                // Between the ends of a capsule the place on its axis is searched, because the point gives it only
+                // roughly.
                 if index == 2 {
                     continue;
                 }
@@ -306,7 +308,7 @@ impl Checker<'_> {
             let q = world.positions()[iq];
             let law = h * dense.stop[iv] * ((low - q).max(0.0) - (q - high).max(0.0));
             if left[iv].abs() > 1e-9 * scale {
-                // What no contact explains must be a stop's.
+                // An impulse that no contact explains must be a stop's.
                 out.stops += 1;
                 out.stop = out.stop.max((left[iv] - law).abs() / scale);
                 left[iv] = 0.0;
@@ -397,7 +399,7 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
             // These hold whether the sweeps have converged or not.
             assert!(m.response < 1e-9 && m.cone < 1e-9 && m.stop < 1e-9);
             match (name, sweeps) {
-                // A finger that is closed onto the palm is a loop of its own, which takes more sweeps than 200 to the last digit.
+                // A finger closed onto the palm is a separate loop, which takes more than 200 sweeps to the last digit.
                 ("random episodes", 200) => {
                     assert!(m.apart < 1e-9 && normal[1] < 1e-9 && stick[1] < 1e-9 && slide[1] < 1e-9);
                     assert!(normal[2] < 1e-5 && stick[2] < 1e-5 && slide[2] < 1e-4);
@@ -413,7 +415,7 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
                 ("a squeeze", 2000) => {
                     assert!(normal[0] < 1e-5 && stick[0] < 5e-5 && normal[1] < 5e-4 && stick[1] < 2e-3);
                 }
-                // What the default leaves: nothing in most steps, and of a hard squeeze 5 mm/s in the median.
+                // The residual of the default: nothing in most steps, and 5 mm/s in the median of a hard squeeze.
                 ("random episodes", _) => {
                     assert!(
                         normal[0] < 1e-9 && stick[0] < 1e-9 && slide[0] < 1e-9 && normal[1] < 1e-3 && stick[1] < 1e-3

@@ -1,4 +1,4 @@
-//! What cameras see in an articulated world: a march along every ray, the arena, and the kit.
+//! Sight of cameras in an articulated world: a march along every ray, the arena, and the conformance checks.
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, Sensor, Sight};
@@ -53,7 +53,7 @@ pub(crate) fn turned(stream: &mut Stream) -> [f64; 4] {
     q.map(|x| x / n)
 }
 
-/// A scene with an eye, a few shapes on bodies and in the world, some of them without a colour.
+/// A scene with an eye, a few shapes on bodies and in the world, some of them without a color.
 pub(crate) fn scene(stream: &mut Stream) -> (Robot, Vec<Placed>) {
     let mut robot = Robot::new("scene");
     let (heading, ball) = (stream.range_f64(-3.1, 3.1), MassProperties::sphere(1.0, 0.1));
@@ -93,11 +93,12 @@ pub(crate) fn scene(stream: &mut Stream) -> (Robot, Vec<Placed>) {
     (robot, placed)
 }
 
-/// The colour that a march along a ray meets first: `Err` where that hangs on less than a tenth of a millimetre.
+/// Returns the first color on a march along a ray, or `Err` where the result depends on less than a tenth of a
+/// millimeter.
 fn marched(placed: &[Placed], from: [f64; 3], direction: [f64; 3]) -> Result<Option<usize>, ()> {
     const UNSURE: f64 = 1e-4;
     let seen: Vec<&Placed> = placed.iter().filter(|one| one.color.is_some()).collect();
-    // What one stands within is not seen.
+    // A body around the start is invisible.
     if seen.iter().any(|one| one.distance(from).abs() < UNSURE) {
         return Err(());
     }
@@ -119,7 +120,8 @@ fn marched(placed: &[Placed], from: [f64; 3], direction: [f64; 3]) -> Result<Opt
     Ok(None)
 }
 
-/// Whether a ray passes a shape within a tenth of a millimetre of its edge: its least distance on the way, searched in steps.
+/// Returns whether a ray passes a shape within a tenth of a millimeter of its edge: its least distance on the way,
+/// searched in steps.
 fn grazes(placed: &[Placed], from: [f64; 3], direction: [f64; 3]) -> bool {
     placed.iter().filter(|one| one.color.is_some()).any(|one| {
         // The distance to a convex shape is convex along a ray: a search by thirds finds its least value.
@@ -141,7 +143,7 @@ fn world(robot: &Robot) -> World<f32> {
     World::new(Model::new(robot, &Options { sight_height: HEIGHT, ..Options::default() }).unwrap())
 }
 
-/// One coloured shape that stays where it is, and a body to see it.
+/// One colored shape that stays where it is, and a body to see it.
 fn beside_an_eye(shape: Shape, at: Pose<f64>) -> World<f32> {
     let mut robot = Robot::new("one shape");
     let eye = Joint::floating(Pose::identity());
@@ -193,7 +195,7 @@ fn a_camera_sees_what_a_march_along_its_rays_meets() {
     assert!(unsure < scenes * RAYS as u32 / 100, "{unsure} rays left out");
 }
 
-/// The same balls as discs of the arena, and in the articulated world.
+/// Returns the balls as discs of the arena, and in the articulated world.
 #[test]
 fn the_arena_and_the_articulated_world_show_the_same() {
     let mut stream = Stream::new(8, Domain::General, 0, 0, 0);
@@ -224,7 +226,7 @@ fn the_arena_and_the_articulated_world_show_the_same() {
             scene.add_collider(collider.with_color(color));
         }
         let (rays, per_sector) = (15, 5);
-        // A ray within 10 micrometres of an edge, or two surfaces as near to each other, may be seen either way.
+        // A ray within 10 micrometers of an edge, or two surfaces as near to each other, may be seen either way.
         let unsure = (0..rays).any(|ray| {
             let [u, v] = Beam::in_view([0.0; 2], 1.2, ray, rays).direction.map(f64::from);
             let edge = |(at, radius): &([f64; 2], f64)| ((at[0] * v - at[1] * u).abs() - radius).abs() < 1e-5;
@@ -275,8 +277,9 @@ fn the_kit_finds_the_world_in_order() {
     assert!(checked > 100, "{checked}");
 }
 
-/// How far the cut of a capsule by the plane of sight is from a place: of the discs in which it cuts the balls about many points of
-/// the axis. With it comes by how much the capsule reaches the plane, less than 0 where there is no cut.
+/// Returns the distance of a place from the section of a capsule in the plane of sight. The section consists of discs,
+/// in which the plane cuts the balls about many points of the axis. The second number is the height by which the
+/// capsule reaches the plane, less than 0 without a section.
 fn cut_of_capsule(at: &Pose<f64>, radius: f64, half_length: f64, from: [f64; 2]) -> (f64, f64) {
     let (mut nearest, mut reach) = (f64::INFINITY, f64::NEG_INFINITY);
     for k in -2000..=2000 {
@@ -298,7 +301,7 @@ fn capsules_lying_and_tilted_are_as_far_as_their_cut() {
     let (mut met, mut missed) = ([0; 2], [0; 2]);
     for number in 0..600 {
         let lies = number % 2 == 0;
-        // The axis, z, along x, and then turned about the vertical; or anyhow.
+        // The axis, z, along x, and then turned about the vertical, or anyhow.
         let lying = std::f64::consts::FRAC_1_SQRT_2;
         let flat = Pose { position: [0.0; 3], rotation: [0.0, lying, 0.0, lying] };
         let heading = Pose::planar([0.0; 2], stream.range_f64(-3.1, 3.1));

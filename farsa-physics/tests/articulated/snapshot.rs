@@ -1,4 +1,5 @@
-//! A world is its state: what is saved in the middle of a grasp goes on with the same bits, and nothing else is remembered.
+//! A world is its state: a snapshot in the middle of a grasp continues with the same bits, and there is no other
+//! memory.
 
 use crate::common::{
     Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, model, put_in_the_palm, scene, start, stream,

@@ -105,7 +105,7 @@ fn a_sliding_ball_begins_to_roll_at_five_sevenths_of_its_speed() {
 
 #[test]
 fn on_a_slope_the_contact_slips_if_and_only_if_the_slope_is_steeper_than_friction() {
-    // A ball rolls down any slope; it slips where tan(angle) > 7/2 mu. A block of a prismatic-free body needs none of
+    // A ball rolls down any slope. It slips where tan(angle) > 7/2 mu. A block of a prismatic-free body needs none of
     // this: a box on four corners slips where tan(angle) > mu.
     for (mu, angle, slips) in [
         (0.5_f64, 24.0_f64, false),
@@ -155,7 +155,7 @@ fn a_ball_on_a_slope_slips_if_and_only_if_the_slope_is_steeper_than_seven_halves
         }
         let v = w.velocity_of(BodyId(0));
         let speeds = [length(v.linear[0], v.linear[2]), v.angular[1] * RADIUS];
-        // Half a second: rolling falls by 5/7 g sin; slipping by g (sin - mu cos), turned by the moment of mu g cos.
+        // Half a second: rolling falls by 5/7 g sin. Slipping by g (sin - mu cos), turned by the moment of mu g cos.
         let slips = sin > 3.5 * mu * cos;
         let rolling = 5.0 / 7.0 * 9.81 * sin * 0.5;
         let slipping = [9.81 * (sin - mu * cos) * 0.5, 2.5 * mu * 9.81 * cos * 0.5];
@@ -245,7 +245,7 @@ fn only_near_surfaces_are_looked_at() {
     let mut w = World::<f64>::new(Model::new(&robot, &options).unwrap());
     let h = 0.001;
     for speed in [0.0_f32, 0.5, 2.0] {
-        // What the bounds may close by within a step at this speed, turning included, and the way until the last step.
+        // The approach of the bounds within a step at this speed, turning included, and the way until the last step.
         let reach = options.margin + h * (f64::from(speed) + 1.5);
         let gap = reach + 9.0 * h * f64::from(speed);
         for (gap, near) in [(gap - 1e-5, 1), (gap + 1e-5, 0), (1.0, 0)] {
@@ -256,7 +256,7 @@ fn only_near_surfaces_are_looked_at() {
             assert!(!w.touches(PairId(0)));
         }
     }
-    // What rests on the plane is looked at all the time.
+    // A resting body on the plane is tested in every step.
     let mut w = world(&robot, 10);
     for _ in 0..20 {
         w.step();

@@ -1,4 +1,5 @@
-//! What the eyes of a camera with an image see in an articulated world: a march along every ray, the ports of rays, and the kit.
+//! Cameras with an image in an articulated world: a march along every ray, the ports of rays, and the conformance
+//! checks.
 
 use crate::common::{POSES, scene as tabletop};
 use crate::sight::{COLORS, Placed, scene, turned};
@@ -30,7 +31,8 @@ fn camera(stream: &mut Stream, size: [usize; 2]) -> Camera {
     Camera::new(BodyId(0), Pose { position: [0.02, -0.01, 0.03], rotation }, size, 1.4, RANGE).unwrap()
 }
 
-/// What a march along a ray meets first, its number and distance: `Err` where that hangs on less than a tenth of a millimetre.
+/// Returns number and distance of the first surface on a march along a ray, or `Err` where they depend on less than a
+/// tenth of a millimeter.
 fn marched(placed: &[Placed], from: [f64; 3], direction: [f64; 3]) -> Result<Option<(usize, f64)>, ()> {
     const UNSURE: f64 = 1e-4;
     let range = f64::from(RANGE);
@@ -58,7 +60,7 @@ fn marched(placed: &[Placed], from: [f64; 3], direction: [f64; 3]) -> Result<Opt
     }
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     if found.first().is_some_and(|(number, t)| {
-        // How deep the ray gets: a search for the least distance behind the place where it enters.
+        // The depth of the ray: a search for the least distance behind the place where it enters.
         let (mut low, mut high) = (*t, range + 2.0);
         let at = |t: f64| placed[*number].distance(place(t));
         for _ in 0..80 {
@@ -121,7 +123,7 @@ fn an_eye_sees_what_a_march_along_its_rays_meets() {
     assert!(unsure < scenes / 100, "{unsure} rays left out");
 }
 
-/// The first surface by the port of single rays, which knows no colours and culls nothing: the same bits.
+/// The first surface by the port of single rays, which has no colors and culls nothing, with the same bits.
 #[test]
 fn many_rays_are_single_rays() {
     let mut stream = Stream::new(18, Domain::General, 0, 0, 0);

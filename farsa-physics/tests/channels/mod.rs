@@ -1,4 +1,4 @@
-//! Every sensor and motor of `farsa_body` that asks for no plane, for a world of the main experiment's scene.
+//! Every sensor and motor of `farsa_body` that requests no plane, for a world of the main experiment's scene.
 
 use farsa_body::motors::{Muscles, ServoGroup, TorqueMotor};
 use farsa_body::ports::{

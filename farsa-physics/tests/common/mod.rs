@@ -1,4 +1,4 @@
-//! What several tests need: the scene of the main experiment, its starts, random commands, the words of a state.
+//! Shared parts of several tests: the scene of the main experiment, its starts, random commands, the words of a state.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 use farsa_body::actuators::Law;
@@ -147,18 +147,18 @@ pub(crate) fn first_point<R: Precision>(robot: &Robot, model: &Model<R>) -> usiz
     model.positions() + model.dofs() + 2 * robot.actuators.len()
 }
 
-/// What carries the palm of [`hand_and_sphere`].
+/// The carrier of the palm of [`hand_and_sphere`].
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Wrist {
     /// Nothing moves it.
     Fixed,
-    /// Three prismatic joints, along X, Y and Z; their slides weigh next to nothing.
+    /// Three prismatic joints, along X, Y and Z. Their slides weigh next to nothing.
     Sliding,
     /// The arm, without muscles.
     Limp,
 }
 
-/// The hand of the experiment at posture 0 (palm down, 0.2 m above the ground) and the sphere, no table; every joint of
+/// The hand of the experiment at posture 0 (palm down, 0.2 m above the ground) and the sphere, no table. Every joint of
 /// the hand has an actuator of this law.
 pub(crate) fn hand_and_sphere(wrist: Wrist, surface: Surface, law: Option<Law<f64>>) -> Robot {
     let arm = ArmAndHand { surface, ..ArmAndHand::default() };

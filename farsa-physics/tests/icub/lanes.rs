@@ -12,7 +12,7 @@ use crate::random::{Babble, SPEED, start};
 const WORLDS: usize = 16;
 /// Control steps of every lane.
 const STEPS: usize = 300;
-/// A lane begins anew every so often, not together with its neighbours.
+/// A lane begins again every so often, not together with its neighbors.
 const EPISODE_STEPS: usize = 120;
 
 /// The episode that begins in a lane before a step, if one does.

@@ -6,7 +6,7 @@ use farsa_body::robot::{Actuator, Robot};
 use farsa_body::robots::Icub;
 use farsa_num::{Domain, Stream};
 
-/// A largest commanded speed of velocity motors [rad/s], beyond what any experiment asks for.
+/// A largest commanded speed of velocity motors [rad/s], beyond what any experiment requests.
 pub(crate) const SPEED: f64 = 4.0;
 
 /// Places the joints at most this far from the posture [rad], within their limits, and at rest.
@@ -24,7 +24,7 @@ where
     world.finish_placement();
 }
 
-/// Where both forearms lie before the chest and meet: part of a joint's name, angles [deg].
+/// Postures in which both forearms touch in front of the chest: part of a joint's name, angles [deg].
 const MEETING: [(&str, [f64; 2]); 4] = [
     ("shoulder_pitch", [-60.0, -10.0]),
     ("shoulder_roll", [0.0, 40.0]),
@@ -32,8 +32,8 @@ const MEETING: [(&str, [f64; 2]); 4] = [
     ("elbow", [50.0, 106.0]),
 ];
 
-/// Random commands in one of several manners: uniform every step, extreme every step, and both held for a while; in every
-/// other six episodes positions of the arms are such that the arms meet.
+/// Random commands in one of several manners: uniform every step, extreme every step, and both held for a while. In
+/// every other six episodes the arms touch each other.
 #[derive(Clone)]
 pub(crate) struct Babble {
     stream: Stream,

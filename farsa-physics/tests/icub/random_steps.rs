@@ -58,11 +58,11 @@ impl Worst {
 struct Figures {
     /// Steps in which a pair of each kind touches.
     touching: [usize; 3],
-    /// Of torso, neck and arms, and of hands [rad/s].
+    /// The speeds of torso, neck and arms, and of hands [rad/s].
     speed: [Worst; 2],
-    /// The same, beyond a joint's limits [rad].
+    /// The overshoot of a joint's limits [rad].
     beyond: [Worst; 2],
-    /// Of the pairs of each kind [m].
+    /// The depth of the pairs of each kind [m].
     depth: [Worst; 3],
     /// Depth of a pair whose force is below 20 N [m].
     gentle: Worst,
@@ -160,7 +160,7 @@ fn babble(control: JointControl, commanded: f64, steps: usize) -> Figures {
     figures
 }
 
-/// What hands may come to.
+/// The bounds for hands.
 struct Bounds {
     /// [rad/s]
     speed: f64,
@@ -172,7 +172,7 @@ struct Bounds {
     share: f64,
 }
 
-/// Those of the arm and hand, which the other joints keep at any speed.
+/// The bounds for the arm and hand, which the other joints keep at any speed.
 const BOUNDS: Bounds = Bounds { speed: 100.0, beyond: 0.05, gentle: 2e-3, share: 1.0 };
 
 /// `speed` is the largest that is commanded to velocity motors [rad/s].
@@ -209,8 +209,9 @@ fn random_speeds_of_all_joints_break_nothing() {
     check_bounds(JointControl::Velocity, 1.0, &BOUNDS);
 }
 
-/// At four times that speed two arms press fingers between them with a kilonewton and more. In 10^6 steps a tip sank into its own palm by
-/// its radius, a third of the palm's thickness, two fingers by 2.1 mm after that, joints gave by 0.07 rad, one came to 113 rad/s.
+/// At four times that speed two arms press fingers between them with a kilonewton and more. In 10^6 steps a tip sank
+/// into its own palm by its radius, a third of the palm's thickness. Two fingers then sank by 2.1 mm, joints gave by
+/// 0.07 rad, and one reached 113 rad/s.
 #[test]
 fn fast_arms_press_fingers_no_further_than_that() {
     let crushed = Bounds { speed: 150.0, beyond: 0.1, gentle: 3e-3, share: 1.5 };

@@ -1,5 +1,5 @@
-//! The world of wheeled robots in rapier keeps what `farsa_body::testing` says that every world promises, tells sensors what
-//! the kinematic world tells, and refuses what it has not.
+//! The world of wheeled robots in rapier keeps the promises of `farsa_body::testing`. Its sensors read the values of
+//! the kinematic world, and it refuses unsupported parts.
 
 use farsa_body::motors::WheelVelocity;
 use farsa_body::ports::{Actuated, Arrange, BodyId, JointId, Joints, Kinematics, Sensor, Sight, Snapshot, World as _};
@@ -78,7 +78,7 @@ fn the_world_conforms() {
     }
 }
 
-/// What the same sensor reads in both worlds, which may be so far apart.
+/// Checks that a sensor has equal readings in both worlds, within a tolerance.
 fn same<S>(mut sensor: S, ours: &arena::World, theirs: &ArenaWorld, off: f32) -> Vec<f32>
 where
     S: Sensor<arena::World> + Sensor<ArenaWorld>,
@@ -91,7 +91,7 @@ where
     a
 }
 
-/// The same sensors and motors in both worlds, which tell them the same before anything has moved.
+/// Sensors and motors work in both worlds, and readings are equal before the first step.
 #[test]
 fn sensors_and_motors_work_as_in_the_kinematic_world() {
     let plain = ArenaScene::new(arena());
@@ -175,7 +175,7 @@ fn a_broken_world_tells_nan_and_is_cured() {
         world.restore(&broken);
         assert!(!world.is_finite(), "{name}: restored");
     }
-    // A wheel that is told nothing it can understand stands still.
+    // An invalid command stops a wheel.
     let mut world = fresh.clone();
     for motor in world.parts(0).motors {
         world.command(motor, [f32::NAN, 0.0]);

@@ -1,4 +1,4 @@
-//! How rigid robots drive, run into things and push blocks, beside the kinematic world.
+//! Driving, collisions and pushing of rigid robots, compared with the kinematic world.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 
@@ -41,7 +41,7 @@ fn speed(world: &ArenaWorld, body: BodyId) -> f32 {
     x.hypot(y)
 }
 
-/// How far apart two robots are and how much their headings differ [m, rad].
+/// Returns the distance of two robots and the difference of their headings [m, rad].
 fn apart(a: &Pose, b: &Pose) -> [f32; 2] {
     let [x, y] = [0, 1].map(|k| a.position[k] - b.position[k]);
     let turn = a.heading() - b.heading();
@@ -129,8 +129,8 @@ fn a_long_way_is_straight() {
     assert!(worst[0] < 0.03 && worst[1] < 0.01, "{worst:?}");
 }
 
-/// Motors lack speed in proportion to what they push, a hundredth of the greatest speed for all their torque, and wheels do not
-/// slip: beside that law, at any heading.
+/// The lag of motors is proportional to the pushed load, a hundredth of the greatest speed for the full torque, and
+/// wheels do not slip. The test compares with that law at any heading.
 #[test]
 fn a_load_slows_as_the_motors_law_says() {
     let robot = MobileRobot::e_puck();
@@ -160,7 +160,7 @@ fn a_load_slows_as_the_motors_law_says() {
 }
 
 /// Into a wall, a cylinder, a prism and another robot at full speed and at several angles: no deeper than half a
-/// millimetre per 0.1 m/s; head on it comes to rest, at a slant it slides along.
+/// millimeter per 0.1 m/s. Head on it stops, at a slant it slides along.
 #[test]
 fn what_it_runs_into_stops_it() {
     for robot in robots() {
@@ -177,7 +177,7 @@ fn what_it_runs_into_stops_it() {
             for _ in 0..80 {
                 drive(&mut world, &parts, [most; 2], 1);
                 let pose = world.pose(parts.body);
-                // Of the hull's middle: a robot that pushes leans back.
+                // The hull's middle, because a robot that pushes leans back.
                 let middle = pose.transform([0.0, 0.0, 0.5 * robot.height as f32]);
                 deepest = deepest.max(f64::from(middle[0]) + radius);
                 touched += u32::from(world.touches(PairId(0)));
@@ -220,7 +220,7 @@ fn what_it_runs_into_stops_it() {
     }
 }
 
-/// A block is pushed no faster than the robot drives, whatever it weighs and wherever it is met; friction stops it.
+/// A block is pushed no faster than the robot drives, whatever it weighs and wherever it is met, friction stops it.
 #[test]
 fn a_block_is_pushed_and_never_launched() {
     let robot = MobileRobot::e_puck();
@@ -256,7 +256,7 @@ fn a_block_is_pushed_and_never_launched() {
     assert!(worst < 1.15 * fastest, "{worst} m/s");
 }
 
-/// What its motors cannot push holds it: wheels of a strong motor spin, those of a weak one do not come up to speed.
+/// A load beyond its motors stops it: wheels of a strong motor spin, those of a weak one do not reach their speed.
 #[test]
 fn a_heavy_block_stays_where_it_is() {
     let robot = MobileRobot::e_puck();
@@ -277,9 +277,9 @@ fn a_heavy_block_stays_where_it_is() {
         let force = -world.pair_contact(PairId(0)).force[0];
         let weight = (chassis.mass * 9.81) as f32;
         println!("pushes with {force} N of a weight of {weight} N");
-        // Wheels that slip push with their grip, 0.8 of what is on them. That may be less than the weight, for a push at the
-        // height h puts h / (0.7 radius) of itself onto the rear skid, which has none, and more, for the block's friction, 0.3
-        // of the push, keeps the hull from rising.
+        // Slipping wheels push with their grip, 0.8 of the load on them. The load may be less than the weight, because
+        // a push at the height h puts h / (0.7 radius) of itself onto the rear skid without grip. It may be more,
+        // because the block's friction, 0.3 of the push, keeps the hull from rising.
         let low = 0.8 / (1.0 + 0.8 * 0.05 / (0.7 * robot.radius as f32));
         let range = if strong { [low, 0.8 / (1.0 - 0.8 * 0.3)] } else { [0.495, 0.505] };
         assert!((range[0]..range[1]).contains(&(force / weight)), "{force} N of {weight} N: not in {range:?}");
@@ -336,7 +336,8 @@ fn blocks_are_put_down_upright_and_at_rest() {
     assert!(apart(&pose, &world.pose(cube))[0] < 1e-4 && world.pose(cube).position[2].abs() < 1e-4);
 }
 
-/// The same commands, the same bits, also from a snapshot in another world; the control step may be divided otherwise.
+/// Returns the commands, the same bits, also from a snapshot in another world. The control step may be divided
+/// otherwise.
 #[test]
 fn finer_steps_come_to_the_same() {
     let robot = MobileRobot::khepera();

@@ -1,4 +1,4 @@
-//! The world of rapier keeps what `farsa_body::testing` says that every world promises.
+//! The world of rapier keeps the promises of `farsa_body::testing`.
 
 use crate::channels::channels_conform;
 use crate::common::{CLOSED, POSES, WRIST, Wrist, hand_and_sphere, scene};
@@ -51,7 +51,8 @@ fn a_hand_around_a_sphere_conforms() {
     assert_eq!(check_world(make, &Probe { steps: 96, ..Probe::for_robot(&robot) }), Ok(()));
 }
 
-/// What a motor does shows here in the bytes of a snapshot, packed into whole numbers: that commands are finite does not.
+/// The effect of a motor appears in the bytes of a snapshot, packed into integers, so whether commands are finite does
+/// not.
 #[test]
 fn sensors_and_motors_conform() {
     let robot = scene();

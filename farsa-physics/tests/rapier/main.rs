@@ -1,4 +1,4 @@
-//! The same robots and scenes in rapier.
+//! Robots and scenes of this crate in rapier.
 #![cfg(feature = "rapier")]
 #![allow(missing_docs, clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! The world of rapier against our articulated one and against closed forms; the figures beside the tolerances were
+//! The world of rapier against our articulated one and against closed forms. The figures next to the tolerances were
 //! measured.
 
 use crate::common::{CLOSED, POSES, SPHERES, WRIST, Wrist, ghost, hand_and_sphere, scene};
@@ -27,8 +27,8 @@ fn start<W: Arrange + Handles<Body = BodyId, Joint = JointId>>(world: &mut W) {
     world.finish_placement();
 }
 
-/// The largest difference of `joints` between rapier and the limit of our world (100 dynamics steps per control step),
-/// over a second under one command [rad], and at its end.
+/// Returns the largest difference of `joints` between rapier and the limit of our world (100 dynamics steps per control
+/// step), over a second under one command [rad], and the final one.
 fn joints_differ(joints: core::ops::Range<u16>, command: [f32; 2], options: Options) -> [f32; 2] {
     let robot = ghost(&scene());
     let fine = articulated::Options { substeps: 100, ..articulated::Options::default() };
@@ -53,8 +53,9 @@ fn joints_differ(joints: core::ops::Range<u16>, command: [f32; 2], options: Opti
 #[test]
 fn joints_move_as_ours_do() {
     let fine = Options { substeps: 100, ..Options::default() };
-    // Name, joints, command; tolerances over the way and at the end, as it is stepped by default and 25 times as fine.
-    // Our own world's 4 dynamics steps differ from their limit by 1.4 mrad (swing), 1.4 mrad (unequal) and 12 mrad (servo).
+    // Name, joints, command. Tolerances over the way and at the end, as it is stepped by default and 25 times as fine.
+    // Our own world's 4 dynamics steps differ from their limit by 1.4 mrad (swing), 1.4 mrad (unequal) and 12 mrad
+    // (servo).
     for (name, joints, command, usual, limit) in [
         ("swing", 0..7, [0.0, 0.0], [3e-3, 3e-3], [2e-4, 2e-4]),
         ("unequal activations", 0..7, [0.3, 0.1], [3e-3, 1e-3], [2e-4, 1e-4]),
@@ -105,7 +106,7 @@ fn a_pushed_arm_moves_as_ours_does() {
     assert!(way > 0.02 && apart < 0.02 * way, "{way} {apart}");
 }
 
-/// Two rods in a row, hinged about the y axis: mass, inertia, from hinge to centre and to the next hinge.
+/// Two rods in a row, hinged about the y axis: mass, inertia, from hinge to center and to the next hinge.
 const ROD: [f64; 4] = [0.2, 0.001, 0.13, 0.26];
 
 fn rods() -> Robot {
@@ -119,10 +120,10 @@ fn rods() -> Robot {
     robot
 }
 
-/// The hinges' angles after a second, let go at 1.2 and 0.3 rad, by steps of this time in double precision: v += h a,
-/// q += h v with (M + h C) a = f. C is 0 for semi-implicit Euler; in rapier it is what its `update_mass_matrix` sums up, the
-/// change of the centrifugal forces with the speeds, but with half of the lower rod's own rotation where the upper one's
-/// alone carries the hinge.
+/// Returns the hinges' angles after a second, released at 1.2 and 0.3 rad, by steps of this time in double precision: v
+/// += h a, q += h v with (M + h C) a = f. C is 0 for semi-implicit Euler. In rapier it is the sum of its
+/// `update_mass_matrix`, the change of the centrifugal forces with the speeds. That sum has half of the lower rod's
+/// rotation where the upper one's alone carries the hinge.
 fn swung(h: f64, coriolis: bool) -> [f64; 2] {
     let [m, inertia, l, length] = ROD;
     let (mut q, mut v) = ([f64::from(1.2_f32), f64::from(0.3_f32)], [0.0; 2]);
@@ -130,14 +131,14 @@ fn swung(h: f64, coriolis: bool) -> [f64; 2] {
         let (s1, c1) = sin_cos(q[0]);
         let (s2, c2) = sin_cos(q[0] + q[1]);
         let [w1, w2] = [v[0], v[0] + v[1]];
-        // From hinge to centre, from centre to hinge, from hinge to centre.
+        // From hinge to center, from center to hinge, from hinge to center.
         let arms = [[-l * s1, -l * c1], [-(length - l) * s1, -(length - l) * c1], [-l * s2, -l * c2]];
         let turned = |r: [f64; 2]| [r[1], -r[0]];
         let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
         let times = |a: [f64; 2], x: f64| [a[0] * x, a[1] * x];
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let reach = sum(sum(arms[0], arms[1]), arms[2]);
-        // Columns of the centres' Jacobians, their centripetal accelerations, and how these change with the speeds.
+        // Columns of the centers' Jacobians, their centripetal accelerations, and how these change with the speeds.
         let jacobians = [[turned(arms[0]), [0.0; 2]], [turned(reach), turned(arms[2])]];
         let first = times(arms[0], -w1 * w1);
         let second = sum(sum(first, times(arms[1], -w1 * w1)), times(arms[2], -w2 * w2));
@@ -175,7 +176,7 @@ fn rapier_takes_coriolis_forces_implicitly() {
         let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
         let apart = off(implicit, explicit);
         println!("{h}: rapier {:.1e}, ours {:.1e}; apart {apart:.1e} rad", off(found, implicit), off(own, explicit));
-        // Both differ from the limit by the order of the step; from their own rule by rounding alone.
+        // Both differ from the limit by the order of the step. From their own rule by rounding alone.
         assert!(off(own, explicit) < 1e-6 && apart > 5.0 * h, "{h}: {own:?} {explicit:?}, {apart}");
         assert!(off(found, implicit) < 1e-4 && off(found, implicit) < 0.02 * apart, "{h}: {found:?} {implicit:?}");
     }
@@ -221,7 +222,7 @@ fn what_is_put_elsewhere_keeps_its_speeds() {
     assert!(world.speed(JointId(0)) > -0.1);
 }
 
-/// A floating trunk, its centre of mass beside its origin, with a slide and a hinge on it, and a fixed head.
+/// Builds a floating trunk with its center of mass off its origin, a slide and a hinge on it, and a fixed head.
 fn floating() -> Robot {
     let mut robot = Robot::new("floating");
     let brick = |mass, at| MassProperties::cuboid(mass, [0.03, 0.05, 0.02]).placed(&Pose::at(at));
@@ -296,7 +297,7 @@ fn ball(surface: Surface) -> World {
 
 #[test]
 fn a_ball_rests_rolls_and_stops() {
-    // On the experiment's table it sinks 17 um; in rapier's own settings, made for persons, a centimetre.
+    // On the experiment's table it sinks 17 um. In rapier's own settings, made for persons, a centimeter.
     let mut world = World::new(&scene(), &Options::default()).unwrap();
     let [x, y] = SPHERES[2].map(|x| x as f32);
     world.place_body(Tabletop::SPHERE, Pose::at([x, y, 0.025]), Twist::default());
@@ -385,7 +386,7 @@ fn a_box_slips_if_and_only_if_the_slope_is_steeper_than_friction() {
 fn a_pinch_holds_the_sphere() {
     let arm = ArmAndHand::default();
     let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
-    // The sphere is pressed into the palm until the fingers have closed; then it hangs in them.
+    // The sphere is pressed into the palm until the fingers have closed. Then it hangs in them.
     let mut world = World::new(&robot, &Options { gravity: [0.0, 0.0, 2.0], ..Options::default() }).unwrap();
     let at = [WRIST[0] + 0.0775, WRIST[1], WRIST[2] - 0.0355].map(|x| x as f32);
     world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
@@ -410,7 +411,7 @@ fn a_pinch_holds_the_sphere() {
     let touching = (0..world.pairs()).filter(|p| world.touches(PairId(*p as u16))).count();
     println!("{touching} pairs touch; in 4 s it fell by {fell:e} m");
     assert!(touching >= 3 && fell.abs() < 1e-3);
-    // What the hand does to the sphere carries its weight.
+    // The force of the hand on the sphere carries its weight.
     let up: f32 = (0..world.pairs() as u16)
         .map(PairId)
         .map(|pair| (world.pair_bodies(pair), world.pair_contact(pair).force[2]))

@@ -1,4 +1,4 @@
-//! What a world of rapier does with numbers that are none, with damaged snapshots, and under random commands.
+//! The world of rapier with NaN, with damaged snapshots, and under random commands.
 
 use crate::common;
 use crate::common::{Babble, POSES, SPHERES, commands, drive, scene, stream};
@@ -125,7 +125,7 @@ fn what_cannot_be_built_is_refused() {
     assert!(matches!(error, RapierError::Model(ModelError::Robot(RobotError::Value { .. }))), "{error}");
 }
 
-/// Six thousand control steps; a hundred thousand where the environment has `FARSA_LONG`.
+/// Six thousand control steps. A hundred thousand where the environment has `FARSA_LONG`.
 #[test]
 fn random_commands_break_nothing() {
     let steps = if std::env::var_os("FARSA_LONG").is_some() { 100_000 } else { 6_000 };

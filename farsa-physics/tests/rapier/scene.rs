@@ -74,7 +74,7 @@ fn cylinders_and_hulls_stand_where_they_are_put() {
     scene.add(ground());
     let geometry = Geometry::Cylinder { radius: 0.03, half_length: 0.05 };
     let can = scene.add(SceneObject::movable("can", geometry, Pose::at([0.0, 0.0, 0.05]), 0.2));
-    // A pyramid on a square base; its centre of mass is a quarter of its height above that.
+    // A pyramid on a square base. Its center of mass is a quarter of its height above that.
     let corners =
         vec![[0.05, 0.05, 0.0], [0.05, -0.05, 0.0], [-0.05, 0.05, 0.0], [-0.05, -0.05, 0.0], [0.0, 0.0, 0.08]];
     let pyramid = scene.add(SceneObject::movable("pyramid", Geometry::Hull(corners), Pose::at([0.3, 0.0, 0.0]), 0.3));
@@ -84,7 +84,7 @@ fn cylinders_and_hulls_stand_where_they_are_put() {
         let pose = world.pose(body);
         assert!((pose.position[2] - height).abs() < 5e-4 && pose.rotation[3].abs() > 0.9999, "{body:?}: {pose:?}");
     }
-    // Turning about the centre of mass moves the origin.
+    // Turning about the center of mass moves the origin.
     let spin = Twist { linear: [0.0; 3], angular: [0.0, 2.0, 0.0] };
     world.place_body(pyramid, Pose::at([0.0, 0.0, 5.0]), spin);
     world.finish_placement();
@@ -95,7 +95,7 @@ fn cylinders_and_hulls_stand_where_they_are_put() {
     let centre = world.physics().bodies[body].center_of_mass();
     assert!((centre.z - 5.02).abs() < 1e-5, "{centre}");
     run(&mut world, 10);
-    // The centre's own horizontal speed was 2 * 0.02 m/s and stays.
+    // The center's own horizontal speed was 2 * 0.02 m/s and stays.
     let moved = world.physics().bodies[body].center_of_mass() - centre;
     assert!((moved.x - 0.004).abs() < 1e-5, "{moved}");
 }

@@ -38,12 +38,12 @@ pub(crate) struct Scene {
     pub(crate) steps: usize,
     pub(crate) joints: Vec<(JointId, f32)>,
     pub(crate) bodies: Vec<(BodyId, Pose<f32>, Twist<f32>)>,
-    /// Commands of the actuators from a control step on; between two of these they are interpolated.
+    /// Commands of the actuators from a control step on. Between two of these they are interpolated.
     pub(crate) commands: Vec<(usize, Vec<[f32; 2]>)>,
     pub(crate) watched: Vec<Watched>,
-    /// Of what is watched.
+    /// The unit of the observed quantities.
     pub(crate) unit: &'static str,
-    /// What is watched at a time [s], where a formula tells it: compared with instead of MuJoCo's limit.
+    /// The observed quantities at a time [s] by a formula, which replaces MuJoCo's limit.
     pub(crate) formula: Option<fn(f64) -> Vec<f64>>,
 }
 
@@ -89,7 +89,7 @@ impl Scene {
         a.iter().zip(b).map(|(a, b)| [0, 1].map(|k| a[k] + (b[k] - a[k]) * share)).collect()
     }
 
-    /// What is watched of a world.
+    /// Returns the observed quantities of a world.
     fn look(&self, world: &impl Stage) -> Vec<f64> {
         let look = |watched: &Watched| match *watched {
             Watched::Joint(joint) => world.position(joint),
@@ -99,7 +99,7 @@ impl Scene {
         self.watched.iter().map(look).map(f64::from).collect()
     }
 
-    /// Plays the scene; what is watched after every control step.
+    /// Plays the scene. The observed quantities after every control step.
     pub(crate) fn play(&self, world: &mut impl Stage) -> Vec<Vec<f64>> {
         world.clear();
         for (joint, q) in &self.joints {
@@ -170,7 +170,7 @@ fn surface(friction: f64) -> Surface {
     Surface { friction, rolling_friction: 0.0, stiffness: 1e5, damping: 300.0 }
 }
 
-/// So many rods in a row, hinged about the y axis, released level.
+/// Builds rods in a row, hinged about the y axis, released level.
 fn pendulum(name: &'static str, model: &'static str, rods: usize) -> Scene {
     let mut robot = Robot::new(model);
     let rod = MassProperties::capsule(0.2, 0.01, 0.12).placed(&Pose::at([0.0, 0.0, -0.13]));
@@ -186,7 +186,7 @@ fn pendulum(name: &'static str, model: &'static str, rods: usize) -> Scene {
     Scene { joints, watched, unit: "rad", ..Scene::new(name, model, robot, 1.0) }
 }
 
-/// The arm at its first start, nothing touches; muscles under one command, the hand's servos this far to their ends.
+/// The arm at its first start, nothing touches. Muscles under one command, the hand's servos this far to their ends.
 fn arm(name: &'static str, joints: core::ops::Range<u16>, muscles: [f32; 2], closed: f32) -> Scene {
     let robot = ghost(&scene());
     let start = POSES[0].into_iter().enumerate();
@@ -295,7 +295,7 @@ fn pinch() -> Scene {
     Scene { bodies, commands: vec![(0, commands)], watched, ..Scene::new("pinch", "pinch", robot, 2.0) }
 }
 
-/// The experiment's hand on one joint in the place of the arm, which a servo moves, with the sphere and the table.
+/// Builds the experiment's hand on one joint instead of the arm, which a servo moves, with the sphere and the table.
 fn hand(name: &'static str, wrist: &Joint, law: Law<f64>) -> Robot {
     let mut robot = Tabletop::default().scene(&ArmAndHand::default()).unwrap();
     name.clone_into(&mut robot.name);
@@ -326,7 +326,7 @@ fn in_the_palm() -> Vec<Watched> {
     [0, 1, 2].map(|axis| Watched::Within(Tabletop::SPHERE, ArmAndHand::PALM, axis)).to_vec()
 }
 
-/// The sphere lies in the palm; the hand closes, turns over and holds it.
+/// The sphere lies in the palm. The hand closes, turns over and holds it.
 fn power_grasp() -> Scene {
     let axis = Joint::revolute("", [1.0, 0.0, 0.0], Pose::identity(), ENDLESS).with_armature(0.01);
     let robot = hand("power grasp", &axis, servo(50.0, 2.0, 50.0));

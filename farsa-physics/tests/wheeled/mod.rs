@@ -15,24 +15,24 @@ pub(crate) fn robots() -> [MobileRobot; 3] {
     [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()]
 }
 
-/// How far a world may be from what is expected.
+/// The tolerance between a world and the expectation.
 pub(crate) struct Tolerance {
     /// Between the hull and its height at rest [m].
     pub(crate) height: f64,
-    /// Of distances and angles that are driven, as a part of them.
+    /// The tolerance of driven distances and angles, as a part of them.
     pub(crate) drive: f64,
 }
 
 /// A robot as a body on wheels, in closed form.
 struct Vehicle {
     mass: f64,
-    /// Of all of it, about the vertical axis between the wheels.
+    /// The inertia of all, about the vertical axis between the wheels.
     turning: f64,
-    /// Of a wheel, about its axle.
+    /// The inertia of a wheel, about its axle.
     wheel: f64,
     radius: f64,
     track: f64,
-    /// Of each wheel's motor: a quarter of what it has [N m].
+    /// The torque of each wheel's motor: a quarter of its largest [N m].
     torque: f64,
 }
 
@@ -56,12 +56,12 @@ impl Vehicle {
         }
     }
 
-    /// How fast both wheels' torques make it [m/s2]: its mass and what turns with the wheels resist.
+    /// Returns the acceleration by both wheels' torques [m/s2], against its mass and the inertia of the wheels.
     fn ahead(&self) -> f64 {
         2.0 * self.torque / self.radius / (self.mass + 2.0 * self.wheel / (self.radius * self.radius))
     }
 
-    /// How fast opposite torques make it turn [rad/s2].
+    /// Returns the turning acceleration by opposite torques [rad/s2].
     fn aside(&self) -> f64 {
         let across = self.track / self.radius;
         self.torque * across / (self.turning + 0.5 * self.wheel * across * across)
@@ -76,7 +76,8 @@ fn stance<W: Kinematics + Handles<Body = BodyId>>(world: &W) -> ([f64; 2], f64, 
     ([x, y], z, (up[0] * up[0] + up[1] * up[1]).sqrt())
 }
 
-/// Lets the robot come to rest, and drives it by these torques of the left and the right wheel; how it stands after every step.
+/// Lets the robot come to rest, and drives it by these torques of the left and the right wheel. Returns its pose after
+/// every step.
 fn drive<W>(world: &mut W, torques: [f64; 2], mut look: impl FnMut(&W))
 where
     W: World + Actuated + Arrange + Kinematics + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
@@ -94,8 +95,9 @@ where
     }
 }
 
-/// It stands on its wheels (0.05 mm deep, as in MuJoCo 4.0.0), goes straight ahead by equal torques and turns where it stands by
-/// opposite ones, as far as the closed form says (0.8 % further in half a second, as in MuJoCo), and neither tips nor sinks.
+/// The robot rests on its wheels (0.05 mm deep, as in MuJoCo 4.0.0), drives straight ahead by equal torques and turns
+/// on the spot by opposite ones. Both agree with the closed form (0.8 % further in half a second, as in MuJoCo), and
+/// the robot neither tips nor sinks.
 pub(crate) fn check<W>(mut world: impl FnMut(&Robot) -> W, tolerance: &Tolerance)
 where
     W: World + Actuated + Arrange + Kinematics + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
@@ -127,7 +129,7 @@ where
             let ahead = 0.5 * (left + right) * vehicle.ahead() * passed;
             let turned = 0.5 * (right - left) * vehicle.aside() * passed;
             println!("{name} {left} {right}: {x:.5} of {ahead:.5} m, aside {y:.1e} m, {heading:.4} of {turned:.4} rad");
-            // What it comes to while it stands and tilts: less than a millimetre.
+            // The drift while it rests and tilts: less than a millimeter.
             let off = tolerance.drive * ahead.abs() + 1e-3;
             assert!((x - ahead).abs() < off && y.abs() < 1e-3, "{name}, {torques:?}: at {x}, {y}, not {ahead} m");
             let off = tolerance.drive * turned.abs() + 0.01;
