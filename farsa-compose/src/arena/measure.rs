@@ -27,6 +27,7 @@ pub(crate) enum Measure {
     Progress([f64; 2]),
     Position([f64; 2]),
     WheelSpeed,
+    WheelDifference,
     StraightOn,
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
@@ -98,6 +99,7 @@ impl Measure {
                 return Err(source.wrong(path, "is for robots with joints; this one is on wheels"));
             }
             RewardKind::WheelSpeed {} => Measure::WheelSpeed,
+            RewardKind::WheelDifference {} => Measure::WheelDifference,
             RewardKind::StraightOn {} => Measure::StraightOn,
             RewardKind::Sensor { sensor } => {
                 let channels = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);

@@ -112,9 +112,10 @@ impl Scene {
         let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
         let apart = BESIDE + 3.0 * widest;
         for (number, robot) in robots.iter().enumerate() {
-            arena.add_robot(robot.clone(), [width + apart * (number + 1) as f64, 0.0], 0.0);
+            arena.add_robot(robot.clone(), [width + BESIDE + apart * number as f64, 0.0], 0.0);
         }
-        let mut x = width + apart * (robots.len() + 1) as f64;
+        let mut x = width + BESIDE + apart * robots.len().saturating_sub(1) as f64;
+        let mut last_reach = 0.0;
         let (mut built, mut blocks) = (Vec::new(), Vec::new());
         for (index, object) in document.objects.iter().enumerate() {
             let path = format!("/objects/{index}/name");
@@ -131,14 +132,15 @@ impl Scene {
                     return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
             };
-            x += BESIDE + reach;
+            // In rapier the order of contacts, and so the last bits, depend on these first places.
+            x += (BESIDE + 2.0 * reach).max(last_reach + reach);
+            last_reach = reach;
             let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), source));
             let at = at.transpose()?;
             if let Some(at) = at.filter(|_| !object.shines()) {
                 within_walls(document, at, &format!("/objects/{index}/at"), source)?;
             }
             let at = at.unwrap_or([x, 0.0]);
-            x += reach;
             if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
                 return Err(source.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
             }

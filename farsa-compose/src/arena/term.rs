@@ -172,6 +172,10 @@ impl Term {
                 let [left, right] = wheels();
                 0.5 * (left.abs() + right.abs())
             }
+            Measure::WheelDifference => {
+                let [left, right] = parts.wheels.map(|wheel| f64::from(world.speed(wheel)));
+                (right - left).abs()
+            }
             // 1 - |l - r| / 2
             Measure::StraightOn => {
                 let [left, right] = wheels();

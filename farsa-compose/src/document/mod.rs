@@ -95,6 +95,9 @@ pub struct Document {
     /// Objectives and measures for strategies that use more than the fitness.
     #[serde(default)]
     pub behaviour: BehaviourOfTerms,
+    /// Parts that the test protocol `lesions` cuts, by default `parts`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesions: Option<Lesions>,
     /// Contents of the files that other keys name, by name. The text of a run contains them.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
@@ -129,6 +132,16 @@ pub struct ConditionOfRuns {
     /// Changed settings, by their full keys in quotes.
     #[serde(default)]
     pub settings: BTreeMap<String, serde_json::Value>,
+}
+
+/// Parts that lesions cut, one in each case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lesions {
+    /// Each input.
+    Channels,
+    /// Each sensor with all its inputs, and each neuron.
+    Parts,
 }
 
 /// Encoding of parameters in bits.

@@ -14,6 +14,9 @@ pub struct Motor {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
+    /// Names of the channels, in the order of the network's outputs, by default the name with a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channels: Option<Vec<String>>,
     /// Enables the motor. The network has no outputs for a disabled one.
     #[serde(default = "yes")]
     pub enabled: bool,

@@ -12,6 +12,9 @@ pub struct Reward {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
+    /// Name in outcomes and recordings, by default `name`, in notes after the word "measured".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// Factor of the term. A negative one makes it a cost. With 0 it is only measured and not part of the fitness.
     #[serde(default = "one")]
     #[schemars(range(min = -1e9, max = 1e9))]
@@ -164,6 +167,8 @@ pub enum RewardKind {
     },
     /// Mean speed of the wheels, as a share of the greatest speed: 0 to 1.
     WheelSpeed {},
+    /// Difference of the wheel speeds, without its sign [rad/s].
+    WheelDifference {},
     /// Similarity of the wheel speeds: 1 equal .. 0 opposite.
     StraightOn {},
     /// Largest value of a sensor's channels.

@@ -198,6 +198,7 @@ fn measure(
         RewardKind::Angle { .. }
         | RewardKind::WheelSpeed {}
         | RewardKind::StraightOn {}
+        | RewardKind::WheelDifference {}
         | RewardKind::InArea { .. }
         | RewardKind::NearOthers {}
         | RewardKind::Food {}

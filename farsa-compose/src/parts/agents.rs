@@ -38,7 +38,7 @@ impl Agents {
         let robots = groups.robots();
         let networks = vec![NormalisedController::new(spec.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * spec.inputs.len()], vec![0.0; robots * spec.outputs.len()]);
-        let interventions = Arc::new(interventions(&document.network, &spec));
+        let interventions = Arc::new(interventions(&document, &spec));
         let document = Arc::new(document);
         Self { document, spec, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
     }
@@ -106,7 +106,7 @@ impl Agents {
                 Schema { neurons: neurons.collect(), ..schema }
             }
         };
-        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&tally.name).group("term"));
+        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(tally.label()).group("term"));
         let fitness = Channel::new("fitness so far").group("fitness");
         Schema { scalars: scalars.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
     }

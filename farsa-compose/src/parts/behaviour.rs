@@ -4,17 +4,15 @@ use farsa_lab::{Behaviour, Error, Note, Outcome, Parameter};
 
 use crate::check::source::Source;
 use crate::document::BehaviourOfTerms;
+use crate::parts::tally::Tally;
 
 /// Terms that are objectives or measures, from the notes of outcomes.
 #[derive(Clone, Debug)]
 pub(crate) struct TermBehaviour {
     objectives: Vec<(String, f64)>,
     descriptors: Vec<Parameter>,
-}
-
-/// Returns the name of the note with a term before its weight.
-pub(crate) fn note_of(term: &str) -> String {
-    format!("measured {term}")
+    /// The terms of objectives and then of measures, with the names of their notes.
+    terms: Vec<(usize, String)>,
 }
 
 impl TermBehaviour {
@@ -22,33 +20,35 @@ impl TermBehaviour {
     ///
     /// # Errors
     /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for an empty range.
-    pub(crate) fn new(behaviour: &BehaviourOfTerms, names: &[String], source: &Source) -> Result<Option<Self>, Error> {
-        let known = |name: &String, path: String| {
-            let term = names.iter().find(|known| *known == name).cloned();
-            term.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))
+    pub(crate) fn new(behaviour: &BehaviourOfTerms, tallies: &[Tally], source: &Source) -> Result<Option<Self>, Error> {
+        let mut terms = Vec::new();
+        let mut term = |name: &String, path: String| {
+            let names = tallies.iter().map(|tally| tally.name.as_str());
+            let number = tallies.iter().position(|tally| tally.name == *name);
+            let number = number.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names))?;
+            terms.push((number, tallies[number].note()));
+            Ok::<_, Error>(tallies[number].label().to_owned())
         };
-        let objectives = behaviour.objectives.iter().enumerate().map(|(index, objective)| {
-            let name = known(&objective.term, format!("/behaviour/objectives/{index}/term"))?;
-            Ok((name, if objective.less { -1.0 } else { 1.0 }))
-        });
-        let descriptors = behaviour.descriptors.iter().enumerate().map(|(index, descriptor)| {
+        let mut objectives = Vec::new();
+        for (index, objective) in behaviour.objectives.iter().enumerate() {
+            let label = term(&objective.term, format!("/behaviour/objectives/{index}/term"))?;
+            objectives.push((label, if objective.less { -1.0 } else { 1.0 }));
+        }
+        let mut descriptors = Vec::new();
+        for (index, descriptor) in behaviour.descriptors.iter().enumerate() {
             let path = format!("/behaviour/descriptors/{index}");
             let [low, high] = descriptor.range;
             if low >= high {
                 return Err(source.wrong(&format!("{path}/range"), format!("{low} to {high} does not rise")));
             }
-            Ok(Parameter::new(known(&descriptor.term, format!("{path}/term"))?, descriptor.range))
-        });
-        let objectives = objectives.collect::<Result<Vec<_>, Error>>()?;
-        let descriptors = descriptors.collect::<Result<Vec<_>, Error>>()?;
-        let says = !objectives.is_empty() || !descriptors.is_empty();
-        Ok(says.then_some(Self { objectives, descriptors }))
+            descriptors.push(Parameter::new(term(&descriptor.term, format!("{path}/term"))?, descriptor.range));
+        }
+        Ok((!terms.is_empty()).then_some(Self { objectives, descriptors, terms }))
     }
 
     /// Returns true if a term is an objective or a measure.
-    pub(crate) fn looks_at(&self, name: &str) -> bool {
-        let objectives = self.objectives.iter().map(|(name, _)| name.as_str());
-        objectives.chain(self.descriptors.iter().map(|descriptor| descriptor.name.as_str())).any(|known| known == name)
+    pub(crate) fn looks_at(&self, number: usize) -> bool {
+        self.terms.iter().any(|(term, _)| *term == number)
     }
 }
 
@@ -63,16 +63,15 @@ impl Behaviour for TermBehaviour {
     }
 
     fn describe(&self, trials: &[Outcome]) -> Vec<f64> {
-        let of_trial = |trial: &Outcome, name: &str| {
-            let name = note_of(name);
-            let note = trial.notes.iter().find(|(known, _)| **known == name).map(|(_, note)| note);
+        let measure = |trial: &Outcome, name: &str| {
+            let note = trial.notes.iter().find(|(note, _)| *note == name).map(|(_, note)| note);
             if let Some(Note::Number(value)) = note { *value } else { f64::NAN }
         };
         let mean = |name: &str| {
-            let sum: f64 = trials.iter().map(|trial| of_trial(trial, name)).sum();
+            let sum: f64 = trials.iter().map(|trial| measure(trial, name)).sum();
             sum / trials.len().max(1) as f64
         };
-        let objectives = self.objectives.iter().map(|(name, sign)| sign * mean(name));
-        objectives.chain(self.descriptors.iter().map(|descriptor| mean(&descriptor.name))).collect()
+        let signs = self.objectives.iter().map(|(_, sign)| *sign).chain(std::iter::repeat(1.0));
+        self.terms.iter().zip(signs).map(|((_, note), sign)| sign * mean(note)).collect()
     }
 }

@@ -3,23 +3,25 @@
 use farsa_lab::Interventions;
 use farsa_nn::Ablatable as _;
 
-use crate::document::{Network, NetworkKind};
+use crate::document::{Document, Lesions, Network, NetworkKind};
 use crate::parts::blocks;
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
 
 /// Returns the protocols: `lesions` of each sensor and neuron, unless the network has no neurons, and `noise` on all
 /// inputs.
-pub(crate) fn interventions(network: &Network, spec: &NetworkSpec) -> Interventions {
-    let NetworkSpec { sensors, inputs, outputs, network: own, .. } = spec;
-    let interventions = Interventions::default();
-    let interventions = if own.neurons() == 0 {
-        interventions
+pub(crate) fn interventions(document: &Document, spec: &NetworkSpec) -> Interventions {
+    let NetworkSpec { sensors, inputs, outputs, network, .. } = spec;
+    let protocols = Interventions::default();
+    let protocols = if document.lesions == Some(Lesions::Channels) {
+        protocols.with_lesions(inputs.iter().enumerate().map(|(number, name)| (name, number..number + 1)), [])
+    } else if network.neurons() == 0 {
+        protocols
     } else {
         let sensors = sensors.iter().map(|(name, [first, end])| (name, *first..*end));
-        interventions.with_lesions(sensors, neurons(network, own, inputs.len(), outputs))
+        protocols.with_lesions(sensors, neurons(&document.network, network, inputs.len(), outputs))
     };
-    interventions.with_noise(&Interventions::NOISE)
+    protocols.with_noise(&Interventions::NOISE)
 }
 
 /// Names the neurons that can be silenced. Neurons of inputs are excluded, because a cut sensor silences them.

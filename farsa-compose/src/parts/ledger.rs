@@ -8,7 +8,7 @@ use farsa_num::Scalar;
 
 use crate::check::source::Source;
 use crate::document::{Condition, Document, Ending, Trials};
-use crate::parts::behaviour::{TermBehaviour, note_of};
+use crate::parts::behaviour::TermBehaviour;
 use crate::parts::groups::Groups;
 use crate::parts::tally::Tally;
 use crate::parts::wanted::Wanted;
@@ -59,13 +59,13 @@ impl Ledger {
         for (number, tally) in tallies.iter_mut().enumerate() {
             tally.late = tally.may_be_late() && !of_steps[number] && !watched.contains(&number);
         }
-        let behaviour = TermBehaviour::new(&document.behaviour, rewards, source)?;
-        let noted = tallies.iter().enumerate().filter(|(_, tally)| {
-            tally.is_only_measured() || behaviour.as_ref().is_some_and(|behaviour| behaviour.looks_at(&tally.name))
+        let behaviour = TermBehaviour::new(&document.behaviour, &tallies, source)?;
+        let noted = tallies.iter().enumerate().filter(|(number, tally)| {
+            tally.is_only_measured() || behaviour.as_ref().is_some_and(|behaviour| behaviour.looks_at(*number))
         });
         let paid: Vec<usize> = (0..tallies.len()).filter(|number| !tallies[*number].is_only_measured()).collect();
         let paid = if paid.is_empty() { (0..tallies.len()).collect() } else { paid };
-        let notes = noted.map(|(number, tally)| (number, lasting(&note_of(&tally.name)))).collect();
+        let notes = noted.map(|(number, tally)| (number, lasting(&tally.note()))).collect();
         Ok(Self {
             tallies,
             success,
@@ -135,7 +135,7 @@ impl Ledger {
 
     /// Returns the names of the fitness terms.
     pub(crate) fn names(&self) -> Vec<String> {
-        self.paid().map(|tally| tally.name.clone()).collect()
+        self.paid().map(|tally| tally.label().to_owned()).collect()
     }
 
     /// Returns the outcome of the trial.

@@ -3,7 +3,7 @@
 use farsa_lab::Error;
 
 use crate::check::source::Source;
-use crate::document::{Document, Motor, MotorKind};
+use crate::document::{Document, MotorKind};
 use crate::parts::channel_quantity::changes;
 use crate::parts::ends::Ends;
 use crate::parts::network::AnyNetwork;
@@ -64,8 +64,8 @@ impl NetworkSpec {
                 return Err(source.wrong(&format!("/{list}"), why));
             }
         }
-        let inputs: Vec<String> = sensors.iter().flat_map(channel_names).collect();
-        let outputs = output_names(document, &motors);
+        let inputs = input_names(document, &sensors, source)?;
+        let outputs = output_names(document, &motors, source)?;
         let ends = Ends { inputs: &inputs, outputs: &outputs, sensors: &sensors, motors: &motors, absent: &absent };
         let network = AnyNetwork::new(document, ends, source)?;
         let parameters = network.parameters(&document.network, ends);
@@ -103,16 +103,44 @@ fn channel_names((name, [first, end]): &(String, [usize; 2])) -> Vec<String> {
     }
 }
 
-/// Names the outputs. Wheels have words instead of numbers.
-fn output_names(document: &Document, motors: &Spans) -> Vec<String> {
-    let enabled = document.motors.iter().filter(|motor| motor.enabled);
-    let names = |(motor, span): (&Motor, &(String, [usize; 2]))| {
+/// Names the inputs, by default with numbers.
+fn input_names(document: &Document, spans: &Spans, source: &Source) -> Result<Vec<String>, Error> {
+    let sensors = document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled).zip(spans);
+    let names = sensors.map(|((index, sensor), span)| {
+        given_names(sensor.channels.as_ref(), channel_names(span), &format!("/sensors/{index}/channels"), source)
+    });
+    Ok(names.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// Names the outputs. By default wheels have words instead of numbers.
+fn output_names(document: &Document, spans: &Spans, source: &Source) -> Result<Vec<String>, Error> {
+    let motors = document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled).zip(spans);
+    let names = motors.map(|((index, motor), span)| {
         let with = |words: &[&str]| words.iter().map(|word| format!("{} {word}", span.0)).collect::<Vec<_>>();
-        match &motor.kind {
+        let names = match &motor.kind {
             MotorKind::Wheels {} => with(&["left", "right"]),
             MotorKind::SpeedAndTurn { .. } => with(&["speed", "turn"]),
             _ => channel_names(span),
+        };
+        given_names(motor.channels.as_ref(), names, &format!("/motors/{index}/channels"), source)
+    });
+    Ok(names.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// Returns the names that a document gives to channels, or the default names.
+///
+/// # Errors
+/// [`Error::Setting`] for another number of names than of channels.
+fn given_names(
+    given: Option<&Vec<String>>,
+    names: Vec<String>,
+    path: &str,
+    source: &Source,
+) -> Result<Vec<String>, Error> {
+    match given {
+        Some(given) if given.len() != names.len() => {
+            Err(source.wrong(path, format!("has {} names for {} channels", given.len(), names.len())))
         }
-    };
-    enabled.zip(motors).flat_map(names).collect()
+        given => Ok(given.cloned().unwrap_or(names)),
+    }
 }

@@ -11,6 +11,7 @@ use crate::parts::groups::Groups;
 #[derive(Clone, Debug)]
 pub(crate) struct Tally {
     pub(crate) name: String,
+    label: Option<String>,
     weight: f64,
     over: Over,
     /// Number of an earlier term that must be positive.
@@ -70,6 +71,7 @@ impl Tally {
         });
         Ok(Self {
             name: names[number].clone(),
+            label: reward.label.clone(),
             weight: reward.weight,
             over: reward.over,
             during: during.transpose()?,
@@ -145,6 +147,16 @@ impl Tally {
             Over::Most if self.most == f64::NEG_INFINITY => 0.0,
             Over::Most => self.most,
         }
+    }
+
+    /// Returns the name in outcomes and recordings.
+    pub(crate) fn label(&self) -> &str {
+        self.label.as_ref().unwrap_or(&self.name)
+    }
+
+    /// Returns the name of the note with the total before the weight.
+    pub(crate) fn note(&self) -> String {
+        self.label.clone().unwrap_or_else(|| format!("measured {}", self.name))
     }
 
     /// Returns true for a term without weight.
