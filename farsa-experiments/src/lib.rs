@@ -2,15 +2,13 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod aggregation;
-pub mod braitenberg;
 pub mod compositional_instructions;
-pub mod discrimination;
 pub mod double_pole;
+mod embedded;
 pub mod foraging;
 mod icub_limits;
 pub mod icub_reach;
 pub mod icub_reach_grasp;
-mod infrared;
 pub mod kinesthetic_grasp;
 pub mod minimal_cognition;
 pub mod predator_prey;
@@ -24,10 +22,9 @@ mod wheeled;
 mod worlds;
 
 pub use aggregation::Aggregation;
-pub use braitenberg::Braitenberg;
 pub use compositional_instructions::CompositionalInstructions;
-pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use double_pole::DoublePole;
+pub use embedded::{BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment};
 pub use foraging::Foraging;
 pub use icub_reach::IcubReach;
 pub use icub_reach_grasp::IcubReachGrasp;
@@ -42,7 +39,7 @@ pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
-/// What the command `farsa` is over: the experiments, all strategies, and files that describe experiments.
+/// The laboratory of the command `farsa`: the experiments, all strategies, and files that describe experiments.
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     let files = farsa_compose::FILES;
     #[cfg(feature = "command")]
@@ -61,9 +58,9 @@ pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
         &IcubReach,
         &IcubReachGrasp,
         &KinestheticGrasp,
-        &Discrimination,
-        &DiscriminationCylinders,
-        &Braitenberg,
+        &DISCRIMINATION,
+        &DISCRIMINATION_CYLINDERS,
+        &BRAITENBERG,
         &MinimalCognition,
         &DoublePole,
         &Foraging,

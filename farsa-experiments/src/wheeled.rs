@@ -1,13 +1,10 @@
-//! What is recorded and exported of wheeled robots in every experiment alike.
+//! Recording and export of wheeled robots in all experiments.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{BodyId, Handles, Kinematics};
 use farsa_body::robots::MobileRobot;
-use farsa_body::sensors::infrared;
 use farsa_lab::{Evaluation, Intervention, Interventions, MotorExport, SensorExport, SensorReading, Task};
 use farsa_view::Schema;
-
-use crate::infrared::settings::InfraredModel;
 
 /// Records what was sensed and done in a step, and where bodies are after it.
 ///
@@ -42,10 +39,10 @@ pub(crate) fn layer_protocols(schema: &Schema) -> Interventions {
     Interventions::default().with_lesions(sensors, []).with_noise(&Interventions::NOISE)
 }
 
-/// What is done to such a layer in an evaluation; protocols are made only where a case is asked for.
+/// The change of such a layer in an evaluation. Protocols are made only for a case.
 pub(crate) fn applied(task: &impl Task, evaluation: &Evaluation<'_>) -> Intervention {
-    let all = evaluation.case.map(|_| layer_protocols(&task.info().schema)).unwrap_or_default();
-    all.applied(evaluation).into_owned()
+    let protocols = evaluation.case.map(|_| layer_protocols(&task.info().schema)).unwrap_or_default();
+    protocols.applied(evaluation).into_owned()
 }
 
 /// The infrared sensors of these names, which look along these angles \[rad\], as another program reads them.
@@ -53,16 +50,11 @@ pub(crate) fn infrared_exports<'a>(
     names: impl IntoIterator<Item = String> + 'a,
     angles: &'a [f64],
     robot: &MobileRobot,
-    model: &InfraredModel,
 ) -> impl Iterator<Item = SensorExport> + 'a {
-    let (linear, [zero, one]) = match model {
-        InfraredModel::Rays => (true, [robot.infrared.range, 0.0]),
-        InfraredModel::Analytic => (false, infrared::InfraredModel::WALL_ENDS),
-        InfraredModel::Sampled(_) => (false, [robot.infrared.range, 0.0]),
-    };
+    let range = robot.infrared.range;
     names.into_iter().zip(angles).map(move |(name, angle)| {
         let quantity = format!("distance of a wall from the hull at {:+.1} degrees, left positive", angle.to_degrees());
-        SensorExport { name, reads: SensorReading::Quantity { quantity, unit: "m", zero, one, linear } }
+        SensorExport { name, reads: SensorReading::Quantity { quantity, unit: "m", zero: range, one: 0.0, linear: true } }
     })
 }
 

@@ -4,13 +4,13 @@ use std::str::FromStr;
 
 use farsa_lab::Error;
 
-/// What moves the bodies of an experiment that has a choice.
+/// The physics of an experiment that has a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Engine {
     /// Our articulated world, `farsa_physics::articulated`.
     #[default]
     Articulated,
-    /// rapier, `farsa_physics::rapier`; only where the crate was built with the feature of that name.
+    /// rapier, `farsa_physics::rapier`, only in builds with the feature of that name.
     Rapier,
 }
 
@@ -39,42 +39,12 @@ pub(crate) fn missing(name: &str) -> Error {
     ))
 }
 
-/// What moves the wheeled robots of an experiment that has a choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum PlanarEngine {
-    /// Our kinematic world, `farsa_physics::arena`: wheels do exactly what is commanded.
-    #[default]
-    Arena,
-    /// rapier, `farsa_physics::rapier::ArenaWorld`: rigid bodies on driven wheels; only where the crate was built with the
-    /// feature of that name.
-    Rapier,
-}
-
-impl PlanarEngine {
-    /// The names on the command line.
-    pub(crate) const NAMES: [&'static str; 2] = ["arena", "rapier"];
-
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
-impl FromStr for PlanarEngine {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self, Error> {
-        let known = [Self::Arena, Self::Rapier].into_iter().find(|engine| engine.name() == name);
-        known.ok_or_else(|| Error::unknown("", "world", name, Self::NAMES))
-    }
-}
-
 impl FromStr for Engine {
     type Err = Error;
 
     fn from_str(name: &str) -> Result<Self, Error> {
-        let known = [Self::Articulated, Self::Rapier].into_iter().find(|engine| engine.name() == name);
-        known.ok_or_else(|| Error::unknown("", "world", name, Self::NAMES))
+        let engine = [Self::Articulated, Self::Rapier].into_iter().find(|engine| engine.name() == name);
+        engine.ok_or_else(|| Error::unknown("", "world", name, Self::NAMES))
     }
 }
 
@@ -89,9 +59,6 @@ mod tests {
         for engine in [Engine::Articulated, Engine::Rapier] {
             assert_eq!(engine.name().parse::<Engine>().unwrap(), engine);
         }
-        for engine in [PlanarEngine::Arena, PlanarEngine::Rapier] {
-            assert_eq!(engine.name().parse::<PlanarEngine>().unwrap(), engine);
-        }
         assert_eq!(
             "rapir".parse::<Engine>().unwrap_err().to_string(),
             "unknown world `rapir`; the nearest is `rapier`"
@@ -101,7 +68,7 @@ mod tests {
     #[cfg(not(feature = "rapier"))]
     #[test]
     fn a_program_without_rapier_says_how_to_get_it() {
-        for experiment in [&crate::ReachGraspLift as &dyn Experiment, &crate::Discrimination] {
+        for experiment in [&crate::ReachGraspLift as &dyn Experiment, &crate::DISCRIMINATION] {
             let condition = experiment.conditions()[0];
             let mut settings = Settings::new(experiment.settings(condition)).unwrap();
             settings.set("", ENGINE, Value::Word("rapier".into())).unwrap();

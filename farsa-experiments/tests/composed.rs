@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use farsa_compose::ComposedExperiment;
-use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging};
+use farsa_experiments::{Aggregation, Foraging};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings};
 use farsa_num::{Domain, Stream};
 
@@ -25,7 +25,7 @@ fn evaluator(experiment: &dyn Experiment, condition: &str) -> Box<dyn Evaluator>
     experiment.prepare(condition, &settings).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What both are to agree on.
+/// The values that both have in common.
 fn compared(outcome: &Outcome, terms: usize) -> (Vec<u64>, u32, bool) {
     (outcome.terms[..terms].iter().map(|term| term.to_bits()).collect(), outcome.steps, outcome.success)
 }
@@ -75,49 +75,6 @@ fn same_evaluators(
 }
 
 #[test]
-fn discrimination_is_the_same() {
-    same_bits("discrimination.toml", &Discrimination, "khepera", 60, 5);
-}
-
-/// With the tables of the original, where they are.
-#[test]
-fn discrimination_by_measured_tables_is_the_same() {
-    let named = std::env::var_os("FARSA_FIXTURES").map(PathBuf::from);
-    let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let tables = named.unwrap_or_else(beside).join("khepera");
-    if !tables.is_dir() {
-        assert!(!must_be_there, "there is no folder {}; set FARSA_FIXTURES", tables.display());
-        eprintln!("skipped: the original's tables (set FARSA_FIXTURES)");
-        return;
-    }
-    let bench = Bench::new("measured");
-    for name in ["wall.sam", "small.sam", "round.sam"] {
-        std::fs::copy(tables.join(name), bench.path(name)).expect("a table");
-    }
-    let text = std::fs::read_to_string(folder().join("discrimination.toml")).expect("the file");
-    let measured = "kind = \"infrared\"\nmodel = \"tables\"\ntables = { walls = \"wall.sam\", bodies = [\
-        { file = \"small.sam\", radius = 0.0125 }, { file = \"round.sam\", radius = 0.027 }] }";
-    let text = text.replace("kind = \"infrared\"", measured);
-    assert!(text.contains("wall.sam"));
-    std::fs::write(bench.path("discrimination.toml"), text).expect("a file");
-    let ours = ComposedExperiment::from_file(&bench.path("discrimination.toml"), farsa_lab::strategies());
-    let ours = ours.unwrap_or_else(|error| panic!("{error}"));
-    let mut settings = Settings::new(Discrimination.settings("khepera")).expect("its settings");
-    let folder = farsa_lab::Value::Word(tables.display().to_string());
-    settings.set("", "robot.infrared_tables", folder).expect("a folder");
-    let theirs = Discrimination.prepare("khepera", &settings).unwrap_or_else(|error| panic!("{error}"));
-    same_evaluators(evaluator(&ours, ""), theirs, 8, "measured", 60, 5);
-}
-
-#[test]
-fn discrimination_cylinders_is_the_same() {
-    for condition in ["wheels", "no-wheels"] {
-        same_bits("discrimination-cylinders.toml", &DiscriminationCylinders, condition, 60, 5);
-    }
-}
-
-#[test]
 fn aggregation_is_the_same() {
     for condition in ["marxbot", "e-puck", "khepera"] {
         same_bits("aggregation.toml", &Aggregation, condition, 6, 2);
@@ -128,14 +85,6 @@ fn aggregation_is_the_same() {
 fn foraging_is_the_same() {
     for condition in ["marxbot", "e-puck"] {
         same_bits("foraging.toml", &Foraging, condition, 8, 3);
-    }
-}
-
-/// The built-in one has a success of its own: whether the vehicle does what its kind does.
-#[test]
-fn braitenberg_is_the_same() {
-    for condition in ["2a", "2b", "3a", "3b"] {
-        same_bits("braitenberg.toml", &Braitenberg, condition, 1, 20);
     }
 }
 
@@ -170,7 +119,7 @@ fn drawn_files_resume_and_replay() {
     });
 }
 
-/// The command, in a folder of its own.
+/// The command, in a separate folder.
 struct Bench(PathBuf);
 
 impl Bench {
@@ -190,7 +139,7 @@ impl Bench {
         std::fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// What it says, and its exit code.
+    /// Its output, and its exit code.
     fn say(&self, arguments: &str) -> (String, i32) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_farsa"));
         let output = command.current_dir(&self.0).args(arguments.split(' ')).output().expect("the command");
@@ -312,7 +261,7 @@ fn built_in_experiments_are_drawn_too() {
     }
 }
 
-/// Where a robot ends is what an archive keeps, and `check` says so.
+/// An archive keeps the places where robots end, and `check` prints them.
 #[test]
 fn a_maze_is_searched_by_where_robots_end() {
     let bench = Bench::new("maze");
@@ -352,14 +301,14 @@ fn a_maze_is_searched_by_where_robots_end() {
     let so_far =
         "The best so far where the champion is the best of all generations: maze, novelty-search; maze, map-elites.";
     assert_eq!(report.matches(so_far).count(), 2, "{report}");
-    // A test of the last generation's best, as a program of before made it, is about another than the champion.
+    // A test of the last generation's best, as earlier programs made it, is about another individual than the champion.
     let record: serde_json::Value = serde_json::from_str(&bench.read("novel/test.json")).expect("JSON");
     let generation = record["generation"].as_u64().expect("a generation");
     let another = bench.read("novel/test.json").replace(&format!("\"generation\": {generation}"), "\"generation\": 9");
     std::fs::write(bench.path("novel/test.json"), another).expect("a file");
     bench.succeed("report novel --md later.md -q");
     assert!(bench.read("later.md").contains("| generation 9: a later one |"), "{}", bench.read("later.md"));
-    // What the strategies say and keep is shown: the archive as it is beside the run.
+    // The notes and archives of the strategies are shown: the archive as it is next to the run.
     let log = bench.read("elites/strategy.csv");
     let elites = log.lines().last().and_then(|row| row.split(',').nth(1)).expect("a number of elites");
     assert_eq!(elites.parse(), Ok(ends.len() as f64));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
-use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey};
+use farsa_experiments::{Aggregation, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, Foraging, PredatorPrey};
 use farsa_lab::{
     Displacement, Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Push, Settings,
     Value, run_episode, run_in_lanes,
@@ -88,8 +88,8 @@ fn random_parameters(evaluator: &dyn Evaluator, bits: u32, seed: u64, individual
     genotype.decode(&genes).unwrap()
 }
 
-/// Evaluates in lanes of every number and instruction set, and one after the other by the same trait, and compares with what
-/// `evaluate` returns; returns that.
+/// Evaluates in lanes of every number and instruction set, and one after the other by the same trait. Returns the outcomes of
+/// `evaluate`, with which it compares them.
 fn in_lanes_as_alone(
     evaluator: &mut dyn Evaluator,
     instructions: impl Iterator<Item = Instructions>,
@@ -127,7 +127,7 @@ fn trials_of_networks_in_lanes_are_those_alone() {
             genotype.decode(&genes).unwrap()
         })
         .collect();
-    // In every third the sphere is put elsewhere.
+    // In every third the sphere is put in another place.
     let (position, rotation) = ([0.3, -0.2, 0.4], [0.0, 0.0, 0.0, 1.0]);
     let moved = [Displacement { step: 20, body: Tabletop::SPHERE.0, position, rotation }];
     // And in every fifth it is pushed.
@@ -150,7 +150,7 @@ fn trials_of_networks_in_lanes_are_those_alone() {
     println!("steps: {:?}", alone.iter().map(|outcome| outcome.steps).collect::<Vec<_>>());
 }
 
-/// Trials of an experiment with wheeled robots, each with random parameters and a start of its own; returns their outcomes.
+/// Trials of an experiment with wheeled robots, each with random parameters and its own start. Returns their outcomes.
 ///
 /// Where there are several populations, every other trial is one of the second.
 fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]) -> Vec<Outcome> {
@@ -192,19 +192,19 @@ fn some_end_early(outcomes: &[Outcome], steps: u32) {
 fn trials_of_discrimination_in_lanes_are_those_alone() {
     for model in ["analytic", "rays"] {
         let values = [steps(100), ("robot.infrared", Value::Word(model.into()))];
-        for condition in Discrimination.conditions() {
-            some_end_early(&wheels(&Discrimination, condition, &values), 100);
+        for condition in DISCRIMINATION.conditions() {
+            some_end_early(&wheels(&DISCRIMINATION, condition, &values), 100);
         }
-        for condition in DiscriminationCylinders.conditions() {
-            some_end_early(&wheels(&DiscriminationCylinders, condition, &values), 100);
+        for condition in DISCRIMINATION_CYLINDERS.conditions() {
+            some_end_early(&wheels(&DISCRIMINATION_CYLINDERS, condition, &values), 100);
         }
     }
 }
 
 #[test]
 fn vehicles_in_lanes_are_those_alone() {
-    for condition in Braitenberg.conditions() {
-        wheels(&Braitenberg, condition, &[steps(100)]);
+    for condition in BRAITENBERG.conditions() {
+        wheels(&BRAITENBERG, condition, &[steps(100)]);
     }
 }
 

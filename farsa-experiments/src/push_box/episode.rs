@@ -8,12 +8,13 @@ use farsa_body::ports::{
     Rays, Sensor as _,
 };
 use farsa_body::robots::MobileParts;
+use farsa_body::sensors::Beam;
+use farsa_body::sensors::infrared::{InfraredDrawing, InfraredRays};
 use farsa_body::{ChannelError, Pose, Recorder, Twist};
 use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::infrared::settings::{Infrared, InfraredModel};
 use crate::push_box::config::PushConfig;
 use crate::wheeled::{place_and_heading, record_step, wheel_speeds};
 
@@ -27,24 +28,25 @@ pub struct PushTrial {
     pub steps: u32,
     /// Steps in which hull and box touched.
     pub touched: u32,
-    /// From where the box stood to where it stands now, in the plane \[m\].
+    /// From the first to the last place of the box, in the plane \[m\].
     pub moved: f64,
     /// Length of the way that it took \[m\].
     pub way: f64,
     /// The fastest that it was at the end of a step \[m/s\].
     pub fastest: f64,
-    /// Whether a number was none.
+    /// A number was not finite.
     pub failed: bool,
 }
 
-/// The robot beside its box with a controller: sensors, motors, and the judge of the trial.
+/// The robot next to its box with a controller: sensors, motors, and the judge of the trial.
 #[derive(Clone, Debug)]
 pub struct PushEpisode<C> {
     config: PushConfig,
     parts: MobileParts,
     cube: BodyId,
     pair: PairId,
-    infrared: Infrared,
+    infrared: InfraredRays<Vec<Beam>>,
+    drawing: InfraredDrawing,
     wheels: WheelVelocity,
     controller: C,
     x: Vec<f32>,
@@ -73,7 +75,8 @@ impl<C: Controller> PushEpisode<C> {
             parts,
             cube: scene.block(0),
             pair: scene.block_pair(0),
-            infrared: Infrared::for_robot(robot, parts.body, wanted, &InfraredModel::Rays).map_err(wrong)?,
+            infrared: InfraredRays::for_robot(robot, parts.body).map_err(wrong)?,
+            drawing: InfraredDrawing::for_robot(robot, wanted),
             wheels: WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?,
             controller,
             x: vec![0.0; wanted],
@@ -84,8 +87,8 @@ impl<C: Controller> PushEpisode<C> {
         })
     }
 
-    /// Puts the box into the middle and the robot beside it: the headings of both, the direction in which the robot stands
-    /// and its distance are uniform.
+    /// Puts the box into the middle and the robot next to it. The headings of both, the direction of the robot and its distance are
+    /// uniform.
     ///
     /// All is drawn from the stream of [`Domain::Start`] of the id's trial and generation: the individuals of a generation
     /// have the same starts.
@@ -105,7 +108,7 @@ impl<C: Controller> PushEpisode<C> {
         world.finish_placement();
     }
 
-    /// What the trial has earned: how far the box has come from where it stood, in metres; NaN for one that failed.
+    /// The reward so far: the displacement of the box in meters, or NaN for a failed trial.
     pub fn fitness(&self) -> f64 {
         if self.trial.failed { f64::NAN } else { self.trial.moved }
     }
@@ -120,7 +123,7 @@ impl<C: Controller> PushEpisode<C> {
         &self.trial
     }
 
-    /// By which numbers the robot's parts are known.
+    /// The ids of the robot's parts.
     pub fn parts(&self) -> &MobileParts {
         &self.parts
     }
@@ -128,11 +131,6 @@ impl<C: Controller> PushEpisode<C> {
     /// The box.
     pub fn cube(&self) -> BodyId {
         self.cube
-    }
-
-    /// The infrared sensors.
-    pub fn infrared(&self) -> &Infrared {
-        &self.infrared
     }
 
     /// The controller.
@@ -146,12 +144,12 @@ impl<C: Controller> PushEpisode<C> {
         self.controller = controller;
     }
 
-    /// What was sensed last \[8\].
+    /// The last inputs \[8\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What was done last \[2\].
+    /// The last outputs \[2\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
@@ -204,7 +202,7 @@ where
     }
 
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.infrared.record(world.pose(self.parts.body), &self.x, recorder);
+        self.drawing.record(world.pose(self.parts.body), &self.x, false, recorder);
     }
 
     /// Records what was sensed, computed and done before the step, and what it led to.

@@ -1,10 +1,9 @@
-//! What there is to know of `push-box`, and its episodes over parameters.
+//! The description of `push-box`, and its episodes over parameters.
 
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
-use crate::infrared::settings::InfraredModel;
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
 use farsa_lab::{
@@ -23,7 +22,7 @@ pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error>
     layer.map(NormalisedController::new).map_err(|error| Error::Other(format!("push-box: {error}")))
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("way of the box [m]", -1.0)],
     descriptors: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
@@ -132,7 +131,7 @@ impl Exports for PushEpisode<Layer> {
         let (robot, parameters) = (&config.robot, parameters.into());
         let network = NetworkExport::Perceptron { inputs, outputs: OUTPUTS, slope: 1.0, parameters };
         let eyes = (1..=inputs).map(|number| format!("infrared {number}"));
-        let sensors = infrared_exports(eyes, &robot.infrared.angles, robot, &InfraredModel::Rays).collect();
+        let sensors = infrared_exports(eyes, &robot.infrared.angles, robot).collect();
         let motors = wheel_exports(robot.max_wheel_speed);
         Some(ControllerExport::new(network, sensors, motors, config.time_step, config.steps))
     }

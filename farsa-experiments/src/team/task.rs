@@ -1,4 +1,4 @@
-//! The task of a team: what is known of a scenario, and its episodes over parameters.
+//! The task of a team: the description of a scenario, and its episodes over parameters.
 
 use farsa_body::Recorder;
 use farsa_body::ports::BodyId;
@@ -7,7 +7,6 @@ use farsa_evo::ObservationStatistics;
 use farsa_nn::{Leak, LeakyLayout};
 use farsa_physics::arena::{Arena, World};
 
-use crate::infrared::settings::InfraredModel;
 use crate::team::config::{EYES, TeamConfig};
 use crate::team::episode::{Scenario, TeamEpisode};
 use crate::team::eyes::eye_angles;
@@ -29,17 +28,17 @@ pub(crate) struct TeamTask<M> {
     own: usize,
     /// The robot that is recorded.
     watched: usize,
-    /// Bodies whose poses are recorded: robots and what is placed beside them.
+    /// Bodies whose poses are recorded: robots and the objects that trials place.
     bodies: u16,
     interventions: Interventions,
 }
 
-/// An arena whose robots and areas every trial places anew, without bounds for what waits outside.
+/// An arena without bounds, so that robots and areas can wait outside until a trial places them.
 fn parked(arena: Arena) -> Arena {
     Arena { size: None, ..arena }
 }
 
-/// A world of an arena whose robots and areas every trial places anew.
+/// A world of an arena whose robots and areas every trial places.
 pub(crate) fn world(arena: Arena) -> Result<World, Error> {
     World::new(&parked(arena)).map_err(|error| Error::Other(error.to_string()))
 }
@@ -68,7 +67,7 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
 }
 
 impl<M: Scenario> TeamTask<M> {
-    /// What the robots observed, one after the other, where observations are normalised.
+    /// The observations of the robots, one after the other, where observations are normalized.
     fn observed(&self) -> Option<ObservationStatistics> {
         let mut robots = self.episode.team().controllers().iter().map(NormalisedController::observed);
         let first = robots.next()??.clone();
@@ -112,8 +111,8 @@ impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
 }
 
 impl<M: Scenario> Rollout for TeamTask<M> {
-    /// Gives all robots their networks; of several populations robot p that of population p. Without opponents each
-    /// robot meets copies of its own network.
+    /// Gives all robots their networks, of several populations robot p that of population p. Without opponents each robot plays
+    /// against copies of its network.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Evaluation { parameters, opponents, normalisation, id, case, .. } = *evaluation;
         let change = self.interventions.applied(evaluation).into_owned();
@@ -121,10 +120,10 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         episode.scenario_mut().begin_case(interventions.named(case));
         let scenario = self.episode.scenario();
         let count = scenario.population_names().len();
-        let own = id.population(scenario.population_size()).min(count - 1);
-        self.own = own;
+        let trained = id.population(scenario.population_size()).min(count - 1);
+        self.own = trained;
         let last = scenario.robots().robots.saturating_sub(1);
-        self.watched = evaluation.watched.map_or(own, |robot| (robot as usize).min(last));
+        self.watched = evaluation.watched.map_or(trained, |robot| (robot as usize).min(last));
         let networks = self.episode.team_mut().controllers_mut();
         if !networks.iter_mut().all(|network| network.load(normalisation)) {
             return false;
@@ -134,13 +133,12 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         }
         let mut networks = networks.iter_mut().map(NormalisedController::controller_mut);
         if count == 1 {
-            let own = change.edited(parameters);
-            return networks.all(|network| network.copy_parameters(&own).is_ok());
+            let parameters = change.edited(parameters);
+            return networks.all(|network| network.copy_parameters(&parameters).is_ok());
         }
         let mut others = opponents.iter();
         (0..count).zip(networks).all(|(population, network)| {
-            let own = population == own;
-            let parameters = if own { parameters } else { others.next().copied().unwrap_or(parameters) };
+            let parameters = if population == trained { parameters } else { others.next().copied().unwrap_or(parameters) };
             network.copy_parameters(&change.edited(parameters)).is_ok()
         })
     }
@@ -160,7 +158,8 @@ impl<M: Scenario> TeamTask<M> {
         network_parameters(&self.layout, range, [0.0, 1.0], "net.weight_range").unwrap_or_default()
     }
 
-    /// Sensors, neurons and outputs are those of the watched robot: by default the first, or the individual's where populations meet.
+    /// Sensors, neurons and outputs are those of the watched robot: by default the first, or the individual's where there are
+    /// several populations.
     fn schema(&self) -> Schema {
         let scenario = self.episode.scenario();
         let [_, outputs] = scenario.shape();
@@ -233,8 +232,8 @@ impl<M: Scenario> Exports for TeamTask<M> {
         let eyes: Vec<String> = names.by_ref().take(EYES).collect();
         let robot = config.robot();
         let angles = eye_angles(&robot);
-        let eyes = infrared_exports(eyes, &angles, &robot, &InfraredModel::Rays);
-        // What the other inputs mean is said in groups.
+        let eyes = infrared_exports(eyes, &angles, &robot);
+        // The other inputs are described in groups.
         let groups = scenario.inputs();
         let meanings = groups.iter().flat_map(|group| std::iter::repeat_n(&group.meaning, group.count)).skip(EYES);
         let others = names.zip(meanings).map(|(name, meaning)| SensorExport::quantity(name, meaning, "1", [0.0, 1.0]));

@@ -3,18 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use farsa_body::ports::{Arrange as _, Kinematics as _};
-use farsa_body::{Pose, Twist};
-use farsa_experiments::discrimination::{Config, CylinderEpisode, InfraredModel};
-use farsa_experiments::{Discrimination, DiscriminationCylinders};
-use farsa_lab::{Episode as _, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Settings, Value, run_episode};
-use farsa_nn::Perceptron;
-use farsa_physics::arena::World;
+use farsa_body::ports::BodyId;
+use farsa_experiments::{DISCRIMINATION, DISCRIMINATION_CYLINDERS};
+use farsa_lab::{
+    EpisodeId, Evaluation, Evaluator, Experiment, Genotype, NetworkExport, Note, Outcome, Settings, Value,
+};
 use farsa_view::Recording;
 
-/// The original's measured tables and genotypes: in the folder `khepera` of `FARSA_FIXTURES`, or in that beside the repository.
+/// The original's measured tables and genotypes: in the folder `khepera` of `FARSA_FIXTURES`, or in that next to the repository.
 ///
-/// They are not ours to keep. In CI they must be there; elsewhere the test says that it is skipped.
+/// They are not part of the repository. In CI they must be there. In other places the test prints that it is skipped.
 fn fixtures() -> Option<PathBuf> {
     let named = std::env::var_os("FARSA_FIXTURES").map(PathBuf::from);
     let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
@@ -41,7 +39,7 @@ fn sampled(directory: &Path) -> Vec<(&'static str, Value)> {
     vec![("robot.infrared", Value::Word("sampled".into())), ("robot.infrared_tables", Value::Word(directory))]
 }
 
-/// What `farsa evaluate` prints as `name`, of 2000 random trials.
+/// The value that `farsa evaluate` prints as `name`, of 2000 random trials.
 fn evaluate(options: &[&str], name: &str) -> f64 {
     let mut command = Command::new(env!("CARGO_BIN_EXE_farsa"));
     command.args(["evaluate", "discrimination", "--trials", "2000", "--seed", "1"]).args(options);
@@ -80,220 +78,220 @@ fn alone(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
     Evaluation::new(parameters, id)
 }
 
-/// A controller of the layer with all weights 0: the robot drives straight on or stands.
-fn constant(config: &Config, outputs: [f32; 2]) -> Perceptron<Vec<f32>> {
-    let inputs = config.inputs();
-    let mut parameters = vec![0.0; Perceptron::parameter_count(inputs, 2)];
-    parameters[2 * inputs..].copy_from_slice(&outputs);
-    Perceptron::new(inputs, 2, 1.0, parameters).unwrap()
+/// The parameters of a layer with all weights 0 and these biases, which come first: the robot drives straight on or does not move.
+fn constant(evaluator: &dyn Evaluator, bias: f32) -> Vec<f32> {
+    let mut parameters = vec![0.0; evaluator.info().parameters.len()];
+    parameters[..2].fill(bias);
+    parameters
 }
+
+/// A trial with its recording.
+fn recorded(evaluator: &mut dyn Evaluator, parameters: &[f32], id: EpisodeId) -> (Outcome, Recording) {
+    let mut recording = Recording::new(evaluator.info().schema);
+    let outcome = evaluator.evaluate(alone(parameters, id), Some(&mut recording));
+    (outcome, recording)
+}
+
+/// Where a body is after a step [m].
+fn place(recording: &Recording, step: usize, body: usize) -> [f64; 2] {
+    let [x, y, _] = recording.pose_at(step, BodyId(body as u16)).unwrap().position;
+    [x, y].map(f64::from)
+}
+
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn note(outcome: &Outcome, name: &str) -> f64 {
+    let (_, note) = outcome.notes.iter().find(|(known, _)| *known == name).unwrap();
+    let Note::Number(number) = note else { panic!("{note:?}") };
+    *number
+}
+
+/// An experiment, the condition, the radius of the hull, and those of the cylinders with the size of the arena [m].
+type Case = (&'static dyn Experiment, &'static str, f64, &'static [f64], f64);
+
+const CASES: [Case; 3] = [
+    (&DISCRIMINATION, "khepera", 0.035, &[0.0125], 0.4),
+    (&DISCRIMINATION, "e-puck", 0.0275, &[0.0125], 0.4),
+    (&DISCRIMINATION_CYLINDERS, "wheels", 0.035, &[0.027, 0.0125], 0.5),
+];
 
 #[test]
 fn trials_start_where_the_rules_allow() {
-    for config in [Config::default(), Config::e_puck(), Config::two_cylinders(true)] {
-        let hull = config.robot.radius;
-        let mut world = config.world().unwrap();
-        let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
+    for (experiment, condition, hull, radii, size) in CASES {
+        let settings = settings(experiment, condition, &[("trial.steps", Value::Whole(1))]);
+        let mut evaluator = experiment.prepare(condition, &settings).unwrap();
+        let still = constant(evaluator.as_ref(), 0.0);
+        let mut start = |id| recorded(evaluator.as_mut(), &still, id).1;
         let (mut starts, mut quadrants) = (Vec::new(), [0; 4]);
         for trial in 0..1000 {
-            episode.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() }).unwrap();
-            let robot = world.pose(episode.parts().body).position.map(f64::from);
-            let to_wall = |[x, y, _]: [f64; 3]| {
-                let [w, h] = config.size;
-                x.min(y).min(w - x).min(h - y)
-            };
-            let apart = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            let recording = start(EpisodeId { seed: 3, trial, ..EpisodeId::default() });
+            let robot = place(&recording, 0, 0);
+            let to_wall = |[x, y]: [f64; 2]| x.min(y).min(size - x).min(size - y);
             assert!(to_wall(robot) - hull > 0.01 - 1e-5, "{robot:?}");
-            let places: Vec<_> =
-                episode.cylinders().iter().map(|body| world.pose(*body).position.map(f64::from)).collect();
-            for (place, radius) in places.iter().zip(&config.radii) {
+            let places: Vec<_> = (1..=radii.len()).map(|body| place(&recording, 0, body)).collect();
+            for (place, radius) in places.iter().zip(radii) {
                 assert!(to_wall(*place) - radius > 0.05 - 1e-5, "{place:?}");
                 assert!(apart(*place, robot) - radius - hull > 0.1 - 1e-5, "{place:?} {robot:?}");
             }
             if let [a, b] = places[..] {
-                assert!(apart(a, b) - config.radii.iter().sum::<f64>() > config.object_to_object - 1e-5);
+                assert!(apart(a, b) - radii.iter().sum::<f64>() > 0.17 - 1e-5);
             }
-            let heading = world.pose(episode.parts().body).heading();
+            let heading = recording.pose_at(0, BodyId(0)).unwrap().heading();
             quadrants[((heading + core::f32::consts::PI) / core::f32::consts::FRAC_PI_2).min(3.0) as usize] += 1;
             starts.push(robot);
         }
         assert!(quadrants.iter().all(|count| (200..300).contains(count)), "{quadrants:?}");
-        let mut again = |id| {
-            episode.arrange(&mut world, id).unwrap();
-            world.pose(episode.parts().body).position.map(f64::from)
-        };
         let id = EpisodeId { seed: 3, trial: 5, ..EpisodeId::default() };
-        assert_eq!(again(id), starts[5]);
+        assert_eq!(place(&start(id), 0, 0), starts[5]);
         for other in [EpisodeId { seed: 4, ..id }, EpisodeId { individual: 1, ..id }, EpisodeId { generation: 1, ..id }]
         {
-            assert_ne!(again(other), starts[5]);
+            assert_ne!(place(&start(other), 0, 0), starts[5]);
         }
     }
 }
 
+/// Straight on at full speed: 5.18 mm a step of the Khepera, 14.4 mm of the e-puck.
 #[test]
 fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
-    let config = Config { steps: 40, ..Config::default() };
-    let mut world = config.world().unwrap();
-    // Full speed ahead, 5.18 mm a step.
-    let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
-    // A trial whose cylinder stands in the middle; the robot drives towards it, and from beside it to the wall.
-    let place = |episode: &mut CylinderEpisode<Perceptron<Vec<f32>>>, world: &mut World, trial| {
-        episode.start(world, EpisodeId { trial, ..EpisodeId::default() });
-        world.pose(episode.cylinders()[0]).position
-    };
-    let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
-    let trial = (0..1000).find(|trial| central(place(&mut episode, &mut world, *trial))).unwrap();
-    for (start, expected) in [(-0.1, "cylinder"), (0.06, "wall")] {
-        let at = place(&mut episode, &mut world, trial);
-        world.place_body(episode.parts().body, Pose::planar([at[0] + start, at[1]], 0.0), Twist::default());
-        world.finish_placement();
-        let mut distances = Vec::new();
-        let fitness = loop {
-            episode.act(&mut world);
-            farsa_body::ports::World::step(&mut world);
-            let end = episode.judge(&mut world);
-            distances.push(episode.trial().distance[0]);
-            if let Some(fitness) = end {
-                break fitness;
+    for (experiment, condition, hull, radii, _) in &CASES[..2] {
+        let (near, step, most) = if *condition == "khepera" { (0.08, 0.00518, 25) } else { (0.06, 0.0144, 10) };
+        let settings = settings(*experiment, condition, &[("trial.steps", Value::Whole(most))]);
+        let mut evaluator = experiment.prepare(condition, &settings).unwrap();
+        let ahead = constant(evaluator.as_ref(), 50.0);
+        let (mut counted, mut ends) = (0, [0; 3]);
+        for trial in 0..200 {
+            let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
+            let (outcome, recording) = recorded(evaluator.as_mut(), &ahead, id);
+            let steps = outcome.steps as usize;
+            assert_eq!(recording.times().len(), steps);
+            let distances: Vec<f64> = (0..steps)
+                .map(|step| apart(place(&recording, step, 0), place(&recording, step, 1)) - hull - radii[0])
+                .collect();
+            assert!(distances.iter().all(|distance| *distance > -1e-5), "{distances:?}");
+            // No distance is within rounding of the limit.
+            let found = distances.iter().filter(|distance| **distance < near).count();
+            counted += found;
+            assert_eq!(note(&outcome, "steps near"), found as f64);
+            assert_eq!(outcome.terms, [found as f64 / most as f64]);
+            let collided = note(&outcome, "collisions");
+            assert!(collided == 1.0 || steps == most as usize, "{steps}");
+            assert_eq!(outcome.success, collided == 0.0 && distances[steps - 1] < near);
+            if steps > 2 {
+                let way = apart(place(&recording, 1, 0), place(&recording, 0, 0));
+                assert!((way - step).abs() < 1e-4, "{way}");
             }
-        };
-        let near = distances.iter().filter(|distance| **distance < 0.08).count() as u32;
-        assert_eq!((episode.trial().near[0], episode.trial().steps as usize), (near, distances.len()));
-        assert_eq!(fitness, f64::from(near) / 40.0);
-        assert!(episode.trial().collided && distances.len() < 40, "{expected}: {distances:?}");
-        assert!(distances.iter().all(|distance| *distance >= 0.0), "{expected}");
+            let kind = if collided == 0.0 { 0 } else { 1 + usize::from(distances[steps - 1] < 0.02) };
+            ends[kind] += 1;
+        }
+        assert!(counted > 100, "{counted}");
+        assert!(ends.iter().all(|count| *count > 0), "in time, at a wall, at the cylinder: {ends:?}");
     }
 }
 
+/// Biases first and then the weights of each wheel, as FARSA wrote its genotypes.
 #[test]
-fn trials_can_be_repeated_recorded_and_run_by_hand() {
-    let cases: [(&dyn Experiment, &str, Config); 4] = [
-        (&Discrimination, "khepera", Config::default()),
-        (&Discrimination, "e-puck", Config::e_puck()),
-        (&DiscriminationCylinders, "wheels", Config::two_cylinders(true)),
-        (&DiscriminationCylinders, "no-wheels", Config::two_cylinders(false)),
+fn genes_are_read_as_the_original_wrote_them() {
+    let evaluator = DISCRIMINATION.prepare("khepera", &settings(&DISCRIMINATION, "khepera", &[])).unwrap();
+    let genes = [0, 255, 10, 20, 30, 40, 50, 60, 110, 120, 130, 140, 150, 160];
+    let parameters = parameters(&DISCRIMINATION, evaluator.as_ref(), |gene| genes[gene]);
+    let controller = evaluator.exports().unwrap().controller(&parameters).unwrap();
+    let NetworkExport::Perceptron { parameters, .. } = controller.network else { panic!("another network") };
+    // To the last bit: w = range - gene / 255 * 2 range.
+    let weight = |gene: u16| (5.0 - f64::from(gene) / 255.0 * 2.0 * 5.0) as f32;
+    for sensor in 0..6 {
+        for wheel in 0..2 {
+            assert_eq!(parameters[2 * sensor + wheel], weight(genes[2 + 6 * wheel + sensor]), "{sensor} {wheel}");
+        }
+    }
+    assert_eq!(parameters[12..], [5.0, -5.0]);
+}
+
+#[test]
+fn trials_can_be_repeated_and_recorded() {
+    let cases: [(&dyn Experiment, &str, usize); 4] = [
+        (&DISCRIMINATION, "khepera", 6),
+        (&DISCRIMINATION, "e-puck", 6),
+        (&DISCRIMINATION_CYLINDERS, "wheels", 8),
+        (&DISCRIMINATION_CYLINDERS, "no-wheels", 6),
     ];
-    for (experiment, condition, config) in cases {
+    for (experiment, condition, inputs) in cases {
         for model in ["analytic", "rays"] {
             let settings = settings(experiment, condition, &[("robot.infrared", Value::Word(model.into()))]);
             let mut evaluator = experiment.prepare(condition, &settings).unwrap();
-            let own = parameters(experiment, evaluator.as_ref(), |i| (i * 97 % 256) as u16);
+            let parameters = parameters(experiment, evaluator.as_ref(), |i| (i * 97 % 256) as u16);
             let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
-            let plain = evaluator.evaluate(alone(&own, id), None);
-            evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-            let mut recording = Recording::new(evaluator.info().schema);
-            assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
+            let plain = evaluator.evaluate(alone(&parameters, id), None);
+            evaluator.evaluate(alone(&parameters, EpisodeId { trial: 7, ..id }), None);
+            let (outcome, recording) = recorded(evaluator.as_mut(), &parameters, id);
+            assert_eq!(outcome, plain);
             let ticks = recording.times().len();
             assert_eq!(ticks, plain.steps as usize);
             assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
             assert_eq!(recording.rays_at(ticks - 1).len(), 6);
             let description = evaluator.info().description;
-            assert_eq!(description.sensors.iter().map(|g| g.count).sum::<usize>(), config.inputs());
-            assert_eq!(description.parameters, own.len());
-            // The same as an episode of its own controller.
-            let zeros = parameters(experiment, evaluator.as_ref(), |_| 128);
-            let mut world = config.world().unwrap();
-            let w = 5.0 - 128.0 / 255.0 * 10.0;
-            let layer = Perceptron::new(config.inputs(), 2, 1.0, vec![w as f32; zeros.len()]).unwrap();
-            if model == "analytic" {
-                let infrared = InfraredModel::Analytic;
-                let mut episode = CylinderEpisode::new(Config { infrared, ..config.clone() }, layer).unwrap();
-                let fitness = run_episode(&mut episode, &mut world, id, None);
-                let evaluated = evaluator.evaluate(alone(&zeros, id), None);
-                assert_eq!(fitness, evaluator.fitness(&[evaluated]));
-                episode.start(&mut world, id);
-                assert_eq!(episode.trial().steps, 0);
-            }
+            assert_eq!(description.sensors.iter().map(|g| g.count).sum::<usize>(), inputs);
+            assert_eq!(description.parameters, parameters.len());
         }
     }
 }
 
-/// The variant's numbers as they were told: half a second straight on, and near below 27.5 + 12.5 + 60 mm.
 #[test]
-fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
-    let config = Config::e_puck();
-    let mut world = config.world().unwrap();
-    let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
-    let body = episode.parts().body;
-    let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
-    let trial = (0..1000).find(|&trial| {
-        episode.start(&mut world, EpisodeId { trial, ..EpisodeId::default() });
-        central(world.pose(episode.cylinders()[0]).position)
-    });
-    episode.start(&mut world, EpisodeId { trial: trial.unwrap(), ..EpisodeId::default() });
-    let at = world.pose(episode.cylinders()[0]).position;
-    world.place_body(body, Pose::planar([at[0] - 0.13, at[1]], 0.0), Twist::default());
-    world.finish_placement();
-    // Centres 130 mm apart, 14.4 mm nearer with each step: below 100 mm from the third on.
-    let near: Vec<u32> = (0..5)
-        .map(|step| {
-            episode.act(&mut world);
-            farsa_body::ports::World::step(&mut world);
-            assert_eq!(episode.judge(&mut world), None, "{step}");
-            let travelled = f64::from(world.pose(body).position[0] - at[0]) + 0.13;
-            assert!((travelled - 0.0144 * f64::from(step + 1)).abs() < 1e-5, "{step}: {travelled}");
-            episode.trial().near[0]
-        })
-        .collect();
-    assert_eq!(near, [0, 0, 1, 2, 3]);
-    let settings = settings(&Discrimination, "e-puck", &[]);
-    let evaluator = Discrimination.prepare("e-puck", &settings).unwrap();
+fn an_e_puck_has_its_own_numbers() {
+    let mut settings = settings(&DISCRIMINATION, "e-puck", &[]);
+    let evaluator = DISCRIMINATION.prepare("e-puck", &settings).unwrap();
     let description = evaluator.info().description;
     assert_eq!((evaluator.info().trials, description.steps, description.step_seconds), (10, 500, 0.1));
     assert_eq!(evaluator.info().schema.bodies, ["e-puck", "cylinder"]);
     // Its sensors were never measured, and a hull that the wheels stick out of is refused.
-    let mut settings = settings;
     let sampled = settings.set("", "robot.infrared", Value::Word("sampled".into())).unwrap_err().to_string();
     assert!(sampled.contains("rays") && sampled.contains("analytic"), "{sampled}");
     let thin = settings.set("", "robot.radius", Value::Number(0.02)).unwrap_err().to_string();
     assert!(thin.contains("0.0265"), "{thin}");
     settings.set("", "robot.radius", Value::Number(0.035)).unwrap();
-    assert!(Discrimination.prepare("e-puck", &settings).is_ok());
+    assert!(DISCRIMINATION.prepare("e-puck", &settings).is_ok());
 }
 
-/// In rapier the same starts and the same rules; only how the robot moves differs.
+/// In rapier the same starts and the same rules. Only the motion of the robot differs.
 #[cfg(feature = "rapier")]
 #[test]
 fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
-    for (condition, config) in [("khepera", Config::default()), ("e-puck", Config::e_puck())] {
-        let config = Config { steps: 60, ..config };
-        let (mut ours, mut theirs) = (config.world().unwrap(), config.rapier_world().unwrap());
-        let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
-        let mut collided = 0;
+    for (condition, hull) in [("khepera", 0.035), ("e-puck", 0.0275)] {
+        let [mut ours, mut theirs] = ["arena", "rapier"].map(|engine| {
+            let values = [("trial.steps", Value::Whole(60)), ("world.engine", Value::Word(engine.into()))];
+            DISCRIMINATION.prepare(condition, &settings(&DISCRIMINATION, condition, &values)).unwrap()
+        });
+        let (still, ahead) = (constant(ours.as_ref(), 0.0), constant(ours.as_ref(), 50.0));
+        let mut collided = 0.0;
         for trial in 0..12 {
             let id = EpisodeId { seed: 5, trial, ..EpisodeId::default() };
-            let mut ends = Vec::new();
-            episode.arrange(&mut ours, id).unwrap();
-            episode.arrange(&mut theirs, id).unwrap();
-            for body in [episode.parts().body, episode.cylinders()[0]] {
-                let (a, b) = (ours.pose(body), theirs.pose(body));
-                assert!(
-                    (0..3).all(|k| (a.position[k] - b.position[k]).abs() < 1e-6),
-                    "{condition} {trial}: {a:?} {b:?}"
-                );
-                assert!((a.heading() - b.heading()).abs() < 1e-5, "{condition} {trial}");
+            let [a, b] = [&mut ours, &mut theirs].map(|evaluator| recorded(evaluator.as_mut(), &still, id).1);
+            for body in 0..2 {
+                let far = apart(place(&a, 0, body), place(&b, 0, body));
+                assert!(far < 5e-5, "{condition} {trial}: {far}");
+                let [a, b] = [&a, &b].map(|recording| recording.pose_at(0, BodyId(body as u16)).unwrap().heading());
+                assert!((a - b).abs() < 1e-4, "{condition} {trial}");
             }
-            run_episode(&mut episode, &mut ours, id, None);
-            ends.push(*episode.trial());
-            run_episode(&mut episode, &mut theirs, id, None);
-            ends.push(*episode.trial());
-            // Straight on until it runs into something: a step later at most, for it must get up to speed.
-            let [a, b] = [&ends[0], &ends[1]];
-            assert!(a.collided == b.collided && a.steps.abs_diff(b.steps) <= 2, "{condition} {trial}: {a:?} {b:?}");
-            // The kinematic world undoes a step that collides, which is up to 14.4 mm long; 13.0 was seen.
-            assert!((a.distance[0] - b.distance[0]).abs() < 0.0145, "{condition} {trial}: {a:?} {b:?}");
-            collided += u32::from(b.collided);
+            let [a, b] = [&mut ours, &mut theirs].map(|evaluator| recorded(evaluator.as_mut(), &ahead, id));
+            // Straight on until it runs into something: two steps later at most, for it has to get up to speed.
+            let [end_a, end_b] = [&a, &b].map(|(outcome, _)| note(outcome, "collisions"));
+            assert!(end_a == end_b && a.0.steps.abs_diff(b.0.steps) <= 2, "{condition} {trial}");
+            // The kinematic world undoes a step that collides, which is up to 14.4 mm long.
+            let [far_a, far_b] = [&a, &b].map(|(outcome, recording)| {
+                let last = outcome.steps as usize - 1;
+                apart(place(recording, last, 0), place(recording, last, 1)) - hull - 0.0125
+            });
+            assert!((far_a - far_b).abs() < 0.0145, "{condition} {trial}: {far_a} {far_b}");
+            collided += end_b;
         }
-        assert!(collided > 6, "{condition}: {collided}");
-        let settings = settings(&Discrimination, condition, &[("world.engine", Value::Word("rapier".into()))]);
-        let mut evaluator = Discrimination.prepare(condition, &settings).unwrap();
-        let own = parameters(&Discrimination, evaluator.as_ref(), |i| (i * 97 % 256) as u16);
+        assert!(collided > 6.0, "{condition}: {collided}");
+        let parameters = parameters(&DISCRIMINATION, theirs.as_ref(), |i| (i * 97 % 256) as u16);
         let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
-        let plain = evaluator.evaluate(alone(&own, id), None);
-        evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-        let mut recording = Recording::new(evaluator.info().schema);
-        assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
+        let plain = theirs.evaluate(alone(&parameters, id), None);
+        theirs.evaluate(alone(&parameters, EpisodeId { trial: 7, ..id }), None);
+        let (outcome, recording) = recorded(theirs.as_mut(), &parameters, id);
+        assert_eq!(outcome, plain);
         assert!(plain.is_finite() && recording.times().len() == plain.steps as usize);
     }
 }
@@ -304,18 +302,18 @@ fn what_cannot_be_is_refused_by_name() {
         let settings = settings(experiment, condition, values);
         experiment.prepare(condition, &settings).err().unwrap().to_string()
     };
-    let crowded = refused(&Discrimination, "", &[("object.radii", Value::Numbers(vec![0.15]))]);
+    let crowded = refused(&DISCRIMINATION, "", &[("object.radii", Value::Numbers(vec![0.15]))]);
     assert!(crowded.starts_with("`world.size`: no free place for a disc of 0.035 m in 1000 tries"), "{crowded}");
-    let crowded = refused(&DiscriminationCylinders, "wheels", &[("object.to_object", Value::Number(5.0))]);
+    let crowded = refused(&DISCRIMINATION_CYLINDERS, "wheels", &[("object.to_object", Value::Number(5.0))]);
     assert!(crowded.starts_with("`world.size`: no free place"), "{crowded}");
     let sampled = ("robot.infrared", Value::Word("sampled".into()));
-    let without = refused(&Discrimination, "", core::slice::from_ref(&sampled));
+    let without = refused(&DISCRIMINATION, "", core::slice::from_ref(&sampled));
     assert!(without.starts_with("`robot.infrared_tables`: names no directory"), "{without}");
     let missing = Value::Word("no/such/place".into());
-    let missing = refused(&Discrimination, "", &[sampled, ("robot.infrared_tables", missing)]);
+    let missing = refused(&DISCRIMINATION, "", &[sampled, ("robot.infrared_tables", missing)]);
     assert!(missing.contains("wall.sam"), "{missing}");
     let slow = refused(
-        &Discrimination,
+        &DISCRIMINATION,
         "",
         &[("world.time_step", Value::Number(0.2)), ("world.size", Value::Numbers(vec![0.1; 2]))],
     );
@@ -330,11 +328,11 @@ fn a_damaged_table_is_named() {
     for name in ["wall.sam", "small.sam", "round.sam"] {
         std::fs::write(directory.join(name), table("1 2 3 4 5 6 7 8")).unwrap();
     }
-    let settings = settings(&Discrimination, "", &sampled(&directory));
-    assert!(Discrimination.prepare("", &settings).is_ok());
-    assert_eq!(Discrimination.files("", &settings).unwrap().len(), 3);
+    let settings = settings(&DISCRIMINATION, "", &sampled(&directory));
+    assert!(DISCRIMINATION.prepare("", &settings).is_ok());
+    assert_eq!(DISCRIMINATION.files("", &settings).unwrap().len(), 3);
     std::fs::write(directory.join("small.sam"), table("1 2 3 4 5 6 7")).unwrap();
-    let error = Discrimination.prepare("", &settings).err().unwrap().to_string();
+    let error = DISCRIMINATION.prepare("", &settings).err().unwrap().to_string();
     assert!(error.contains("small.sam: line 3: 7 numbers instead of 8"), "{error}");
     std::fs::remove_dir_all(&directory).unwrap();
 }

@@ -10,7 +10,7 @@ use farsa_view::Schema;
 
 const ID: EpisodeId = EpisodeId { seed: 1 << 63 | 5, generation: 1, individual: 0, trial: 0 };
 
-/// What was recorded of an episode.
+/// The recording of an episode.
 #[derive(Default, PartialEq, Debug)]
 struct Seen {
     parameters: Vec<f32>,
@@ -45,7 +45,7 @@ struct Subject {
 }
 
 impl Subject {
-    /// Of an experiment under its first condition, in short trials; none of one without a controller.
+    /// An experiment under its first condition, in short trials, or `None` without a controller.
     fn new(experiment: &dyn Experiment) -> Option<Self> {
         let condition = experiment.conditions().first().copied().unwrap_or_default();
         let mut settings = Settings::new(experiment.settings(condition)).unwrap();
@@ -53,6 +53,10 @@ impl Subject {
         let _ = settings.set("", "trial.steps", Value::Whole(25));
         let evaluator = experiment.prepare(condition, &settings).unwrap();
         let anatomy = evaluator.info().anatomy?;
+        // The wires of vehicles are no links that tests can change.
+        if experiment.name() == "braitenberg" {
+            return None;
+        }
         let mut stream = Stream::new(6, Domain::InitialGenome, 0, 0, 0);
         let genotype = Genotype::new(&evaluator.info().parameters, 16);
         // In the middle of their ranges, where neurons are not saturated.
@@ -62,7 +66,7 @@ impl Subject {
         Some(Self { name: experiment.name(), evaluator, parameters, schema, anatomy })
     }
 
-    /// What comes of these changes.
+    /// The result of these changes.
     fn with(&mut self, list: &str) -> (Outcome, Seen) {
         let (change, mut seen) = (self.change(list), Seen::default());
         let evaluation = Evaluation { intervention: Some(&change), ..Evaluation::new(&self.parameters, ID) };
@@ -180,7 +184,7 @@ fn what_is_not_heard_changes_the_course_and_lanes_do_not() {
         let all = (0..12).map(|number| Evaluation { number, intervention: Some(&changes[number % 4]), ..plain });
         let all: Vec<Evaluation<'_>> = all.collect();
         let alone: Vec<Outcome> = all.iter().map(|evaluation| evaluator.evaluate(*evaluation, None)).collect();
-        // What was done is gone with the next evaluation.
+        // A change ends with its evaluation.
         assert!((0..12).all(|number| alone[number] == alone[number % 4]), "{name}");
         if let Some(lanes) = evaluator.in_lanes() {
             lanes.use_lanes(Lanes::new(8, Instructions::detect()).unwrap()).unwrap();
