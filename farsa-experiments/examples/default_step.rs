@@ -1,8 +1,8 @@
 //! Which dynamics step is small enough for `reach-grasp-lift`: errors against 0.1 ms in double precision.
 //!
-//! Prints a table (the one in docs/results/reach-grasp-lift.md) and fails if the default step does not hold the bounds:
-//! 1 degree RMS in every arm joint over 1 s of smooth muscle commands, the resting sphere within 0.1 mm, the scripted
-//! grasp from all four starts, order at least 0.9.
+//! Prints the table in docs/results/reach-grasp-lift.md and fails if the default step does not hold the bounds. These are 1 degree
+//! RMS in every arm joint over 1 s of smooth muscle commands, the resting sphere within 0.1 mm, the scripted grasp from all four
+//! starts, and an order of at least 0.9.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn rms(a: &[[f64; 7]], b: &[[f64; 7]]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Where the sphere's centre is after 5 s at rest [m].
+/// The sphere's center after 5 s at rest [m].
 fn rest<R: Precision>(scene: &Scene, substeps: u32) -> [f64; 3] {
     let model = Model::<R>::new(&scene.robot, &options(&scene.config, substeps)).expect("a model");
     let mut world = World::new(model);

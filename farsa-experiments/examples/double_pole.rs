@@ -1,10 +1,10 @@
 //! Evaluations until two poles are balanced, by CMA-ES and by `CoSyNE`:
 //! `nice cargo run --release -p farsa-experiments --example double_pole -- [--first SEED] [--seeds N] [--threads N] [WORD...]`.
 //!
-//! Tasks and criteria are those of [Gomez2008] section 5.5. A task is solved when, of a generation, a network balances both
-//! poles for 100 000 steps: any of them where fitness is the number of steps, the best one where it is the damping fitness,
-//! which is taken over 1000 steps. All evaluations of that generation count, the test of 100 000 steps does not.
-//! Seeds 1 to 100 are those that are reported; settings were chosen with seeds from 1001 on. Words choose rows by their names.
+//! Tasks and criteria are those of [Gomez2008] section 5.5. A task is solved when a network of a generation balances both poles for
+//! 100 000 steps. With the number of steps as fitness any network counts, with the damping fitness, which is taken over 1000 steps,
+//! the best one. All evaluations of that generation count, the test of 100 000 steps does not. Seeds 1 to 100 are reported.
+//! Settings were chosen with seeds from 1001 on. Words choose rows by their names.
 
 use std::error::Error;
 use std::sync::Mutex;
@@ -19,7 +19,7 @@ use farsa_experiments::double_pole::{CartEpisode, CartState, Config, neuron_orde
 /// Evaluations after which a run counts as not solved.
 const LIMIT: usize = 20_000;
 
-/// What is searched with.
+/// The search.
 #[derive(Clone, Copy)]
 enum Search {
     /// Covariance matrix adaptation with IPOP restarts: the first step size, in the unit of the weights.
@@ -55,11 +55,11 @@ fn rows() -> Vec<Row> {
     ]
 }
 
-/// What came of a seed.
+/// The result of a seed.
 struct Solved {
     /// Evaluations, if it was solved.
     evaluations: Option<usize>,
-    /// Of the 625 starts of the generalization test, those from which the network balances for 1000 steps.
+    /// Starts of the 625 in the generalization test from which the network balances for 1000 steps.
     starts: usize,
 }
 
@@ -143,7 +143,7 @@ fn one(row: &Row, seed: u64) -> Result<Solved, Box<dyn Error>> {
     solve(strategy.as_mut(), row.config, order)
 }
 
-/// Runs a row with all seeds and prints what came of it.
+/// Runs a row with all seeds and prints the results.
 fn report(row: &Row, seeds: std::ops::Range<u64>, threads: u64) {
     let next = AtomicU64::new(seeds.start);
     let found = Mutex::new(Vec::new());

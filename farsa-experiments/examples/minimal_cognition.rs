@@ -31,7 +31,7 @@ fn scores(episode: &mut AgentEpisode, trials: u32) -> [f64; 2] {
     sums.map(|sum| 2.0 * sum / f64::from(trials))
 }
 
-/// Where the agent is beside the object at every height of it.
+/// The agent's horizontal distance from the object at every height of it.
 fn way(episode: &mut AgentEpisode, object: Object, offset: f64) -> Vec<[f64; 2]> {
     episode.place(object, offset);
     let mut way = vec![[-offset, episode.height()]];
@@ -43,7 +43,7 @@ fn way(episode: &mut AgentEpisode, object: Object, offset: f64) -> Vec<[f64; 2]>
     way
 }
 
-/// How far the way of a trial and that from the other side differ at most, for 100 starts under each object, rising.
+/// The largest difference between the way of a trial and that from the other side, for 100 starts under each object, rising.
 fn left_from_right(episode: &mut AgentEpisode) -> Vec<f64> {
     let Config { diameter, side, offset, .. } = *episode.config();
     let mut apart = Vec::new();

@@ -18,7 +18,7 @@ use farsa_lab::{
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 
-/// The first of the seeds of the starts; runs have small ones.
+/// The first of the seeds of the starts. Runs have small ones.
 const FIRST: u64 = 1_000_001;
 const COUNT: usize = 100;
 /// The 97.5 % quantile of Student's t with 99 degrees of freedom.
@@ -41,14 +41,14 @@ fn ids() -> impl Iterator<Item = EpisodeId> {
     (FIRST..).take(COUNT).map(|seed| EpisodeId { seed, ..EpisodeId::default() })
 }
 
-/// The parameters of a genome of its own for every start.
+/// The parameters of another genome for every start.
 fn random(genotype: &Genotype, id: EpisodeId, which: u32) -> Vec<f32> {
     let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(id.seed, Domain::InitialGenome, which, 0, 0));
     genotype.decode(&genes).unwrap_or_default()
 }
 
-/// How all these experiments read genes: with 16 bits.
+/// The genotype of all these experiments: genes of 16 bits.
 fn genotype(evaluator: &dyn Evaluator) -> Genotype {
     Genotype::new(&evaluator.info().parameters, 16)
 }
@@ -101,7 +101,7 @@ fn team(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
     Ok(())
 }
 
-/// What drives a robot.
+/// The controller of a robot.
 enum Mind {
     Network(OwnedNetwork),
     ByHand(Chaser),

@@ -1,5 +1,5 @@
-//! How the rigid-body walker of `passive-walker` goes to the simplest walking model as its feet lose their mass:
-//! `cargo run --release -p farsa-experiments --example walking`, some minutes; with `quick` one row, in seconds.
+//! The rigid-body walker of `passive-walker` approaches the simplest walking model as its feet lose their mass. `cargo run
+//! --release -p farsa-experiments --example walking` takes some minutes. With `quick` it prints one row, in seconds.
 //!
 //! Lengths are in legs, masses in hips, times in sqrt(leg length / gravity).
 
@@ -15,7 +15,7 @@ const DAMPING: f64 = 10.0;
 /// Steps that a walk settles in and is then measured over: the pace is the mean of the last ten.
 const STEPS: u32 = 20;
 
-/// Angle, both legs' rates and period of a walk that has settled; or why there is none.
+/// Angle, both legs' rates and period of a walk that has settled, or the reason for no such walk.
 fn pace(slope: f64, foot_mass: f64, stiffness: f64, [angle, rate, swing]: [f64; 3]) -> Result<[f64; 4], &'static str> {
     let frequency = Scalar::sqrt(stiffness);
     // Two and a half steps within the shortest time of a contact.

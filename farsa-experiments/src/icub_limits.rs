@@ -3,7 +3,7 @@
 use farsa_body::robots::{Chain, Icub};
 use farsa_lab::Error;
 
-/// Whether the angles of a chain \[deg\], the setting `key`, are within its joints' limits.
+/// Checks that the angles of a chain \[deg\], the setting `key`, are within its joints' limits.
 ///
 /// # Errors
 /// [`Error::Setting`] with the first joint that is not.
@@ -12,7 +12,7 @@ pub(crate) fn within_limits(icub: &Icub, key: &str, chain: Chain, degrees: &[f64
     degrees.iter().zip(joints).try_for_each(|(angle, (range, name))| within(key, &name, *angle, range))
 }
 
-/// Whether an angle \[deg\] of the setting `key` is within a joint's limits \[rad\].
+/// Checks that an angle \[deg\] of the setting `key` is within a joint's limits \[rad\].
 ///
 /// # Errors
 /// As [`within_limits`].

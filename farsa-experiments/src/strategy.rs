@@ -2,9 +2,9 @@
 
 use farsa_lab::{StrategyDefinition, Truncation, strategies};
 
-/// The strategy of a name; truncation selection for a name that there is not.
+/// The strategy of a name, or truncation selection for an unknown one.
 pub(crate) fn strategy(name: &str) -> &'static dyn StrategyDefinition {
-    let found = strategies().iter().find(|strategy| strategy.name() == name).copied();
-    debug_assert!(found.is_some(), "no strategy {name}");
-    found.unwrap_or(&Truncation)
+    let strategy = strategies().iter().find(|strategy| strategy.name() == name).copied();
+    debug_assert!(strategy.is_some(), "no strategy {name}");
+    strategy.unwrap_or(&Truncation)
 }

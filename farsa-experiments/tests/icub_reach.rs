@@ -27,7 +27,7 @@ fn depth(world: &World<f32>) -> f32 {
     pairs.filter(|contact| contact.points > 0).fold(0.0, |most, contact| most.max(contact.depth))
 }
 
-/// Runs a trial; the mean distance at its end \[m\] and the deepest contact in it \[m\].
+/// Runs a trial. Returns the mean distance at its end \[m\] and the deepest contact in it \[m\].
 fn run<C: Reacher>(episode: &mut ReachEpisode<C>, world: &mut World<f32>, id: EpisodeId) -> (f64, f32) {
     episode.start(world, id);
     let mut deepest = 0.0_f32;
@@ -36,7 +36,7 @@ fn run<C: Reacher>(episode: &mut ReachEpisode<C>, world: &mut World<f32>, id: Ep
         world.step();
         deepest = deepest.max(depth(world));
         if episode.judge(world).is_some() {
-            return (episode.ledger().mean(), deepest);
+            return (episode.totals().mean(), deepest);
         }
     }
 }
@@ -45,7 +45,7 @@ fn id(trial: u32) -> EpisodeId {
     EpisodeId { seed: 11, trial, ..EpisodeId::default() }
 }
 
-/// Inverse kinematics by the six joints has angles for all of the volume, and a little beyond; held there, nothing touches.
+/// Inverse kinematics by the six joints has angles for all of the volume, and a little beyond. Held there, nothing touches.
 #[test]
 fn all_of_the_volume_can_be_reached() {
     let scene = Scene::new(Config::for_condition(Condition::Steady)).unwrap();
@@ -108,7 +108,7 @@ fn a_script_reaches_the_targets_under_both_conditions() {
     }
 }
 
-/// After a jump the script reaches the second target; it is that target's distance that counts.
+/// After a jump the script reaches the second target. The distance of that target counts.
 #[test]
 fn a_script_follows_a_target_that_jumps() {
     for condition in CONDITIONS {
@@ -168,8 +168,8 @@ fn fitness_is_what_the_last_two_seconds_say() {
                     break fitness;
                 }
             };
-            // The distance after the last step; the others are of the step before.
-            distances.push(episode.ledger().last());
+            // The distance after the last step. The others are of the previous step.
+            distances.push(episode.totals().last());
             assert_eq!(distances.len(), 201);
             let begin = jump.unwrap_or(0) as usize;
             let window = &distances[161.max(begin + 1)..];
@@ -180,7 +180,7 @@ fn fitness_is_what_the_last_two_seconds_say() {
     }
 }
 
-/// A load on the hand is what a heavier palm is once the robot is at rest; under `velocity` the script brings it to the target.
+/// A load on the hand is like a heavier palm once the robot is at rest. Under `velocity` the script brings it to the target.
 #[test]
 fn a_load_weighs_what_a_heavier_palm_does() {
     const LOAD: f64 = 0.5;
@@ -192,7 +192,7 @@ fn a_load_weighs_what_a_heavier_palm_does() {
         palm.centre = [0, 1, 2].map(|k| (palm.mass * palm.centre[k] + LOAD * scene.palm_centre[k]) / whole);
         palm.mass = whole;
         let ends = [(scene.clone(), 0.0), (scene, LOAD), (heavier, 0.0)].map(|(scene, load)| {
-            // The script knows of no load in any of the three.
+            // The script has no information on the load in any of the three.
             let script = Script::new(&Scene::new(scene.config).unwrap()).unwrap();
             let scene = Arc::new(scene);
             let mut world = world_of(&scene);
@@ -285,7 +285,7 @@ fn trials_and_cases_in_lanes_are_those_alone() {
     }
 }
 
-/// Targets are those of all individuals, and new ones in each generation unless the settings say otherwise.
+/// Targets are those of all individuals, and new ones in each generation unless the settings keep them.
 #[test]
 fn targets_are_drawn_for_a_generation() {
     let config = Config::for_condition(Condition::Steady);

@@ -1,6 +1,6 @@
 //! Runs that are killed again and again, at any moment, come to the bytes of a run that was not.
 //!
-//! `FARSA_KILLS` is how often; `./ci long` asks for a thousand.
+//! `FARSA_KILLS` is the number of kills. `./ci long` sets a thousand.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,7 +38,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What a run holds, but for the manifest, which has the times of its sessions.
+/// The content of a run without the manifest, which has the times of its sessions.
 fn content(run: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = names(run).into_iter().filter(|name| name != "manifest.json");
     names.map(|name| (name.clone(), fs::read(run.join(name)).expect("a file"))).collect()
@@ -57,7 +57,7 @@ fn delay(stream: &mut Stream) -> Duration {
     Duration::from_secs_f64(seconds)
 }
 
-/// The generations that are finished, as a reader of the run sees them; none before there is one.
+/// The finished generations, as a reader of the run sees them, or `None` before the first one.
 fn finished(here: &Path) -> Option<u32> {
     let _ = fs::remove_file(here.join("page.html"));
     let output = farsa(here, "report r --json --html page.html").output().expect("the program");
@@ -79,7 +79,7 @@ fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32
     let start = format!("run {name} {options} --generations 4000000 --threads 1 --out r -q");
     let mut latest = 0;
     for kill in 0..kills {
-        // Whatever was left behind, the next start takes it up; only a directory that is not there yet is made.
+        // The next start continues from any state. Only a missing directory is made.
         let arguments = if here.join("r").exists() { "run --resume r --threads 1 -q" } else { &start };
         let mut child = farsa(here, arguments).spawn().expect("the program");
         thread::sleep(delay(&mut stream));

@@ -9,7 +9,7 @@ use farsa_lab::{EpisodeId, Experiment as _, Settings, Value, run_episode};
 use farsa_nn::{Controller, Perceptron};
 use farsa_num::{Domain, Stream};
 
-/// Runs trials of a seed that is no run's and returns what came of them.
+/// Runs trials of a test seed and returns their outcomes.
 fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl FnMut(u32) -> C) -> Vec<PushTrial> {
     let mut world = config.world().unwrap();
     let mut episode = PushEpisode::new(config.clone(), controller(0)).unwrap();
@@ -26,7 +26,7 @@ fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl F
     (0..count).map(one).collect()
 }
 
-/// A layer whose parameters are drawn uniformly from what genes can say.
+/// A layer whose parameters are drawn uniformly from the range of genes.
 fn random(config: &PushConfig, trial: u32) -> Perceptron<Vec<f32>> {
     let mut stream = Stream::new(7, Domain::InitialGenome, trial, 0, 0);
     let range = config.weight_range as f32;

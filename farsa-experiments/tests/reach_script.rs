@@ -12,7 +12,7 @@ use farsa_physics::articulated::{Model, Precision, World};
 struct Grasp {
     trial: Trial,
     success: bool,
-    /// The sphere's centre in the palm's frame after each step [m].
+    /// The sphere's center in the palm's frame after each step [m].
     relative: Vec<[f64; 3]>,
     /// The largest activation of a muscle.
     activation: f32,
@@ -37,7 +37,7 @@ fn grasp<R: Precision>(config: Config, timetable: Timetable, id: EpisodeId) -> G
     Grasp { trial: *episode.judge().trial(), success: episode.judge().succeeds(), relative, activation }
 }
 
-/// How fast the sphere moves in the palm over the last steps: from end to end, and the root mean square of the steps [mm/s].
+/// Speed of the sphere in the palm over the last steps: from end to end, and the root mean square of the steps [mm/s].
 fn slip(relative: &[[f64; 3]], steps: usize) -> [f64; 2] {
     let last = &relative[relative.len() - steps - 1..];
     let way = |a: &[f64; 3], b: &[f64; 3]| 1000.0 * (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt();

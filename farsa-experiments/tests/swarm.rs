@@ -38,7 +38,7 @@ fn prepare(experiment: &dyn Experiment, condition: &str, steps: i64) -> Box<dyn 
     experiment.prepare(condition, &settings).unwrap()
 }
 
-/// The parameters of random genes; all these experiments have genes of 16 bits.
+/// The parameters of random genes. All these experiments have genes of 16 bits.
 fn parameters(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
     let genotype = Genotype::new(&evaluator.info().parameters, 16);
     let mut genes = vec![0; genotype.genes()];
@@ -85,7 +85,7 @@ fn rays_belong_to_robots(recording: &Recording, tick: usize, sensors: usize, [ra
         assert!([ray.from, ray.to].iter().all(|end| (end[2] - height).abs() < 1e-6), "{tick}: {ray:?}");
         let [u, v] = [0, 1].map(|k| ray.to[k] - ray.from[k]);
         let length = u.hypot(v);
-        // Of a place some metres away a single is good to a micrometre.
+        // Some meters away a single has an error of a micrometer.
         assert!(length < range + 1e-5 && (ray.met || length > range - 1e-5), "{tick}: {ray:?}");
         let to = |at: &[f32; 3]| ((ray.from[0] - at[0]).hypot(ray.from[1] - at[1]) - radius).abs();
         assert!(robots.iter().any(|at| to(at) < 1e-5), "{tick}: {ray:?}");
@@ -256,7 +256,7 @@ fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
     let mut episode = PredatorPreyEpisode::new(config.clone(), minds).unwrap();
     for seed in 0..10 {
         let outcome = chase(&mut episode, &mut world, EpisodeId { seed, ..EpisodeId::default() });
-        // Capture leaves no gap that a step could not close; without it there was one at every step.
+        // Capture leaves no gap that a step could not close. Without it there was one at every step.
         assert!(!episode.captured() || episode.gap() < 2.0 * 0.027, "{seed}: {}", episode.gap());
         assert!(outcome.is_finite());
     }

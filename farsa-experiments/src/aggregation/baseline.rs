@@ -7,8 +7,8 @@ use crate::team::config::EYES;
 use crate::team::robots::OUTPUTS;
 use crate::team::steering::{away, eyes};
 
-/// Stays on a nest and shines red there; elsewhere it steers to what shines red, else drives straight on and turns away from
-/// what its infrared sensors see.
+/// Stays on a nest and shines red there. Off a nest it steers to red light, else drives straight on and turns away from objects in
+/// its infrared sensors.
 ///
 /// No memory. Inputs and outputs are those of [`crate::aggregation::AggregationEpisode`].
 #[derive(Clone, Debug)]

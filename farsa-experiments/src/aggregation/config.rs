@@ -7,9 +7,9 @@ use crate::team::config::{TeamConfig, whole};
 use crate::team::nest::{COLORS, NEST};
 use crate::team::{nest, task};
 
-/// What the robots aggregate in; the defaults are those of a condition, the robot's name.
+/// The arena of aggregation. The defaults are those of a condition, the robot's name.
 ///
-/// Lengths are metres.
+/// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AggregationConfig {
     /// The robots.
@@ -20,9 +20,9 @@ pub struct AggregationConfig {
     pub nest_radius: f64,
     /// Least distance of the nests' middles from the walls and half of that between them.
     pub nest_to_wall: f64,
-    /// What a robot on a nest earns.
+    /// Reward of a robot on a nest.
     pub nest_reward: f64,
-    /// What a robot earns that is in the same place as all others.
+    /// Reward of a robot in the same place as all others.
     pub near_reward: f64,
 }
 
@@ -49,14 +49,14 @@ impl AggregationConfig {
         let mut table = crate::team::config::evolution([120, 30, 6], 0.02);
         table.extend(self.team.table(true, self.team.uses_marxbots()));
         table.extend([
-            Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests; two, so that robots may part."),
+            Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests. With two, robots can separate."),
             length("nest.radius", self.nest_radius)
-                .doc("Radius of a nest; six of a robot's, so that ten robots fit with room to drive by."),
+                .doc("Radius of a nest. Six of a robot's, so that ten robots fit with room to drive by."),
             length("nest.to_wall", self.nest_to_wall)
                 .doc("Least distance of a nest's middle from the walls, and half of that from another nest's."),
-            reward("fitness.nest", self.nest_reward).doc("What a robot earns at the end that is on a nest then."),
+            reward("fitness.nest", self.nest_reward).doc("Reward at the end of a robot on a nest."),
             reward("fitness.near", self.near_reward).doc(
-                "What a robot earns at the end less its mean distance to the others, of the arena's diagonal; times this.",
+                "Reward at the end of a robot in the place of all others. It falls with the mean distance to the others, in parts of the arena's diagonal.",
             ),
         ]);
         table
@@ -79,7 +79,7 @@ impl AggregationConfig {
         Ok(read)
     }
 
-    /// The arena with robots and nests, which every trial places anew.
+    /// The arena with robots and nests, which every trial places.
     pub fn arena(&self) -> Arena {
         let mut arena = self.team.arena();
         for _ in 0..self.nests {

@@ -19,15 +19,15 @@ use farsa_view::Channel;
 
 /// Robots that aggregate, with a controller each.
 ///
-/// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), and whether the ground under the
-/// robot is a nest's; it writes what [`Team`] says.
+/// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), and 1 on a nest or 0. Its outputs are
+/// those of [`Team`].
 pub type AggregationEpisode<C> = TeamEpisode<AggregationScenario, C>;
 
 impl<C: Controller> AggregationEpisode<C> {
     /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
-    /// Those of [`Team::new`].
+    /// The errors of [`Team::new`].
     pub fn new(config: AggregationConfig, controllers: Vec<C>) -> Result<Self, Error> {
         Self::from_scenario(AggregationScenario::new(config), controllers)
     }
@@ -50,7 +50,7 @@ impl AggregationScenario {
         Self { nests, homes: vec![None; config.team.robots], config }
     }
 
-    /// What the team would earn for being on nests and for being near each other, the means over its robots.
+    /// The rewards of the team now for being on nests and for being near each other, means over its robots.
     pub fn rewards(&self, moment: Moment<'_>) -> [f64; 2] {
         let Self { config, homes, .. } = self;
         let robots = moment.places.len().max(1) as f64;
@@ -60,7 +60,7 @@ impl AggregationScenario {
         [config.nest_reward * home, config.near_reward * near]
     }
 
-    /// How close together the robots are.
+    /// Spread and clusters of the robots.
     pub fn gathering(&self, moment: Moment<'_>) -> Gathering {
         Gathering::new(moment.places, self.config.team.robot.radius)
     }
@@ -76,7 +76,7 @@ impl AggregationScenario {
     }
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("dispersion", -1.0)],
     descriptors: &[("share on the fullest nest", [0.0, 1.0]), ("share in the largest cluster", [0.0, 1.0])],
@@ -149,8 +149,8 @@ impl Scenario for AggregationScenario {
         false
     }
 
-    /// What the team would earn if the trial ended now, the mean over its robots.
-    fn earned(&self, _: usize, moment: Moment<'_>) -> f64 {
+    /// The reward of the team if the trial ended now, the mean over its robots.
+    fn reward(&self, _: usize, moment: Moment<'_>) -> f64 {
         let [nest, near] = self.rewards(moment);
         nest + near
     }
@@ -204,6 +204,6 @@ impl Scenario for AggregationScenario {
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64> {
         let Gathering { dispersion, clusters, largest } = self.gathering(moment);
         let home = self.homes.iter().flatten().count() as f64;
-        vec![home, dispersion, clusters as f64, largest as f64, self.earned(0, moment)]
+        vec![home, dispersion, clusters as f64, largest as f64, self.reward(0, moment)]
     }
 }

@@ -11,9 +11,9 @@ use crate::team::task::evaluator;
 
 /// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
 ///
-/// A team with one genome starts anywhere in an arena; when the time is up, every robot earns 100 if it is on a nest, and up
-/// to 1 for being near the others. The condition is the robot: the `MarXbot`s' arena, steps and rewards are the source's; nests
-/// and all that the settings call chosen are ours, and sensors and motors are those of `foraging` without energy.
+/// A team with one genome starts anywhere in an arena. When the time is up, every robot earns 100 on a nest, and up to 1 for being
+/// near the others. The condition is the robot. Arena, steps and rewards of the `MarXbot`s are the source's. Nests and all values
+/// that the settings call chosen are ours. Sensors and motors are those of `foraging` without energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Aggregation;
 
@@ -39,7 +39,7 @@ impl Experiment for Aggregation {
     }
 }
 
-/// Runs one trial of a team of any controllers and returns what came of it, as an outcome of the experiment does.
+/// Runs one trial of a team of any controllers and returns its outcome.
 pub fn aggregate<C: Controller>(episode: &mut AggregationEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
     farsa_lab::run_episode(episode, world, id, None);
     episode.outcome(0)

@@ -1,4 +1,4 @@
-//! How close together robots are.
+//! Spread and clusters of robots.
 
 use crate::team::robots::distance;
 
@@ -14,7 +14,7 @@ pub struct Gathering {
 }
 
 impl Gathering {
-    /// Of robots of a radius at these places \[m\].
+    /// Measures robots of a radius at these places \[m\].
     ///
     /// Source: dispersion and clusters \[Gauci2014\]: two robots are of one cluster if no other fits in between them, their
     /// surfaces less than a diameter apart.
@@ -24,7 +24,7 @@ impl Gathering {
         let centre = [sum(0), sum(1)];
         let squares: f64 =
             places.iter().flat_map(|at| [0, 1].map(|k| f64::from(at[k]) - centre[k])).map(|x| x * x).sum();
-        // Every robot in a cluster of its own; neighbours take the smaller number until nothing changes.
+        // Every robot begins as a cluster. Neighbors take the smaller number until nothing changes.
         let mut cluster: Vec<usize> = (0..places.len()).collect();
         let mut changed = true;
         while changed {
@@ -38,7 +38,7 @@ impl Gathering {
                 }
             }
         }
-        let size = |number: usize| cluster.iter().filter(|own| **own == number).count();
+        let size = |number: usize| cluster.iter().filter(|member| **member == number).count();
         let sizes = (0..places.len()).map(size).filter(|size| *size > 0);
         Self {
             dispersion: squares / (4.0 * radius * radius),
@@ -48,7 +48,7 @@ impl Gathering {
     }
 }
 
-/// For each robot its mean distance to the others, in units of `whole`; 0 for a robot that is alone.
+/// For each robot its mean distance to the others, in units of `whole`, or 0 for a robot that is alone.
 pub fn mean_distances(places: &[[f32; 2]], whole: f64) -> Vec<f64> {
     let others = places.len().saturating_sub(1).max(1) as f64;
     let sum = |a: &[f32; 2]| places.iter().map(|b| f64::from(distance(*a, *b))).sum::<f64>();
@@ -67,7 +67,7 @@ mod tests {
         assert_eq!((one.clusters, one.largest), (1, 4));
         let two = Gathering::new(&row(0.41), 0.1);
         assert_eq!((two.clusters, two.largest), (2, 3));
-        // Places -1, 1 about the middle: two squared metres by 0.04.
+        // Places -1, 1 about the middle: two square meters by 0.04.
         assert!((Gathering::new(&[[0.0, 1.0], [2.0, 1.0]], 0.1).dispersion - 50.0).abs() < 1e-9);
         assert_eq!(Gathering::new(&[[1.0, 1.0]], 0.1), Gathering { dispersion: 0.0, clusters: 1, largest: 1 });
         assert_eq!(mean_distances(&[[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 10.0), [0.25, 0.5, 0.25]);
@@ -75,7 +75,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against a search from robot to robot; and dispersion against half the mean of all squared distances.
+        /// Clusters against a search from robot to robot, and dispersion against half the mean of all squared distances.
         #[test]
         fn clusters_are_what_a_walk_reaches(places in prop::collection::vec([0.0_f32..3.0, 0.0_f32..3.0], 1..14)) {
             let found = Gathering::new(&places, 0.1);

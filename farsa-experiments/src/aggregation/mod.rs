@@ -1,15 +1,14 @@
 //! The experiment `aggregation`: a team gathers on nests.
-//!
-//! - `baseline`: a robot that finds a nest without evolution, to compare evolved ones with
-//! - `config`: the values of `aggregation`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `aggregation`: robots look for nests, and for each other
-//! - `measure`: how close together robots are
 
+/// A robot that finds a nest without evolution, to compare evolved ones with.
 mod baseline;
+/// The values of `aggregation`, as settings.
 mod config;
+/// An episode of `aggregation`: robots look for nests, and for each other.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// Spread and clusters of robots.
 mod measure;
 
 pub use baseline::BeaconSeeker;

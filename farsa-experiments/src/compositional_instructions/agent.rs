@@ -28,14 +28,14 @@ impl Agent {
         Ok(Self { network: NormalisedController::new(network), genes, parameters })
     }
 
-    /// Gives it these numbers, and makes it whole; false for another count of them or for numbers that make no network.
+    /// Sets the parameters and clears all changes. Returns false for another count of numbers, or for numbers that make no network.
     pub fn load(&mut self, wiring: &Wiring, values: &[f32]) -> bool {
         self.network.load(None)
             && wiring.expand(values, &mut self.genes, &mut self.parameters)
             && self.network.controller_mut().copy_parameters(&self.parameters).is_ok()
     }
 
-    /// Changes it as a test says until the next [`load`](Self::load); false for what makes no network.
+    /// Applies the changes of a test until the next [`load`](Self::load). Returns false for changes that make no network.
     pub fn change(&mut self, intervention: &Intervention, id: EpisodeId) -> bool {
         self.network.intervene(intervention, id, 0);
         intervention.parameters.is_empty()

@@ -14,7 +14,7 @@ pub struct Arm {
     pub masses: [f64; 2],
     /// Their radius \[m\].
     pub radius: f64,
-    /// How far each joint turns to each side \[deg\].
+    /// Largest turn of each joint to either side \[deg\].
     pub ranges: [f64; 2],
     /// Largest speed that is commanded \[rad/s\].
     pub speeds: [f64; 2],
@@ -24,7 +24,7 @@ pub struct Arm {
     pub torques: [f64; 2],
 }
 
-/// The objects, and where they stand.
+/// The objects and their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objects {
     /// Radius \[m\].
@@ -52,11 +52,11 @@ pub struct Camera {
     pub view: f64,
     /// Rays of a sector.
     pub rays: u32,
-    /// How far it sees \[m\].
+    /// Range of view \[m\].
     pub range: f64,
 }
 
-/// How a trial starts.
+/// The start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// The first joint is at most so far from one of the two directions between the objects \[deg\].
@@ -65,28 +65,28 @@ pub struct Start {
     pub second: f64,
     /// By how much that differs at most \[deg\].
     pub second_spread: f64,
-    /// Whether it starts on a side that is drawn, and not always on the left.
+    /// Start on a drawn side, instead of always on the left.
     pub both_sides: bool,
 }
 
-/// What counts as still, touched, moved.
+/// Limits of the judge: still, touched, moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judging {
     /// The last seconds of a trial, which are looked at \[s\].
     pub window: f64,
     /// A displacement that costs nothing \[m\].
     pub still: f64,
-    /// How much farther than that costs all \[m\].
+    /// Distance beyond that at which the share falls to 0 \[m\].
     pub span: f64,
     /// The same of the target of TOUCH \[m\].
     pub span_touched: f64,
     /// The displacement that MOVE earns most for \[m\].
     pub far: f64,
-    /// Distance of the tip from the centred target's surface from which on reaching earns \[m\].
+    /// Distance of the tip from the surface of the centered target below which reaching earns \[m\].
     pub reach: f64,
-    /// What reaching counts in acts of TOUCH and MOVE \[0..1\].
+    /// Weight of reaching in acts of TOUCH and MOVE \[0..1\].
     pub reach_share: f64,
-    /// What a step of IGNORE earns in which the target is in view but not in its middle \[0..1\].
+    /// Reward of a step of IGNORE with the target in view outside the middle sector \[0..1\].
     pub aside_share: f64,
     /// Least shares of the last seconds in a success: of INDICATE and IGNORE, and of TOUCH.
     pub least_shares: [f64; 2],
@@ -113,7 +113,7 @@ pub struct Ranges {
     pub gains: [f64; 2],
 }
 
-/// All values of the experiment; which are the source's, and why the others are as they are, say the settings.
+/// All values of the experiment. The settings name their sources and the reasons for the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Which actions there are.
@@ -136,9 +136,9 @@ pub struct Config {
     pub camera: Camera,
     /// Surfaces nearer than this count as touching \[m\].
     pub touch_margin: f64,
-    /// How a trial starts.
+    /// The start of a trial.
     pub start: Start,
-    /// What counts.
+    /// Limits of the judge.
     pub judging: Judging,
     /// The network.
     pub ranges: Ranges,
@@ -201,7 +201,7 @@ impl Config {
     /// The instructions that are trained, in the order of the condition's nine.
     pub fn trained(&self) -> impl Iterator<Item = Instruction> + use<> {
         let held_out = self.held_out;
-        self.condition.instructions().into_iter().filter(move |one| !held_out.contains(one))
+        self.condition.instructions().into_iter().filter(move |instruction| !held_out.contains(instruction))
     }
 
     /// Trials of an evaluation: each trained instruction from each start.
@@ -215,7 +215,7 @@ impl Config {
         (steps as u32).clamp(1, self.steps)
     }
 
-    /// What goes together.
+    /// Rules between values.
     ///
     /// # Errors
     /// [`Error::Setting`] for objects that may overlap each other or the arm at the start, or that the arm does not reach, and

@@ -1,4 +1,4 @@
-//! An episode of `compositional-instructions`: the agent hears an instruction and follows it, or does not.
+//! An episode of `compositional-instructions`: the agent receives an instruction and follows it, or does not.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 
-use crate::compositional_instructions::fitness::{Ledger, Observation, Parts};
+use crate::compositional_instructions::fitness::{RewardTotals, Observation, Parts};
 use crate::compositional_instructions::instruction::Instruction;
 use crate::compositional_instructions::network::{INPUTS, MOTORS};
 use crate::compositional_instructions::scene::Scene;
@@ -20,9 +20,9 @@ fn noise_of(id: EpisodeId) -> Stream {
     Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation)
 }
 
-/// What an agent is told in a trial: an instruction, and in a test another one later on.
+/// The instructions of a trial: one, and in a test a later one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told {
+pub struct TrialInstructions {
     /// The instruction at the start.
     pub first: Instruction,
     /// From which step on another holds, and which.
@@ -33,7 +33,7 @@ pub struct Told {
     pub noise: f32,
 }
 
-impl Told {
+impl TrialInstructions {
     /// The instruction at a step.
     pub fn at(&self, step: u32) -> Instruction {
         match self.change {
@@ -45,21 +45,21 @@ impl Told {
 
 /// A trial run by a controller: it is judged by the instruction that holds at its end.
 ///
-/// Where the instruction changes, the ledger begins anew at the change: displacements are those since then.
+/// A change of the instruction restarts the totals: displacements are counted from then on.
 #[derive(Clone, Debug)]
 pub struct InstructionEpisode<C> {
     scene: Arc<Scene>,
     senses: Senses,
     controller: C,
-    told: Told,
+    instructions: TrialInstructions,
     /// Where the objects were when the instruction was given \[m\].
     places: [[f64; 2]; 3],
-    ledger: Ledger,
-    /// What the first instruction had come to when it was withdrawn.
+    totals: RewardTotals,
+    /// Result of the first instruction when it was withdrawn.
     before_change: Option<(Parts, bool)>,
     steps: u32,
     stream: Stream,
-    /// What will be sensed, and what was sensed and done last.
+    /// The next inputs, and the last inputs and outputs.
     next: [f32; INPUTS],
     x: [f32; INPUTS],
     y: [f32; MOTORS],
@@ -78,14 +78,14 @@ impl<C: Controller> InstructionEpisode<C> {
         }
         let senses = Senses::new(&scene)?;
         let first = scene.config.condition.instructions()[0];
-        let told = Told { first, change: None, steps: scene.config.steps, noise: 0.0 };
+        let instructions = TrialInstructions { first, change: None, steps: scene.config.steps, noise: 0.0 };
         Ok(Self {
             scene,
             senses,
             controller,
-            told,
+            instructions,
             places: [[0.0; 2]; 3],
-            ledger: Ledger::default(),
+            totals: RewardTotals::default(),
             before_change: None,
             steps: 0,
             stream: noise_of(EpisodeId::default()),
@@ -95,14 +95,14 @@ impl<C: Controller> InstructionEpisode<C> {
         })
     }
 
-    /// What the next episodes are told.
-    pub fn tell(&mut self, told: Told) {
-        self.told = told;
+    /// Sets the instructions of the next episodes.
+    pub fn instruct(&mut self, instructions: TrialInstructions) {
+        self.instructions = instructions;
     }
 
-    /// What it is told.
-    pub fn told(&self) -> &Told {
-        &self.told
+    /// The instructions.
+    pub fn instructions(&self) -> &TrialInstructions {
+        &self.instructions
     }
 
     /// The scene.
@@ -120,12 +120,12 @@ impl<C: Controller> InstructionEpisode<C> {
         &mut self.controller
     }
 
-    /// What was sensed last \[20\].
+    /// The last inputs \[20\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What was done last \[4\].
+    /// The last outputs \[4\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
@@ -137,27 +137,27 @@ impl<C: Controller> InstructionEpisode<C> {
 
     /// The instruction that the trial is judged by.
     pub fn instruction(&self) -> Instruction {
-        self.told.at(self.steps)
+        self.instructions.at(self.steps)
     }
 
-    /// The ledger.
-    pub fn ledger(&self) -> &Ledger {
-        &self.ledger
+    /// The totals.
+    pub fn totals(&self) -> &RewardTotals {
+        &self.totals
     }
 
-    /// What the first instruction had come to when another one was given: what it earned, and whether it had succeeded.
+    /// The result of the first instruction when the second one was given: its reward and its success.
     pub fn before_change(&self) -> Option<(Parts, bool)> {
         self.before_change
     }
 
-    /// What the trial earns if it ends now.
+    /// The reward if the trial ends now.
     pub fn parts(&self) -> Parts {
-        self.ledger.parts(self.instruction(), &self.scene.config.judging)
+        self.totals.parts(self.instruction(), &self.scene.config.judging)
     }
 
-    /// Whether it succeeds if it ends now.
+    /// True if the trial succeeds when it ends now.
     pub fn succeeds(&self) -> bool {
-        self.ledger.succeeds(self.instruction(), &self.scene.config.judging)
+        self.totals.succeeds(self.instruction(), &self.scene.config.judging)
     }
 
     fn place_of_objects<W: ArmWorld + ?Sized>(&self, world: &W) -> [[f64; 2]; 3] {
@@ -169,7 +169,7 @@ impl<C: Controller> InstructionEpisode<C> {
 
     /// Reads the sensors for the step to come.
     fn sense<W: ArmWorld + ?Sized>(&mut self, world: &W) -> Observation {
-        let instruction = self.told.at(self.steps);
+        let instruction = self.instructions.at(self.steps);
         self.senses.read(world, instruction, &self.places, &mut self.next)
     }
 }
@@ -182,7 +182,7 @@ where
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.scene.arrange(world, &self.scene.start_pose(id));
         self.controller.reset();
-        (self.ledger, self.before_change, self.steps) = (Ledger::default(), None, 0);
+        (self.totals, self.before_change, self.steps) = (RewardTotals::default(), None, 0);
         (self.x, self.y) = ([0.0; INPUTS], [0.0; MOTORS]);
         self.stream = noise_of(id);
         self.places = self.place_of_objects(world);
@@ -191,9 +191,9 @@ where
 
     fn act(&mut self, world: &mut W) {
         self.x = self.next;
-        if self.told.noise > 0.0 {
+        if self.instructions.noise > 0.0 {
             for x in &mut self.x[..WORDS] {
-                *x += self.told.noise * self.stream.normal();
+                *x += self.instructions.noise * self.stream.normal();
             }
         }
         self.controller.step(&self.x, &mut self.y);
@@ -204,23 +204,23 @@ where
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        let held = self.told.at(self.steps);
+        let held = self.instructions.at(self.steps);
         self.steps += 1;
         let now = self.sense(world);
         let window = self.scene.config.window_steps();
-        let withdrawn = self.told.change.is_some_and(|(at, _)| self.steps == at);
+        let withdrawn = self.instructions.change.is_some_and(|(at, _)| self.steps == at);
         let end =
-            self.told.change.map_or(self.told.steps, |(at, _)| if self.steps <= at { at } else { self.told.steps });
-        self.ledger.add(held, now, self.steps + window > end);
+            self.instructions.change.map_or(self.instructions.steps, |(at, _)| if self.steps <= at { at } else { self.instructions.steps });
+        self.totals.add(held, now, self.steps + window > end);
         if !now.ahead.iter().flatten().all(|x| x.is_finite()) {
             return Some(f64::NAN);
         }
         if withdrawn {
             let judging = &self.scene.config.judging;
-            self.before_change = Some((self.ledger.parts(held, judging), self.ledger.succeeds(held, judging)));
-            self.ledger = Ledger::default();
+            self.before_change = Some((self.totals.parts(held, judging), self.totals.succeeds(held, judging)));
+            self.totals = RewardTotals::default();
             self.places = self.place_of_objects(world);
         }
-        (self.steps >= self.told.steps).then(|| self.parts().fitness)
+        (self.steps >= self.instructions.steps).then(|| self.parts().fitness)
     }
 }

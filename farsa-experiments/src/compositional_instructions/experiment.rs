@@ -9,15 +9,15 @@ use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::task::InstructionTask;
 use crate::strategy::strategy;
 
-/// How does an agent come to understand two words that it never heard together? \[Tuci2011; Ferrauto2010, chapter 3\]
+/// Can an agent combine two words that it has never received together? \[Tuci2011; Ferrauto2010, chapter 3\]
 ///
-/// An arm in the plane is told an action and an object, and evolves to follow seven of nine instructions. "TOUCH green" and
-/// "MOVE red" are held out: it is asked them in the test only. Under `with-indicate` the actions are INDICATE, TOUCH and MOVE,
-/// under `with-ignore` IGNORE takes the place of INDICATE.
+/// An arm in the plane receives an action and an object, and evolves to follow seven of nine instructions. "TOUCH green" and "MOVE
+/// red" are held out for the test. Under `with-indicate` the actions are INDICATE, TOUCH and MOVE. Under `with-ignore` IGNORE
+/// replaces INDICATE.
 ///
-/// Deviations: what the sources' abstracts and excerpts do not say is of our own making, and the settings say which that is. A
-/// sensory neuron reaches the inner ones a step later. IGNORE asks that the target be the object that was seen last: were
-/// looking at nothing enough, an agent that did not know the object word could follow all three of its instructions.
+/// Deviations: the sources are abstracts and excerpts. The settings name the values that are ours. A sensory neuron reaches the
+/// inner ones one step later. IGNORE requires that the target was the object last in view. If a look at nothing were enough, an
+/// agent without the object word could follow all three of its instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct CompositionalInstructions;
 
@@ -34,14 +34,14 @@ impl Experiment for CompositionalInstructions {
         &Condition::NAMES
     }
 
-    // 2: reaching counts while the target is centred, a push in TOUCH costs less, the second joint starts on one side.
-    // 3: IGNORE asks in every one of the last steps which object was seen last, not at the end alone, and earns half for a look past
-    // it; the standard deviations learn at half the rate.
+    // 2: reaching counts while the target is centered, a push in TOUCH costs less, the second joint starts on one side. 3: IGNORE
+    // checks the object last in view in every one of the last steps, and earns half for a look past it. The standard deviations
+    // learn at half the rate.
     fn values_version(&self) -> u32 {
         3
     }
 
-    /// Natural evolution strategies: the truncation algorithm had not found the objects after nine million lives.
+    /// Natural evolution strategies: truncation selection did not find the objects in nine million trials.
     fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
         strategy("snes")
     }

@@ -1,4 +1,4 @@
-//! What a trial earns, and whether it succeeds.
+//! The reward of a trial, and its success.
 
 use core::f64::consts::PI;
 
@@ -7,33 +7,33 @@ use farsa_num::atan2;
 use crate::compositional_instructions::config::Judging;
 use crate::compositional_instructions::instruction::{Action, Color, Instruction};
 
-/// What is to be seen of the agent and its objects after a step.
+/// The agent and its objects as the judge sees them after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// Which colours each sector of the camera shows, the leftmost sector first.
+    /// Colors in each sector of the camera, the leftmost sector first.
     pub seen: [[bool; 3]; 3],
-    /// Which objects the second segment is on, by colour.
+    /// Objects that the second segment touches, by color.
     pub touched: [bool; 3],
-    /// How far each object is from where the trial found it \[m\].
+    /// Distance of each object from its place at the start \[m\].
     pub displaced: [f64; 3],
-    /// How far the tip of the second segment is from each object's surface \[m\].
+    /// Distance of the tip of the second segment from each object's surface \[m\].
     pub tip: [f64; 3],
     /// Where each object is from the camera, which looks along the first axis: ahead and to the left \[m\].
     pub ahead: [[f64; 2]; 3],
 }
 
 impl Observation {
-    /// Whether any sector shows the colour.
+    /// True if any sector shows the color.
     pub fn in_view(&self, color: Color) -> bool {
         self.seen.iter().any(|sector| sector[color.index()])
     }
 
-    /// Whether the middle sector shows the colour.
+    /// True if the middle sector shows the color.
     pub fn centred(&self, color: Color) -> bool {
         self.seen[1][color.index()]
     }
 
-    /// Whether the second segment is on an object.
+    /// True if the second segment touches an object.
     pub fn touches(&self) -> bool {
         self.touched.contains(&true)
     }
@@ -42,23 +42,23 @@ impl Observation {
 /// The parts of a trial's fitness, each 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Parts {
-    /// Whether the object was found, f.
+    /// The share of finding the object, f.
     pub find: f64,
-    /// Whether with it was done what was told, a.
+    /// The share of the action, a.
     pub act: f64,
-    /// Whether the others stayed where they were, u.
+    /// The share of leaving the other objects in place, u.
     pub undisturbed: f64,
     /// All of it, F.
     pub fitness: f64,
 }
 
-/// The ledger of a trial: what its last seconds were like.
+/// The totals of a trial: what its last seconds were like.
 ///
-/// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
-/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached
-/// while the target was centred: 1 if the second segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts
-/// q; s(x) is the share of the last seconds in which the target was the object that had been in view last, and x held; a look past
-/// the target counts p:
+/// All shares are of the last seconds. `d_t` and `d_o` are the displacements of the target and of the other object that moved most.
+/// `near(d) = 1 - clamp((d - still) / span, 0, 1)`, and `aside(d)` has a separate span. r is the best reach of the tip while the
+/// target was centered. It is 1 if the second segment touched it, else `1 - clamp(distance of its tip / reach, 0, 1)`, with the
+/// weight q. s(x) is the share of steps in which the target was the object last in view and x held. A look past the target has the
+/// weight p:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
@@ -67,7 +67,7 @@ pub struct Parts {
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
 /// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | (s(not in view) + p s(in view, not centred)) near(`d_t`), touching nothing | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Ledger {
+pub struct RewardTotals {
     /// Steps of the last seconds so far.
     steps: u32,
     /// In how many of them each held.
@@ -77,15 +77,15 @@ pub struct Ledger {
     ignored: u32,
     aside: u32,
     on_target: u32,
-    /// Which colours were in view when any was, last.
+    /// Colors in view when any was in view last.
     last_seen: [bool; 3],
-    /// How far the tip was from the target's surface, 0 if the second segment was on it, at best while the target was centred \[m\].
+    /// Least distance of the tip from the target's surface while the target was centered, 0 for a touch \[m\].
     nearest: Option<f64>,
     /// The step that passed last.
     last: Observation,
 }
 
-impl Ledger {
+impl RewardTotals {
     /// Takes a step of a trial under an instruction, `late` if it is one of the last seconds.
     pub fn add(&mut self, instruction: Instruction, now: Observation, late: bool) {
         let seen = Color::ALL.map(|color| now.in_view(color));
@@ -128,25 +128,27 @@ impl Ledger {
         f64::from(steps) / f64::from(self.steps.max(1))
     }
 
-    /// What the trial earns if it ends now.
+    /// The reward if the trial ends now.
     pub fn parts(&self, instruction: Instruction, judging: &Judging) -> Parts {
         let target = instruction.color;
         let [displaced, other] = self.displaced(target);
+        // near(d) = 1 - clamp((d - still) / span, 0, 1).
         let within = |span: f64, distance: f64| 1.0 - ((distance - judging.still) / span).clamp(0.0, 1.0);
         let near = |distance: f64| within(judging.span, distance);
         let [ahead, left] = self.last.ahead[target.index()];
         let angle = atan2(left, ahead).abs();
-        let found = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.centred);
+        let centering = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.centred);
         let undisturbed = near(other);
         let reached = self.nearest.map_or(0.0, |nearest| 1.0 - (nearest / judging.reach).clamp(0.0, 1.0));
+        // q r + (1 - q) rest: reaching pays before the act succeeds.
         let with_reach = |rest: f64| judging.reach_share * reached + (1.0 - judging.reach_share) * rest;
         let (find, act) = match instruction.action {
-            Action::Indicate => (found, self.share(self.centred_alone) * near(displaced)),
+            Action::Indicate => (centering, self.share(self.centred_alone) * near(displaced)),
             Action::Touch => {
-                let beside = within(judging.span_touched, displaced);
-                (found, with_reach(self.share(self.on_target)) * beside)
+                let undisplaced = within(judging.span_touched, displaced);
+                (centering, with_reach(self.share(self.on_target)) * undisplaced)
             }
-            Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
+            Action::Move => (centering, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
                 let find = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.remembered);
                 // A part for a look past it: without, nothing leads from the middle of the view out of it.
@@ -154,11 +156,12 @@ impl Ledger {
                 (find, looked_away * near(displaced))
             }
         };
+        // F = u (f / 2 + f a / 2): the act counts only for a found object.
         let fitness = undisturbed * (0.5 * find + 0.5 * find * act);
         Parts { find, act, undisturbed, fitness }
     }
 
-    /// Whether the trial succeeds if it ends now.
+    /// True if the trial succeeds when it ends now.
     pub fn succeeds(&self, instruction: Instruction, judging: &Judging) -> bool {
         let target = instruction.color;
         let [displaced, other] = self.displaced(target);
@@ -182,7 +185,7 @@ mod tests {
 
     const JUDGING: Judging = Config::for_condition(Condition::WithIndicate).judging;
 
-    fn told(text: &str) -> Instruction {
+    fn parsed(text: &str) -> Instruction {
         text.parse().unwrap()
     }
 
@@ -194,15 +197,15 @@ mod tests {
         now
     }
 
-    /// A trial of 50 late steps of which so many are the one, the others the other.
-    fn ledger(instruction: Instruction, steps: [(u32, Observation); 2]) -> Ledger {
-        let mut ledger = Ledger::default();
-        // What was before the last seconds counts for nothing but for what was seen last.
-        (0..200).for_each(|_| ledger.add(instruction, Observation::default(), false));
+    /// A trial of 50 late steps, with the given numbers of steps of each observation.
+    fn totals(instruction: Instruction, steps: [(u32, Observation); 2]) -> RewardTotals {
+        let mut totals = RewardTotals::default();
+        // Steps before the last seconds count only for the object last in view.
+        (0..200).for_each(|_| totals.add(instruction, Observation::default(), false));
         for (count, now) in steps {
-            (0..count).for_each(|_| ledger.add(instruction, now, true));
+            (0..count).for_each(|_| totals.add(instruction, now, true));
         }
-        ledger
+        totals
     }
 
     fn close(parts: Parts, [find, act, undisturbed, fitness]: [f64; 4]) {
@@ -213,104 +216,104 @@ mod tests {
 
     #[test]
     fn indicate_by_hand() {
-        let red = told("INDICATE red");
-        let full = ledger(red, [(50, centred()), (0, centred())]);
+        let red = parsed("INDICATE red");
+        let full = totals(red, [(50, centred()), (0, centred())]);
         close(full.parts(red, &JUDGING), [1.0, 1.0, 1.0, 1.0]);
         assert!(full.succeeds(red, &JUDGING));
-        // Ten of fifty steps touching, target 6 cm away from where it was, at a right angle at the end: f = 0.5 * 0.5 + 0.5 * 0.8,
-        // a = 0.8 * (1 - 4 / 8).
+        // Ten of fifty steps touch, and the target is 6 cm away from its place, at a right angle at the end. The terms are `f = 0.5
+        // * 0.5 + 0.5 * 0.8` and `a = 0.8 * (1 - 4 / 8)`.
         let mut aside = centred();
         (aside.touched[2], aside.displaced[0], aside.ahead[0], aside.seen[1][0]) = (true, 0.06, [0.0, 1.3], false);
-        let some = ledger(red, [(40, centred()), (10, aside)]);
+        let some = totals(red, [(40, centred()), (10, aside)]);
         close(some.parts(red, &JUDGING), [0.65, 0.4, 1.0, 0.5 * 0.65 + 0.5 * 0.65 * 0.4]);
         assert!(!some.succeeds(red, &JUDGING));
         // Another object 4 cm away: u = 1 - 2 / 8.
         let mut disturbed = centred();
         disturbed.displaced[1] = 0.04;
-        let with = ledger(red, [(50, disturbed), (0, disturbed)]);
+        let with = totals(red, [(50, disturbed), (0, disturbed)]);
         close(with.parts(red, &JUDGING), [1.0, 1.0, 0.75, 0.75]);
         assert!(with.succeeds(red, &JUDGING));
         disturbed.displaced[1] = 0.051;
-        assert!(!ledger(red, [(50, disturbed), (0, disturbed)]).succeeds(red, &JUDGING));
+        assert!(!totals(red, [(50, disturbed), (0, disturbed)]).succeeds(red, &JUDGING));
     }
 
     #[test]
     fn touch_and_move_by_hand() {
-        let red = told("TOUCH red");
+        let red = parsed("TOUCH red");
         let mut on = centred();
         on.touched[0] = true;
-        let most = ledger(red, [(10, centred()), (40, on)]);
+        let most = totals(red, [(10, centred()), (40, on)]);
         // a = 0.5 + 0.5 * 0.8: it was reached.
         close(most.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.95]);
         // Not reached, the tip 35 of 100 cm away: a = 0.5 * 0.65.
-        close(ledger(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.325, 1.0, 0.6625]);
+        close(totals(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.325, 1.0, 0.6625]);
         assert!(most.succeeds(red, &JUDGING));
-        assert!(!ledger(red, [(11, centred()), (39, on)]).succeeds(red, &JUDGING));
+        assert!(!totals(red, [(11, centred()), (39, on)]).succeeds(red, &JUDGING));
         // Pushed by 9.5 cm: 1 - 7.5 / 15 of it.
         on.displaced[0] = 0.095;
-        close(ledger(red, [(50, on), (0, on)]).parts(red, &JUDGING), [1.0, 0.5, 1.0, 0.75]);
-        assert!(!ledger(red, [(50, on), (0, on)]).succeeds(red, &JUDGING));
+        close(totals(red, [(50, on), (0, on)]).parts(red, &JUDGING), [1.0, 0.5, 1.0, 0.75]);
+        assert!(!totals(red, [(50, on), (0, on)]).succeeds(red, &JUDGING));
         // Straight behind and never seen, half as far away as it should be.
-        let moved = told("MOVE blue");
+        let moved = parsed("MOVE blue");
         let mut now = centred();
         (now.displaced[2], now.ahead[2]) = (0.175, [-1.0, 0.0]);
         // Pushed without a look at it, so reaching counts for nothing.
-        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.25, 1.0, 0.0]);
+        close(totals(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.25, 1.0, 0.0]);
         (now.displaced[2], now.ahead[2], now.touched[2]) = (0.5, [1.0, 0.0], true);
-        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.5, 0.5, 1.0, 0.375]);
+        close(totals(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.5, 0.5, 1.0, 0.375]);
         // Centred when it was touched, and out of view then.
         let mut pushed = now;
         pushed.seen[1][2] = true;
-        let far = ledger(moved, [(10, pushed), (40, now)]);
+        let far = totals(moved, [(10, pushed), (40, now)]);
         close(far.parts(moved, &JUDGING), [0.6, 1.0, 1.0, 0.6]);
         assert!(far.succeeds(moved, &JUDGING));
         now.displaced[2] = 0.299;
-        assert!(!ledger(moved, [(50, now), (0, now)]).succeeds(moved, &JUDGING));
+        assert!(!totals(moved, [(50, now), (0, now)]).succeeds(moved, &JUDGING));
     }
 
     #[test]
     fn ignore_by_hand() {
-        let red = told("IGNORE red");
+        let red = parsed("IGNORE red");
         let nothing = Observation { seen: [[false; 3]; 3], ..centred() };
         // Never seen: f = 0.5 as it is straight ahead, and nothing for looking at nothing.
-        let unseen = ledger(red, [(50, nothing), (0, nothing)]);
+        let unseen = totals(red, [(50, nothing), (0, nothing)]);
         close(unseen.parts(red, &JUDGING), [0.5, 0.0, 1.0, 0.25]);
         assert!(!unseen.succeeds(red, &JUDGING));
         // Looked at all the time.
-        close(ledger(red, [(50, centred()), (0, nothing)]).parts(red, &JUDGING), [1.0, 0.0, 1.0, 0.5]);
-        let turned = ledger(red, [(5, centred()), (45, nothing)]);
+        close(totals(red, [(50, centred()), (0, nothing)]).parts(red, &JUDGING), [1.0, 0.0, 1.0, 0.5]);
+        let turned = totals(red, [(5, centred()), (45, nothing)]);
         close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.5 + 0.5 * 0.9]);
         assert!(turned.succeeds(red, &JUDGING));
-        assert!(!ledger(red, [(6, centred()), (44, nothing)]).succeeds(red, &JUDGING));
+        assert!(!totals(red, [(6, centred()), (44, nothing)]).succeeds(red, &JUDGING));
         // Red at the edge of the view for 20 of the 50 steps, in its middle for the others: a = 0.5 * 0.4.
         let mut past = centred();
         (past.seen[1][0], past.seen[2][0]) = (false, true);
-        let looked_past = ledger(red, [(30, centred()), (20, past)]);
+        let looked_past = totals(red, [(30, centred()), (20, past)]);
         close(looked_past.parts(red, &JUDGING), [1.0, 0.2, 1.0, 0.6]);
-        assert!(!ledger(red, [(0, centred()), (50, past)]).succeeds(red, &JUDGING));
+        assert!(!totals(red, [(0, centred()), (50, past)]).succeeds(red, &JUDGING));
         // Turned away by a right angle: f = 0.5 * 0.5 + 0.5.
         let aside = Observation { ahead: [[0.0, 1.3]; 3], ..nothing };
-        let away = ledger(red, [(5, centred()), (45, aside)]);
+        let away = totals(red, [(5, centred()), (45, aside)]);
         close(away.parts(red, &JUDGING), [0.75, 0.9, 1.0, 0.75 * (0.5 + 0.5 * 0.9)]);
         assert!(away.succeeds(red, &JUDGING));
         // Another one is seen last, from the sixth of the last steps on.
         let mut other = nothing;
         other.seen[0][1] = true;
-        let looked = ledger(red, [(5, centred()), (45, other)]);
+        let looked = totals(red, [(5, centred()), (45, other)]);
         close(looked.parts(red, &JUDGING), [0.55, 0.0, 1.0, 0.275]);
         assert!(!looked.succeeds(red, &JUDGING));
         // Another one is looked at until the end is near: to come back at the end earns what is left.
-        let late = ledger(red, [(45, other), (5, centred())]);
+        let late = totals(red, [(45, other), (5, centred())]);
         close(late.parts(red, &JUDGING), [0.55, 0.0, 1.0, 0.275]);
         // Out of view for all of the last seconds but two steps, and the last one seen for those only.
-        let mut late = ledger(red, [(40, other), (2, centred())]);
+        let mut late = totals(red, [(40, other), (2, centred())]);
         (0..8).for_each(|_| late.add(red, nothing, true));
         close(late.parts(red, &JUDGING), [0.6, 0.16, 1.0, 0.3 + 0.3 * 0.16]);
         assert!(!late.succeeds(red, &JUDGING));
     }
 
     fn any_observation() -> impl Strategy<Value = Observation> {
-        // One colour at most in view, and one object at most touched, as the places of the objects have it.
+        // At most one color in view and one object touched, as the places of the objects allow.
         let one = || prop::option::of((0..3usize, 0..3usize));
         let place = || prop::array::uniform2(-2.0..2.0);
         let lengths = || prop::array::uniform3(0.0..0.6);
@@ -333,24 +336,24 @@ mod tests {
         fn no_part_exceeds_its_maximum_and_one_behaviour_follows_one_instruction_of_a_word(
             course in prop::collection::vec((any_observation(), 1..60u32, any::<bool>()), 1..6)
         ) {
-            let ledgers: Vec<(Instruction, Ledger)> = Instruction::all()
+            let ledgers: Vec<(Instruction, RewardTotals)> = Instruction::all()
                 .map(|instruction| {
-                    let mut ledger = Ledger::default();
+                    let mut totals = RewardTotals::default();
                     for (now, steps, late) in &course {
-                        (0..*steps).for_each(|_| ledger.add(instruction, *now, *late));
+                        (0..*steps).for_each(|_| totals.add(instruction, *now, *late));
                     }
-                    (instruction, ledger)
+                    (instruction, totals)
                 })
                 .collect();
-            for (instruction, ledger) in &ledgers {
-                let Parts { find, act, undisturbed, fitness } = ledger.parts(*instruction, &JUDGING);
+            for (instruction, totals) in &ledgers {
+                let Parts { find, act, undisturbed, fitness } = totals.parts(*instruction, &JUDGING);
                 for part in [find, act, undisturbed, fitness] {
                     prop_assert!((0.0..=1.0).contains(&part));
                 }
             }
-            // The same behaviour is a success of at most one action with an object, and of at most one object with an action:
-            // who does not hear one of the words follows a third of the instructions.
-            let succeeds = |one: &&(Instruction, Ledger)| one.1.succeeds(one.0, &JUDGING);
+            // A behavior succeeds for at most one action per object, and for at most one object per action. An agent without one of
+            // the words therefore follows a third of the instructions.
+            let succeeds = |one: &&(Instruction, RewardTotals)| one.1.succeeds(one.0, &JUDGING);
             for condition in [Condition::WithIndicate, Condition::WithIgnore] {
                 for color in Color::ALL {
                     let of_color = ledgers.iter().filter(|one| {

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use farsa_lab::Error;
 
-/// What is to be done with an object.
+/// An action on an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Turn to it and touch nothing.
@@ -18,7 +18,7 @@ pub enum Action {
     Ignore,
 }
 
-/// Which object, by its colour.
+/// An object, by its color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Color {
     /// The red one.
@@ -32,13 +32,13 @@ pub enum Color {
 /// An action word and an object word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// What is to be done.
+    /// The action.
     pub action: Action,
     /// With which object.
     pub color: Color,
 }
 
-/// Which three actions an agent is told: one of the experiment's two conditions.
+/// The three actions of an agent: one of the experiment's two conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Condition {
     /// INDICATE, TOUCH, MOVE.
@@ -49,7 +49,7 @@ pub enum Condition {
 }
 
 impl Action {
-    /// Every action; those of a condition are [`Condition::actions`].
+    /// Every action. A condition has three of them, [`Condition::actions`].
     pub const ALL: [Self; 4] = [Self::Indicate, Self::Touch, Self::Move, Self::Ignore];
 
     /// The word.
@@ -64,7 +64,7 @@ impl Action {
 }
 
 impl Color {
-    /// Every colour, in the order of the channels and of the objects.
+    /// Every color, in the order of the channels and of the objects.
     pub const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 
     /// The word.
@@ -95,7 +95,7 @@ impl Condition {
     /// The names of both, in their order.
     pub const NAMES: [&'static str; 2] = ["with-indicate", "with-ignore"];
 
-    /// The condition of this name; that of any other name is [`Condition::WithIndicate`].
+    /// The condition of this name, or [`Condition::WithIndicate`].
     pub fn from_name(name: &str) -> Self {
         if name == Self::NAMES[1] { Self::WithIgnore } else { Self::WithIndicate }
     }
@@ -114,7 +114,7 @@ impl Condition {
         core::array::from_fn(|i| Instruction { action: actions[i / 3], color: Color::ALL[i % 3] })
     }
 
-    /// The number of the channel that an action has; that of an action that is not told is 0.
+    /// The number of an action's channel, or 0 for an action of the other condition.
     pub fn channel(self, action: Action) -> usize {
         self.actions().iter().position(|other| *other == action).unwrap_or(0)
     }
@@ -122,10 +122,10 @@ impl Condition {
     /// The instruction of these two words.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest instruction for one that is not told in this condition.
+    /// [`Error::Unknown`] with the nearest instruction for one of the other condition.
     pub fn parse(self, text: &str) -> Result<Instruction, Error> {
-        let found = text.parse::<Instruction>().ok().filter(|known| self.actions().contains(&known.action));
-        found.ok_or_else(|| {
+        let instruction = text.parse::<Instruction>().ok();
+        instruction.filter(|instruction| self.actions().contains(&instruction.action)).ok_or_else(|| {
             let names = self.instructions().map(|instruction| instruction.to_string());
             Error::unknown("", "instruction", text, names.iter().map(String::as_str))
         })
@@ -155,10 +155,11 @@ impl FromStr for Instruction {
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut words = text.split_whitespace();
         let (first, second, rest) = (words.next(), words.next(), words.next());
-        let same = |found: Option<&str>, word: &str| found.is_some_and(|found| found.eq_ignore_ascii_case(word));
-        let known = Self::all()
-            .find(|known| same(first, known.action.word()) && same(second, known.color.word()) && rest.is_none());
-        known.ok_or_else(|| {
+        let same = |given: Option<&str>, word: &str| given.is_some_and(|given| given.eq_ignore_ascii_case(word));
+        let named = |instruction: &Self| {
+            same(first, instruction.action.word()) && same(second, instruction.color.word()) && rest.is_none()
+        };
+        Self::all().find(named).ok_or_else(|| {
             let names: Vec<String> = Self::all().map(|instruction| instruction.to_string()).collect();
             Error::unknown("", "instruction", text, names.iter().map(String::as_str))
         })
@@ -186,15 +187,15 @@ mod tests {
         for (condition, absent) in
             [(Condition::WithIndicate, Action::Ignore), (Condition::WithIgnore, Action::Indicate)]
         {
-            let told = condition.instructions();
-            assert!(Instruction::all().all(|one| told.contains(&one) != (one.action == absent)));
+            let instructions = condition.instructions();
+            assert!(Instruction::all().all(|one| instructions.contains(&one) != (one.action == absent)));
             assert_eq!(
-                told.map(|one| 3 * condition.channel(one.action) + one.color.index()),
+                instructions.map(|one| 3 * condition.channel(one.action) + one.color.index()),
                 [0, 1, 2, 3, 4, 5, 6, 7, 8]
             );
             let error = condition.parse(&format!("{} red", absent.word())).unwrap_err().to_string();
             assert!(error.contains("unknown instruction"), "{error}");
-            assert_eq!(condition.parse("move blue").unwrap(), told[8]);
+            assert_eq!(condition.parse("move blue").unwrap(), instructions[8]);
         }
         assert_eq!(Condition::NAMES.map(Condition::from_name), [Condition::WithIndicate, Condition::WithIgnore]);
     }

@@ -1,40 +1,39 @@
-//! The experiment `compositional-instructions`: an arm that is told an action and an object.
-//!
-//! - `agent`: the network of an agent, whole or with lesions
-//! - `config`: its values
-//! - `episode`: an episode: the agent hears an instruction and follows it, or does not
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `fitness`: what a trial earns, and whether it succeeds
-//! - `instruction`: instructions of two words
-//! - `network`: how the network is made of numbers
-//! - `protocols`: its test protocols
-//! - `scene`: an arm and three objects in a plane, and how a trial starts
-//! - `schema`: what an episode records, by name
-//! - `script`: a controller written by hand
-//! - `senses`: what the agent senses
-//! - `settings`: its values as settings
-//! - `task`: what there is to know of it, and its episodes over parameters
+//! The experiment `compositional-instructions`: an arm receives an action and an object.
 
+/// The network of an agent, whole or with lesions.
 mod agent;
+/// Its values.
 mod config;
+/// An episode: the agent receives an instruction and follows it, or does not.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// The reward of a trial, and its success.
 mod fitness;
+/// Instructions of two words.
 mod instruction;
+/// The network as a function of genes.
 mod network;
+/// Its test protocols.
 mod protocols;
+/// An arm and three objects in a plane, and how a trial starts.
 mod scene;
+/// The recorded channels, by name.
 mod schema;
+/// A controller written by hand.
 mod script;
+/// The senses of the agent.
 mod senses;
+/// Its values as settings.
 mod settings;
+/// Its description, and episodes over parameters.
 mod task;
 
 pub use agent::Agent;
 pub use config::{Arm, Camera, Config, Judging, Objects, Ranges, Start};
-pub use episode::{InstructionEpisode, Told};
+pub use episode::{InstructionEpisode, TrialInstructions};
 pub use experiment::{CompositionalInstructions, evaluator};
-pub use fitness::{Ledger, Observation, Parts};
+pub use fitness::{RewardTotals, Observation, Parts};
 pub use instruction::{Action, Color, Condition, Instruction};
 pub use network::{INNER, INPUTS, KINDS, LAYOUT, MOTORS, NEURONS, Wiring};
 pub use scene::{Scene, StartPose};

@@ -56,9 +56,9 @@ const RELAY: f64 = 0.05;
 
 /// Which parameters of the network are genes, and what is made of them.
 ///
-/// Genes are, in this order, the weights neuron by neuron, the biases, the gains of the sensory neurons by kind, and the
-/// decimal logarithms of the time constants of inner and motor neurons: 180 + 15 + 5 + 10 numbers. A sensory neuron puts out
-/// sigma(gain input + bias); the network's own bias, which the gain multiplies, is bias / gain.
+/// Genes begin with the weights neuron by neuron and the biases. Then come the gains of the sensory neurons by kind, and the
+/// decimal logarithms of the time constants of inner and motor neurons. These are 180 + 15 + 5 + 10 numbers. A sensory neuron
+/// computes sigma(gain input + bias). The network multiplies its bias by the gain, so it stores bias / gain.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     /// Which number each of the network's parameters is made of, or what it always is.
@@ -78,7 +78,7 @@ impl Wiring {
     /// The wiring for steps of `time_step` \[s\], its genes decoded to these ranges.
     ///
     /// # Errors
-    /// [`Error::Other`] for a range that is none.
+    /// [`Error::Other`] for an empty range.
     pub fn new(ranges: &Ranges, time_step: f64) -> Result<Self, Error> {
         let wrong = |error: farsa_nn::Error| Error::Other(format!("compositional-instructions: {error}"));
         let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &ITSELF)
@@ -87,7 +87,7 @@ impl Wiring {
             .and_then(|symmetry| symmetry.with_gains(&ALIKE))
             .map_err(wrong)?;
         let kinds: Vec<CtrnnParameter> = symmetry.kinds().collect();
-        // Genes that are numbered from beyond all constants say where each of them goes.
+        // Genes with numbers beyond all constants show the place of each gene.
         let numbered: Vec<f32> = (0..kinds.len()).map(|gene| (FIRST + gene) as f32).collect();
         let mut places = vec![0.0; LAYOUT.parameter_count()];
         symmetry.expand(&numbered, &mut places).map_err(wrong)?;
@@ -125,7 +125,7 @@ impl Wiring {
         &self.parameters
     }
 
-    /// Fills the network's parameters \[[`LAYOUT`]\] from these numbers; false for another count of them.
+    /// Fills the network's parameters \[[`LAYOUT`]\] from these numbers. Returns false for another count of numbers.
     pub fn expand(&self, values: &[f32], genes: &mut Vec<f32>, parameters: &mut [f32]) -> bool {
         if values.len() != self.parameters.len() || parameters.len() != self.origins.len() {
             return false;
@@ -191,7 +191,7 @@ mod tests {
         assert!(parts.gains[INPUTS..].iter().all(|gain| *gain == 1.0));
         assert!(parts.time_constants[..INPUTS].iter().all(|tau| *tau == 0.005));
         assert!(parts.time_constants[INPUTS..].iter().all(|tau| (tau - 0.446_683_6).abs() < 1e-6));
-        // How many parameters follow each number.
+        // The number of parameters of each gene.
         let followers: Vec<usize> = (0..middle.len())
             .map(|i| {
                 let mut values = middle.clone();
@@ -236,7 +236,7 @@ mod tests {
                 if to < INNER {
                     net += (0..INPUTS).map(|from| at(from * INNER + to) * relayed[from]).sum::<f64>();
                 }
-                // Of an inner neuron the weights to inner and to motor neurons lie together.
+                // The weights of an inner neuron to inner and to motor neurons are adjacent.
                 net += (0..INNER).map(|from| at(120 + from * (INNER + MOTORS) + to) * o[from]).sum::<f64>();
                 let tau = exp(LN_10 * at(200 + to));
                 *next = net + (y[to] - net) * exp(-0.1 / tau);

@@ -1,11 +1,11 @@
-//! The test protocols of `compositional-instructions`: what each of their cases tells an agent, and does to it.
+//! The test protocols of `compositional-instructions`: the instructions of each case, and the changes of the network.
 
 use farsa_lab::{CaseId, Intervention, Protocol};
 use farsa_nn::CtrnnParameter;
 use farsa_nn::block::Span;
 
 use crate::compositional_instructions::config::Config;
-use crate::compositional_instructions::episode::Told;
+use crate::compositional_instructions::episode::TrialInstructions;
 use crate::compositional_instructions::instruction::{Action, Color, Instruction};
 use crate::compositional_instructions::network::{INNER, INNER_ONES, KINDS, LAYOUT, MOTOR_ONES, NEURONS};
 
@@ -18,20 +18,20 @@ const TIMES: usize = 10;
 /// The ordered pairs of two of three.
 const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 0], [1, 2], [2, 0], [2, 1]];
 
-/// What a case is.
+/// A case of a protocol.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Probe {
-    told: Told,
+    instructions: TrialInstructions,
     change: Intervention,
 }
 
 impl Probe {
-    /// What the agent is told.
-    pub(crate) fn told(&self) -> Told {
-        self.told
+    /// The instructions of the case.
+    pub(crate) fn instructions(&self) -> TrialInstructions {
+        self.instructions
     }
 
-    /// What is done to its network.
+    /// The change of the network.
     pub(crate) fn change(&self) -> &Intervention {
         &self.change
     }
@@ -54,14 +54,14 @@ pub(crate) struct Protocols {
 impl Protocols {
     /// All protocols.
     pub(crate) fn new(config: &Config) -> Self {
-        let mut all = Self { protocols: Vec::new(), probes: Vec::new() };
-        all.add_instructions(config);
-        all.add_transitions(config, true);
-        all.add_transitions(config, false);
-        all.add_decisions(config);
-        all.add_lesions(config);
-        all.add_noise(config);
-        all
+        let mut protocols = Self { protocols: Vec::new(), probes: Vec::new() };
+        protocols.add_instructions(config);
+        protocols.add_transitions(config, true);
+        protocols.add_transitions(config, false);
+        protocols.add_decisions(config);
+        protocols.add_lesions(config);
+        protocols.add_noise(config);
+        protocols
     }
 
     /// The protocols as the command shows them.
@@ -69,7 +69,7 @@ impl Protocols {
         self.protocols.clone()
     }
 
-    /// What a case is; none for one that there is not.
+    /// The case of a number, if there is one.
     pub(crate) fn probe(&self, case: CaseId) -> Option<&Probe> {
         self.probes.get(case.protocol)?.get(case.case)
     }
@@ -118,8 +118,7 @@ impl Protocols {
             let [first, then] = pair(number / 3, number % 3);
             case.held_out = config.held_out.contains(&first) || config.held_out.contains(&then);
             let steps = config.steps;
-            let told = Told { first, change: Some((steps, then)), steps: 2 * steps, noise: 0.0 };
-            probes.push(whole(told));
+            probes.push(whole(TrialInstructions { first, change: Some((steps, then)), steps: 2 * steps, noise: 0.0 }));
         }
         self.add(protocol, probes);
     }
@@ -143,7 +142,7 @@ impl Protocols {
                 Instruction { color: Color::Blue, ..then }
             };
             let change = Some((time(part), then));
-            whole(Told { first, change, steps: config.steps, noise: 0.0 })
+            whole(TrialInstructions { first, change, steps: config.steps, noise: 0.0 })
         });
         let probes = probes.collect();
         self.add(protocol, probes);
@@ -160,47 +159,47 @@ impl Protocols {
             let motors = Span::new(MOTOR_ONES.first + 2 * joint, 2);
             cuts.push((format!("links to {name}"), cut(INNER_ONES, motors)));
         }
-        let told = config.condition.instructions();
+        let instructions = config.condition.instructions();
         let rows = cuts.iter().map(|(name, _)| name.clone());
         let summary = "without each inner neuron and each group of links, every instruction";
-        let protocol = Protocol::from_table("lesions", summary, rows, told.map(|one| one.to_string()))
+        let protocol = Protocol::from_table("lesions", summary, rows, instructions.map(|instruction| instruction.to_string()))
             .with_axes("without", "instruction")
             .with_held_out(|_, instruction| is_held_out(config, instruction));
         let probes = cuts
             .iter()
-            .flat_map(|(_, cut)| told.map(|first| Probe { told: plain(config, first), change: cut.clone() }));
+            .flat_map(|(_, cut)| instructions.map(|first| Probe { instructions: plain(config, first), change: cut.clone() }));
         let probes = probes.collect();
         self.add(protocol, probes);
     }
 
     fn add_noise(&mut self, config: &Config) {
-        let told = config.condition.instructions();
+        let instructions = config.condition.instructions();
         let summary = "normal noise on camera, touch and joints, every instruction";
         let protocol = Protocol::from_table(
             "noise",
             summary,
             NOISE.map(|level| level.to_string()),
-            told.map(|one| one.to_string()),
+            instructions.map(|instruction| instruction.to_string()),
         )
         .with_axes("standard deviation", "instruction")
         .with_held_out(|_, instruction| is_held_out(config, instruction));
         let probes =
-            NOISE.into_iter().flat_map(|noise| told.map(|first| whole(Told { noise, ..plain(config, first) })));
+            NOISE.into_iter().flat_map(|noise| instructions.map(|first| whole(TrialInstructions { noise, ..plain(config, first) })));
         let probes = probes.collect();
         self.add(protocol, probes);
     }
 }
 
-fn whole(told: Told) -> Probe {
-    Probe { told, change: Intervention::default() }
+fn whole(instructions: TrialInstructions) -> Probe {
+    Probe { instructions, change: Intervention::default() }
 }
 
-fn plain(config: &Config, first: Instruction) -> Told {
-    Told { first, change: None, steps: config.steps, noise: 0.0 }
+fn plain(config: &Config, first: Instruction) -> TrialInstructions {
+    TrialInstructions { first, change: None, steps: config.steps, noise: 0.0 }
 }
 
 fn is_held_out(config: &Config, words: &str) -> bool {
-    config.held_out.iter().any(|one| one.to_string() == words)
+    config.held_out.iter().any(|instruction| instruction.to_string() == words)
 }
 
 #[cfg(test)]
@@ -221,32 +220,32 @@ mod tests {
                 assert_eq!(protocol.cases.len(), all.probes[number].len(), "{}", protocol.name);
                 assert_eq!(protocol.trials, TRIALS);
                 for (case, found) in protocol.cases.iter().zip(&all.probes[number]) {
-                    let told = found.told();
-                    let words = told.first.to_string();
+                    let instructions = found.instructions();
+                    let words = instructions.first.to_string();
                     match protocol.name.as_str() {
                         "instructions" => assert_eq!(words, format!("{} {}", case.row, case.column)),
                         "lesions" | "noise" => assert_eq!(words, case.column),
                         "action-transition" => {
-                            let (at, then) = told.change.unwrap();
-                            assert_eq!((at, told.steps), (150, 300));
-                            assert_eq!(format!("{} to {}", told.first.action.word(), then.action.word()), case.row);
-                            assert!(words.ends_with(&case.column) && then.color == told.first.color);
+                            let (at, then) = instructions.change.unwrap();
+                            assert_eq!((at, instructions.steps), (150, 300));
+                            assert_eq!(format!("{} to {}", instructions.first.action.word(), then.action.word()), case.row);
+                            assert!(words.ends_with(&case.column) && then.color == instructions.first.color);
                         }
                         "object-transition" => {
-                            let (_, then) = told.change.unwrap();
-                            assert_eq!(format!("{} to {}", told.first.color.word(), then.color.word()), case.row);
-                            assert!(words.starts_with(&case.column) && then.action == told.first.action);
+                            let (_, then) = instructions.change.unwrap();
+                            assert_eq!(format!("{} to {}", instructions.first.color.word(), then.color.word()), case.row);
+                            assert!(words.starts_with(&case.column) && then.action == instructions.first.action);
                         }
                         _ => {
-                            let (at, then) = told.change.unwrap();
+                            let (at, then) = instructions.change.unwrap();
                             assert_eq!(format!("{:.1} s", f64::from(at) * 0.1), case.row);
-                            assert_eq!((told.steps, then.to_string().as_str()), (150, "TOUCH red"));
-                            let same = [then.action == told.first.action, then.color == told.first.color];
+                            assert_eq!((instructions.steps, then.to_string().as_str()), (150, "TOUCH red"));
+                            let same = [then.action == instructions.first.action, then.color == instructions.first.color];
                             assert_eq!(same, [case.column.starts_with("object"), case.column.starts_with("action")]);
                         }
                     }
                     if protocol.name != "decision" && !protocol.name.ends_with("transition") {
-                        assert_eq!(case.held_out, config.held_out.contains(&told.first));
+                        assert_eq!(case.held_out, config.held_out.contains(&instructions.first));
                     }
                 }
             }

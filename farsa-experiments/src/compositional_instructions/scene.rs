@@ -13,7 +13,7 @@ use crate::compositional_instructions::instruction::Color;
 
 /// The number of no trial, by which something is drawn for all trials of a generation.
 const ALL_TRIALS: u32 = (1 << 24) - 1;
-/// The orders in which the three colours stand, from the left to the right.
+/// The orders of the three colors, from left to right.
 const ORDERS: [[Color; 3]; 6] = {
     use Color::{Blue as B, Green as G, Red as R};
     [[R, G, B], [R, B, G], [G, R, B], [G, B, R], [B, R, G], [B, G, R]]
@@ -30,7 +30,7 @@ const GRAVITY: f64 = 9.81;
 pub struct StartPose {
     /// The joints \[rad\].
     pub joints: [f64; 2],
-    /// The objects, by colour \[m\].
+    /// The objects, by color \[m\].
     pub objects: [[f64; 2]; 3],
 }
 
@@ -41,7 +41,7 @@ pub struct Scene {
     pub robot: Robot,
     /// Every value of the experiment.
     pub config: Config,
-    /// The objects, by colour.
+    /// The objects, by color.
     pub objects: [BodyId; 3],
     /// Their two sliding joints each.
     pub sliders: [[JointId; 2]; 3],
@@ -60,7 +60,7 @@ impl Scene {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let wrong = |error: RobotError| Error::Other(format!("compositional-instructions: {error}"));
@@ -109,7 +109,7 @@ impl Scene {
         Ok(Self { robot, config, objects: bodies, sliders })
     }
 
-    /// How the articulated world is stepped.
+    /// Options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, objects, .. } = self.config;
         Options { time_step, substeps, sight_height: objects.radius, ..Options::default() }
@@ -122,10 +122,10 @@ impl Scene {
 
     /// Where everything is at the start of an episode.
     ///
-    /// Drawn in this order from the stream of [`Domain::Start`], the same for all individuals: for each place, from the left to
-    /// the right, bearing and distance; between which two objects the first joint starts, and its angle; the angle of the second
-    /// joint, and its side if that is drawn. Trial i has the colours in order i + k modulo 6, with a k that is drawn for each
-    /// generation: six trials one after the other meet each order once, and fewer meet others in every generation.
+    /// All is drawn from the stream of [`Domain::Start`], the same for all individuals. For each place, from left to right, come
+    /// bearing and distance. Then come the two objects between which the first joint starts, its angle, and the angle of the second
+    /// joint with its side. Trial i has the colors in order i + k modulo 6, with a k for each generation. Six consecutive trials
+    /// have each order once.
     pub fn start_pose(&self, id: EpisodeId) -> StartPose {
         let Config { objects, start, .. } = &self.config;
         let first = Stream::new(id.seed, Domain::Start, ALL_TRIALS, 0, id.generation).below(ORDERS.len() as u32);
@@ -166,7 +166,7 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// How far a point is from another \[m\].
+    /// The distance between two points \[m\].
     pub(crate) fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
         Scalar::sqrt((x - u) * (x - u) + (y - v) * (y - v))
     }

@@ -1,4 +1,4 @@
-//! What an episode of `compositional-instructions` records, by name.
+//! The recorded channels of `compositional-instructions`, by name.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};
@@ -79,7 +79,7 @@ where
         recorder.contact(pair, &world.pair_contact(pair));
     }
     let (instruction, parts) = (episode.instruction(), episode.parts());
-    let moved = episode.ledger().last().displaced;
+    let moved = episode.totals().last().displaced;
     let [first, second] = Scene::JOINTS.map(|joint| f64::from(world.position(joint)));
     recorder.scalars(&[
         scene.config.condition.channel(instruction.action) as f64,
@@ -97,7 +97,7 @@ where
     recorder.tick(seconds(episode.steps(), scene.config.time_step));
 }
 
-/// The parameters as the schema says where they are: the weights between the layers, then biases, gains and time constants.
+/// The parameters in the order of the schema: weights between the layers, biases, gains, time constants.
 pub(crate) fn in_schema_order(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
     let linked = LINKED.into_iter().flat_map(|(sources, targets)| {

@@ -9,7 +9,7 @@ use crate::compositional_instructions::network::{INPUTS, MOTORS};
 /// Which word a [`Script`] does not listen to, and what it takes for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Deaf {
-    /// It hears both.
+    /// It senses both.
     #[default]
     To,
     /// It always does this.
@@ -18,7 +18,7 @@ pub enum Deaf {
     ToColor(Color),
 }
 
-/// What it is about.
+/// A stage of the script.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     /// Turns to one side until the target is in view.
@@ -31,7 +31,7 @@ enum Stage {
     Hold,
     /// Pushes through an angle that is left \[rad\].
     Push { left: f64, before: f64 },
-    /// Lets go for so many steps.
+    /// Moves away for the given number of steps.
     Release { steps: u32 },
     /// Turns away until nothing is in view.
     Leave { left: bool },
@@ -39,7 +39,7 @@ enum Stage {
     Rest,
 }
 
-/// Finds the object by its colour, then acts as the action word says: 20 sensors in, 4 motors out, and nothing else.
+/// Finds the object by its color, then acts by the action word: 20 sensors in, 4 motors out, and nothing else.
 #[derive(Clone, Debug)]
 pub struct Script {
     condition: Condition,
@@ -81,7 +81,7 @@ impl Script {
         }
     }
 
-    /// The wanted speeds of the joints \[rad/s\], after the stage was brought up to date.
+    /// The target speeds of the joints \[rad/s\], after an update of the stage.
     fn speeds(&mut self, x: &[f32]) -> [f64; 2] {
         let Instruction { action, color } = self.heard(x);
         let seen = [0, 1, 2].map(|sector| x[3 * sector + color.index()] > 0.0);
@@ -132,7 +132,7 @@ impl Script {
             Stage::Push { .. } => [0.0, inwards * 0.7],
             Stage::Release { .. } => [0.0, -inwards],
             Stage::Leave { left } => [if left { 0.3 } else { -0.3 }, 0.0],
-            // What was pushed is kept in the middle.
+            // The pushed object stays in the middle.
             Stage::Rest if action == Action::Move => [if seen.contains(&true) { aim } else { 0.5 * inwards }, 0.0],
             Stage::Hold | Stage::Rest => [0.0, 0.0],
         }
@@ -156,7 +156,7 @@ impl Controller for Script {
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
         let wanted = if x.len() < INPUTS { [0.0; 2] } else { self.speeds(x) };
         for ((motors, wanted), largest) in y.chunks_mut(2).zip(wanted).zip(self.speeds) {
-            // Two motor neurons differ by the wanted part of the largest speed.
+            // Two motor neurons differ by the share of the largest speed.
             let part = if largest > 0.0 { (wanted / largest).clamp(-1.0, 1.0) } else { 0.0 };
             for (motor, sign) in motors.iter_mut().zip([0.5, -0.5]) {
                 *motor = (0.5 + sign * part) as f32;

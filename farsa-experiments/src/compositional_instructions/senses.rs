@@ -1,4 +1,4 @@
-//! What the agent senses: colours ahead, touch, its joints, and the two words.
+//! The senses of the agent: colors ahead, touch, its joints, and the two words.
 
 use farsa_body::ports::{BodyId, Handles, JointId, Joints, Kinematics, Sight};
 use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
@@ -11,13 +11,14 @@ use crate::compositional_instructions::instruction::{Color, Condition, Instructi
 use crate::compositional_instructions::network::INPUTS;
 use crate::compositional_instructions::scene::Scene;
 
-/// A world in which the agent can live.
+/// A world for the agent.
 pub trait ArmWorld: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> {}
 
 impl<W> ArmWorld for W where W: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// The sensors, 20 channels: the camera's sectors from the left to the right, in each red, green, blue; touch of the second
-/// segment left, at its tip, right; the two joints, 0 at the lower and 1 at the upper limit; the action; the object.
+/// The sensors, 20 channels. First come, from left to right, the camera's sectors with red, green and blue. Then come touch of the
+/// second segment on the left, at its tip and on the right. The two joints follow, with 0 at the lower and 1 at the upper limit.
+/// The last ones are the action and the object.
 #[derive(Clone, Debug)]
 pub struct Senses {
     camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
@@ -28,7 +29,7 @@ pub struct Senses {
     /// Length of the second segment, and radius of an object \[m\].
     length: f64,
     radius: f64,
-    /// Distance of an object's centre from the second segment's axis below which they touch \[m\].
+    /// Distance of an object's center from the second segment's axis below which they touch \[m\].
     reach: f64,
 }
 
@@ -38,8 +39,8 @@ pub fn channel_names(condition: Condition) -> Vec<String> {
     let seen = sectors.into_iter().flat_map(|sector| Color::ALL.map(|color| format!("{} {sector}", color.word())));
     let words = condition.actions().map(|action| action.word().to_owned()).into_iter();
     let words = words.chain(Color::ALL.map(|color| color.word().to_owned()));
-    let own = ["touch left", "touch tip", "touch right", "J1", "J2"].map(String::from);
-    seen.chain(own).chain(words).collect()
+    let felt = ["touch left", "touch tip", "touch right", "J1", "J2"].map(String::from);
+    seen.chain(felt).chain(words).collect()
 }
 
 impl Senses {
@@ -63,7 +64,7 @@ impl Senses {
         })
     }
 
-    /// Reads all channels, and tells what is to be seen by whoever judges; `places` are those where the trial found the objects.
+    /// Reads all channels and returns the observation of the judge. `places` are the objects' places at the start.
     pub fn read<W: ArmWorld + ?Sized>(
         &mut self,
         world: &W,
@@ -99,12 +100,12 @@ impl Senses {
         for ((value, joint), range) in x[12..14].iter_mut().zip(Scene::JOINTS).zip(self.ranges) {
             *value = ((f64::from(world.position(joint)) + range) / (2.0 * range)) as f32;
         }
-        self.tell(instruction, x);
+        self.write_words(instruction, x);
         now
     }
 
     /// Gives the two words alone.
-    pub fn tell(&self, instruction: Instruction, x: &mut [f32; INPUTS]) {
+    pub fn write_words(&self, instruction: Instruction, x: &mut [f32; INPUTS]) {
         let Instruction { action, color } = instruction;
         x[14..].fill(0.0);
         x[14 + self.condition.channel(action)] = 1.0;
@@ -114,8 +115,8 @@ impl Senses {
     /// With which side the second segment, whose tip is there, is on an object at a place: 0 the left one, 1 the tip, 2 the right
     /// one.
     fn side(&self, second: &Pose, tip: [f64; 3], place: [f32; 3]) -> Option<usize> {
-        // Twice the way from the segment's middle: an object that touches it is no further along any axis than half the length
-        // and the reach, and a hundredth for rounding. Most are, and that is known for little.
+        // Twice the way from the segment's middle. An object that touches it is no further along any axis than half the length and
+        // the reach, and a hundredth for rounding. This cheap test excludes most objects.
         let most = 1.01 * (self.length + 2.0 * self.reach);
         let beyond = |k: usize| (2.0 * f64::from(place[k]) - f64::from(second.position[k]) - tip[k]).abs() > most;
         if beyond(0) || beyond(1) {

@@ -20,26 +20,26 @@ impl Config {
     }
 
     fn of_search(&self) -> Vec<Setting> {
-        let told = self.condition.instructions().map(|instruction| instruction.to_string());
-        let told: Vec<&str> = told.iter().map(String::as_str).collect();
+        let instructions = self.condition.instructions().map(|instruction| instruction.to_string());
+        let instructions: Vec<&str> = instructions.iter().map(String::as_str).collect();
         let [one, other] = self.held_out.map(|instruction| instruction.to_string());
         vec![
             Setting::whole("evolution.generations", 20_000, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 40, 0..=1_000_000)
-                .doc("Individuals of a generation; 0 for 4 + 3 ln n of n genes."),
+                .doc("Individuals of a generation. 0 for 4 + 3 ln n of n genes."),
             number("strategy.sigma", 0.3, 1e-6, 10.0).doc("Initial standard deviation, in halves of a range."),
             number("strategy.sigma_learning_rate", 0.0275, 0.0, 10.0).doc(
                 "Learning rate of the standard deviations: a quarter of the source's, with which they shrink too early.",
             ),
-            Setting::word("instruction.held_out", &one, &told)
+            Setting::word("instruction.held_out", &one, &instructions)
                 .given()
                 .doc("An instruction that is never heard before the test."),
-            Setting::word("instruction.held_out_too", &other, &told)
+            Setting::word("instruction.held_out_too", &other, &instructions)
                 .given()
                 .doc("Another, which may be the same one again."),
             Setting::whole("trial.starts", i64::from(self.starts), 1..=10_000)
-                .doc("Starts of each trained instruction; six meet each order of the colours once."),
+                .doc("Starts of each trained instruction. Six have each order of the colors once."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).doc("Control steps of a trial."),
         ]
     }
@@ -52,8 +52,8 @@ impl Config {
                 .doc("Dynamics steps of a control step."),
             numbers("arm.lengths", &arm.lengths, 0.05, 10.0).unit("m").doc("Lengths of the two segments."),
             numbers("arm.masses", &arm.masses, 0.001, 1000.0).unit("kg").doc("Their masses."),
-            number("arm.radius", arm.radius, 0.001, 1.0).unit("m").doc("Their radius; both are capsules."),
-            numbers("arm.ranges", &arm.ranges, 1.0, 175.0).unit("deg").doc("How far each joint turns to each side."),
+            number("arm.radius", arm.radius, 0.001, 1.0).unit("m").doc("Their radius. Both are capsules."),
+            numbers("arm.ranges", &arm.ranges, 1.0, 175.0).unit("deg").doc("Largest turn of each joint to either side."),
             numbers("arm.speeds", &arm.speeds, 0.0, 10.0)
                 .unit("rad/s")
                 .doc("Speeds that are commanded by a difference of 1 between two motor neurons."),
@@ -75,7 +75,7 @@ impl Config {
                 .doc("By how much that differs at most."),
             numbers("object.bearings", &objects.bearings, -170.0, 170.0)
                 .unit("deg")
-                .doc("Where the three objects stand, from the left to the right; which colour stands where is drawn."),
+                .doc("Places of the three objects, from left to right. Their colors are drawn."),
             number("object.bearing_spread", objects.bearing_spread, 0.0, 90.0)
                 .unit("deg")
                 .doc("By how much each bearing differs at most."),
@@ -98,7 +98,7 @@ impl Config {
                 .unit("deg")
                 .doc("The second joint starts so far to the left, or to a side that is drawn."),
             Setting::flag("start.both_sides", both_sides).doc(
-                "Whether that side is drawn: half of the starts are then stretched by the speed that folds the others.",
+                "That side is drawn. Half of the starts are then stretched by the speed that folds the others.",
             ),
             number("start.second_spread", second_spread, 0.0, 90.0)
                 .unit("deg")
@@ -114,17 +114,17 @@ impl Config {
                 .unit("s")
                 .doc("The last seconds of a trial, of which shares are taken."),
             length("fitness.still", judging.still).doc("A displacement that costs nothing."),
-            length("fitness.span", judging.span).doc("How much more than that costs all."),
+            length("fitness.span", judging.span).doc("Distance beyond that at which the share falls to 0."),
             length("fitness.span_touched", judging.span_touched)
-                .doc("The same of the target of TOUCH: who loses all by a push does not learn to touch."),
+                .doc("That distance for the target of TOUCH: an agent that loses all by a push does not learn to touch."),
             length("fitness.far", judging.far).doc("The displacement for which MOVE earns most."),
             length("fitness.reach", judging.reach).doc(
-                "Distance of the tip from the centred target from which on TOUCH and MOVE earn something for reaching.",
+                "Distance of the tip from the centered target below which TOUCH and MOVE earn something for reaching.",
             ),
             number("fitness.reach_share", judging.reach_share, 0.0, 1.0)
-                .doc("What reaching counts in the acts of TOUCH and MOVE: without it no agent learned to stretch."),
+                .doc("Weight of reaching in the acts of TOUCH and MOVE: without it no agent learned to stretch."),
             number("fitness.aside_share", judging.aside_share, 0.0, 1.0).doc(
-                "What IGNORE earns for a look past the target: without it a run of 20 000 generations looked at the target.",
+                "Reward of IGNORE for a look past the target: without it a run of 20 000 generations looked at the target.",
             ),
             numbers("success.least_shares", &judging.least_shares, 0.0, 1.0)
                 .doc("Least shares of the last seconds: of INDICATE and IGNORE, and of TOUCH."),

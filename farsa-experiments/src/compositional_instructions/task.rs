@@ -1,4 +1,4 @@
-//! What there is to know of `compositional-instructions`, and its episodes over parameters.
+//! The description of `compositional-instructions`, and its episodes over parameters.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use farsa_view::Schema;
 
 use crate::compositional_instructions::agent::Agent;
 use crate::compositional_instructions::config::Config;
-use crate::compositional_instructions::episode::{InstructionEpisode, Told};
+use crate::compositional_instructions::episode::{InstructionEpisode, TrialInstructions};
 use crate::compositional_instructions::instruction::{Action, Instruction};
 use crate::compositional_instructions::network::{INNER, INPUTS, LAYOUT, MOTORS, Wiring};
 use crate::compositional_instructions::protocols::Protocols;
@@ -53,12 +53,12 @@ impl InstructionTask {
         &self.episode
     }
 
-    /// What an agent is told in a trial of the training.
-    fn told(&self, trial: u32) -> Told {
+    /// The instructions of a training trial.
+    fn instructions(&self, trial: u32) -> TrialInstructions {
         let Config { starts, steps, .. } = *self.config();
         let number = (trial / starts.max(1)) as usize % self.trained.len().max(1);
-        let first = self.trained.get(number).copied().unwrap_or(self.episode.told().first);
-        Told { first, change: None, steps, noise: 0.0 }
+        let first = self.trained.get(number).copied().unwrap_or(self.episode.instructions().first);
+        TrialInstructions { first, change: None, steps, noise: 0.0 }
     }
 }
 
@@ -90,17 +90,17 @@ where
 
 impl Rollout for InstructionTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let (told, mut change) = match evaluation.case {
-            None => (self.told(evaluation.id.trial), Intervention::default()),
+        let (instructions, mut change) = match evaluation.case {
+            None => (self.instructions(evaluation.id.trial), Intervention::default()),
             Some(case) => {
                 let Some(probe) = self.protocols.probe(case) else { return false };
-                (probe.told(), probe.change().clone())
+                (probe.instructions(), probe.change().clone())
             }
         };
         if let Some(other) = evaluation.intervention {
             change = change.and(other);
         }
-        self.episode.tell(told);
+        self.episode.instruct(instructions);
         let agent = self.episode.controller_mut();
         agent.load(&self.wiring, evaluation.parameters) && agent.change(&change, evaluation.id)
     }
@@ -111,8 +111,8 @@ impl Rollout for InstructionTask {
 
     fn outcome(&self) -> Outcome {
         let (parts, instruction) = (self.episode.parts(), self.episode.instruction());
-        let [target, other] = self.episode.ledger().displaced(instruction.color);
-        let broken = !self.episode.ledger().last().ahead.iter().flatten().all(|x| x.is_finite());
+        let [target, other] = self.episode.totals().displaced(instruction.color);
+        let broken = !self.episode.totals().last().ahead.iter().flatten().all(|x| x.is_finite());
         let before = match self.episode.before_change() {
             None => "none",
             Some((_, true)) => "succeeded",
@@ -160,8 +160,8 @@ impl InstructionTask {
                     2,
                     &format!("0 at -{first} and -{second}, 1 at {first} and {second} degrees"),
                 ),
-                ChannelGroup::new("action", 3, &format!("{actions}: 1 for the one that is told")),
-                ChannelGroup::new("object", 3, "red, green, blue: 1 for the one that is told"),
+                ChannelGroup::new("action", 3, &format!("{actions}: 1 for the given one")),
+                ChannelGroup::new("object", 3, "red, green, blue: 1 for the given one"),
             ],
             motors: vec![ChannelGroup::new(
                 "speeds",

@@ -54,7 +54,7 @@ impl CartState {
 }
 
 impl Default for Cart {
-    /// The values of \[Gomez2008\] appendix A; the acceleration of gravity, which is not named there, is that of \[Wieland1991\].
+    /// The values of \[Gomez2008\] appendix A. The acceleration of gravity is missing there and is that of \[Wieland1991\].
     fn default() -> Self {
         let pole = |half_length, mass| Pole { half_length, mass, friction: 0.000_002 };
         Self { mass: 1.0, friction: 0.0005, gravity: 9.8, poles: [pole(0.5, 0.1), pole(0.05, 0.01)] }
@@ -64,27 +64,31 @@ impl Default for Cart {
 impl Cart {
     /// The accelerations of the cart \[m/s^2\] and of the poles \[rad/s^2\] under a force on the cart \[N\].
     ///
-    /// Source: \[Wieland1991\], as printed in \[Gomez2008\] appendix A; no deviation but the sign of g, which is positive here.
+    /// Source: \[Wieland1991\], as printed in \[Gomez2008\] appendix A. Deviation: g is positive here.
     #[inline]
     pub fn accelerations(&self, state: &CartState, force: f64) -> (f64, [f64; 2]) {
         let CartState { velocity, angles, angular_velocities, .. } = *state;
         let sign = f64::from(i8::from(velocity > 0.0) - i8::from(velocity < 0.0));
+        // a_cart = (F - mu_c sgn(v) + sum_i F_i) / (M + sum_i m_i'), with the poles' effective forces F_i and masses m_i'.
         let (mut push, mut mass) = (force - self.friction * sign, self.mass);
         let mut parts = [[0.0; 2]; 2];
         for (((pole, angle), speed), part) in self.poles.iter().zip(angles).zip(angular_velocities).zip(&mut parts) {
             let (sine, cosine) = sin_cos(angle);
             let (l, m) = (pole.half_length, pole.mass);
+            // pull = mu_p w / (m l) - g sin, the part of gravity and of the hinge's friction along the pole's turn.
             let pull = pole.friction * speed / (m * l) - self.gravity * sine;
+            // F_i = m l w^2 sin + 3/4 m cos pull, and m_i' = m (1 - 3/4 cos^2). The factor 3/4 is that of a uniform rod.
             push += m * l * speed * speed * sine + 0.75 * m * cosine * pull;
             mass += m * (1.0 - 0.75 * cosine * cosine);
             *part = [cosine, pull];
         }
         let cart = push / mass;
+        // w' = -3 / (4 l) (a_cart cos + pull).
         let turn = |pole: &Pole, [cosine, pull]: [f64; 2]| -0.75 / pole.half_length * (cart * cosine + pull);
         (cart, [turn(&self.poles[0], parts[0]), turn(&self.poles[1], parts[1])])
     }
 
-    /// How fast a state changes under a force \[N\].
+    /// The rate of change of a state under a force \[N\].
     #[inline]
     fn rates(&self, state: &CartState, force: f64) -> CartState {
         let (velocity, angular_velocities) = self.accelerations(state, force);
@@ -93,6 +97,7 @@ impl Cart {
 
     /// The state after a step \[s\] under a constant force \[N\], by the classical Runge-Kutta method of fourth order.
     pub fn step(&self, state: &CartState, force: f64, time_step: f64) -> CartState {
+        // s + h/6 (k1 + 2 k2 + 2 k3 + k4), added term by term, so that the order of sums is fixed.
         let half = 0.5 * time_step;
         let first = self.rates(state, force);
         let second = self.rates(&state.moved(&first, half), force);

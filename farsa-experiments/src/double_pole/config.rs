@@ -7,12 +7,12 @@ use farsa_lab::{Error, Setting, Settings};
 use crate::double_pole::cart::Cart;
 use crate::double_pole::network::MOST_HIDDEN;
 
-/// What a cart with two poles is; the defaults are those of \[Gomez2008\] where the settings say so.
+/// A cart with two poles. The defaults are those of \[Gomez2008\] where the settings are marked as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Whether the network senses velocities.
+    /// The network senses velocities.
     pub velocities: bool,
-    /// Whether fitness is that of \[Gruau1996\], which asks for rest, and not the number of steps.
+    /// The fitness of \[Gruau1996\], which rewards rest, instead of the number of steps.
     pub damping: bool,
     /// The cart and its poles.
     pub cart: Cart,
@@ -36,7 +36,7 @@ pub struct Config {
     pub hidden: u32,
     /// Weights are decoded to plus and minus this.
     pub weight_range: f64,
-    /// What position \[m\], angles \[rad\] and velocities \[m/s, rad/s\] are divided by before the network senses them.
+    /// Scales of position \[m\], angles \[rad\] and velocities \[m/s, rad/s\]: the network senses the quotients.
     pub scales: [f64; 3],
 }
 
@@ -83,7 +83,7 @@ impl Config {
         let [long, short] = self.cart.poles;
         vec![
             Setting::whole("evolution.generations", 100, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             positive("cart.mass", self.cart.mass).unit("kg").given().doc("Mass of the cart."),
             least("cart.friction", self.cart.friction).unit("N").given().doc("Friction of the cart on its track, whatever its speed."),
             positive("cart.track", self.most_position)
@@ -104,7 +104,7 @@ impl Config {
             Setting::number("poles.angle", self.angle, -90.0..=90.0)
                 .unit("deg")
                 .given()
-                .doc("Angle of the first pole from upright at the start; all else is at rest in the middle."),
+                .doc("Angle of the first pole from upright at the start. All else is at rest in the middle."),
             Setting::number("poles.failure_angle", self.most_angle, 0.0..=90.0)
                 .unit("deg")
                 .given()
@@ -119,7 +119,7 @@ impl Config {
                 .doc("Steps of the integration for each step of the network."),
             Setting::whole("trial.steps", i64::from(self.steps), 100..=10_000_000)
                 .given()
-                .doc("Steps of the network that a trial lasts; who balances both poles so long has succeeded."),
+                .doc("Steps of the network in a trial. A network that balances both poles so long has succeeded."),
             Setting::flag("fitness.damping", self.damping).given().doc(
                 "Whether fitness is 0.1 t / 1000 + 0.9 * 0.75 / S over the first 1000 steps, t of them in balance, S the sum of \
                  |position| + |velocity| + |angle| + |angular velocity| of cart and first pole over the last 100 of those, and \

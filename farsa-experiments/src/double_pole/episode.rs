@@ -11,7 +11,7 @@ use crate::double_pole::network::layout;
 
 /// Steps over which the damping fitness is taken.
 const DAMPED: u32 = 1000;
-/// Of those, the last ones of which the sum of positions and velocities is taken.
+/// The number of last steps in the sum of positions and velocities.
 const LAST: u32 = 100;
 
 /// A cart with two poles and the network that pushes it.
@@ -22,7 +22,7 @@ pub struct CartEpisode {
     state: CartState,
     steps: u32,
     fallen: bool,
-    /// How far from rest cart and first pole were after each of the last 100 of the first 1000 steps.
+    /// Distance of cart and first pole from rest after each of the last 100 of the first 1000 steps.
     unrest: [f64; LAST as usize],
     x: Vec<f32>,
     y: [f32; 1],
@@ -55,7 +55,7 @@ impl CartEpisode {
         copied.map_err(|error| Error::Other(format!("double-pole: {error}")))
     }
 
-    /// Changes what the network senses and what its neurons do until observations are normalised anew.
+    /// Changes inputs and neurons of the network until the next normalization of observations.
     pub(crate) fn intervene(&mut self, intervention: &Intervention, id: EpisodeId) {
         self.network.intervene(intervention, id, 0);
     }
@@ -104,18 +104,18 @@ impl CartEpisode {
         }
     }
 
-    /// Whether the poles stand and the cart is on its track.
+    /// True if no pole has fallen and the cart is on its track.
     pub fn in_balance(&self) -> bool {
         let most = Config::radians(self.config.most_angle);
         self.state.position.abs() <= self.config.most_position && self.state.angles.iter().all(|a| a.abs() <= most)
     }
 
-    /// Whether a pole has fallen, the cart has left its track, or the time is over.
+    /// True if a pole has fallen, the cart has left its track, or the time is over.
     pub fn ended(&self) -> bool {
         self.fallen || self.steps >= self.config.steps
     }
 
-    /// Whether the time is over, and the poles stand.
+    /// True if the time is over and no pole has fallen.
     pub fn succeeded(&self) -> bool {
         !self.fallen && self.steps >= self.config.steps
     }
@@ -140,12 +140,12 @@ impl CartEpisode {
         self.network.controller()
     }
 
-    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
 
-    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    /// The observations since [`normalise`](Self::normalise), if they are normalized.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
@@ -160,12 +160,12 @@ impl CartEpisode {
         self.steps
     }
 
-    /// What was sensed last, position and angles, then velocities [3 or 6].
+    /// The last inputs: position and angles, then velocities [3 or 6].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What the network put out last \[1\].
+    /// The last output of the network \[1\].
     pub fn output(&self) -> &[f32] {
         &self.y
     }
@@ -182,9 +182,9 @@ impl Config {
         CartState { angles: [Self::radians(self.angle), 0.0], ..CartState::default() }
     }
 
-    /// The 625 starts of the generalization test of \[Gruau1996\]: position and velocity of the cart, angle and angular velocity of
-    /// the first pole at 0.05, 0.25, 0.5, 0.75 and 0.95 of their ranges, of plus and minus 2.16 m, 1.35 m/s, 3.6 deg and
-    /// 8.6 deg/s.
+    /// The 625 starts of the generalization test of \[Gruau1996\]. Position and velocity of the cart, angle and angular velocity of
+    /// the first pole have 0.05, 0.25, 0.5, 0.75 and 0.95 of their ranges. The ranges are plus and minus 2.16 m, 1.35 m/s, 3.6 deg
+    /// and 8.6 deg/s.
     pub fn generalization_starts() -> impl Iterator<Item = CartState> {
         let at = |place: u32, half: f64| half * (2.0 * [0.05, 0.25, 0.5, 0.75, 0.95][place as usize % 5] - 1.0);
         (0..625).map(move |number| CartState {

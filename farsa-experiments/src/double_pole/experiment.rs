@@ -18,9 +18,8 @@ use crate::double_pole::episode::CartEpisode;
 /// Can a network that pushes a cart keep two poles of different lengths upright, with and without sensing velocities?
 ///
 /// The benchmark of neuroevolution, \[Wieland1991\] with the constants, steps and networks of \[Gomez2008\]. There is one trial,
-/// from one start, and fitness is the number of steps in balance, or, without velocities, that of \[Gruau1996\], which asks
-/// for rest as well (`fitness.damping`). Success is 100 000 steps in balance; an evaluation by the second fitness goes on to
-/// them.
+/// from one start. The fitness is the number of steps in balance, or, without velocities, that of \[Gruau1996\], which also rewards
+/// rest (`fitness.damping`). Success is 100 000 steps in balance, and an evaluation by the second fitness continues to them.
 ///
 /// Deviations: the source does not give the biases, the function and the scales of inputs of its networks. Here there are no
 /// biases, neurons are hyperbolic tangents, and positions, angles and velocities are divided by 4.8 m, 0.52 rad and 2 m/s or rad/s.
@@ -28,7 +27,7 @@ use crate::double_pole::episode::CartEpisode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct DoublePole;
 
-/// Whether the network senses velocities under a condition, and fitness asks for rest.
+/// The defaults of a condition: sensed velocities, or a fitness that rewards rest.
 fn defaults(condition: &str) -> Config {
     let velocities = condition != "no-velocities";
     Config { damping: !velocities, ..Config::new(velocities) }
@@ -151,7 +150,7 @@ impl Balancing {
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let state = in_group("state");
         let [most, angle] = [config.most_position, config.most_angle];
-        let all = [inputs, inputs + neurons];
+        let nodes = [inputs, inputs + neurons];
         Schema {
             neurons: (1..neurons).map(|i| in_group("neuron")(&format!("hidden {i}")).range(-1.0, 1.0)).collect(),
             scalars: vec![
@@ -162,8 +161,8 @@ impl Balancing {
                 in_group("force")("force [N]").range(-config.force, config.force),
             ],
             links: vec![
-                Links { from: [0, inputs], to: all, first: 0 },
-                Links { from: all, to: all, first: inputs * neurons },
+                Links { from: [0, inputs], to: nodes, first: 0 },
+                Links { from: nodes, to: nodes, first: inputs * neurons },
             ],
             view: View::Top,
             ..schema
@@ -282,7 +281,7 @@ impl Episode<NoWorld> for Balancing {
         }
         let degrees = state.angles.map(f64::to_degrees);
         recorder.scalars(&[state.position, state.velocity, degrees[0], degrees[1], self.episode.force()]);
-        // The step in which a pole falls is none in balance, and passes all the same.
+        // The step in which a pole falls is not in balance, but it takes time.
         let steps = self.episode.steps() + u32::from(!self.episode.in_balance());
         recorder.tick(seconds(steps, config.time_step * f64::from(config.substeps)));
     }

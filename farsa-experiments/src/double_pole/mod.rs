@@ -1,15 +1,14 @@
 //! The experiment `double-pole`: two poles on a cart.
-//!
-//! - `config`: the values of `double-pole`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `double-pole`: a network pushes the cart until a pole falls
-//! - `cart`: the cart, its poles and their equations of motion
-//! - `network`: the networks of `double-pole`, one for each number of inputs and hidden neurons
 
+/// The cart, its poles and their equations of motion.
 mod cart;
+/// The values of `double-pole`, as settings.
 mod config;
+/// An episode of `double-pole`: a network pushes the cart until a pole falls.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// The networks of `double-pole`, one for each number of inputs and hidden neurons.
 mod network;
 
 pub use cart::{Cart, CartState, Pole};

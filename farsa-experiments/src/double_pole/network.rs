@@ -7,7 +7,7 @@ use farsa_nn::block::{Architecture, BlockLayout, BlockPlan};
 pub const MOST_HIDDEN: u32 = 8;
 const PLANS: usize = MOST_HIDDEN as usize + 1;
 
-/// Fully recurrent networks without biases of 0 to 8 hidden neurons and one output; all neurons are hyperbolic tangents.
+/// Fully recurrent networks without biases, of 0 to 8 hidden neurons and one output. All neurons are hyperbolic tangents.
 const fn plans(inputs: usize) -> [BlockPlan; PLANS] {
     let mut plans = [plan(inputs, 0); PLANS];
     let mut hidden = 1;
@@ -29,16 +29,16 @@ const fn plan(inputs: usize, hidden: usize) -> BlockPlan {
 static WITH_VELOCITIES: [BlockPlan; PLANS] = plans(6);
 static WITHOUT_VELOCITIES: [BlockPlan; PLANS] = plans(3);
 
-/// The layout of the network with or without inputs for velocities and so many hidden neurons, 8 if there are more.
+/// The layout of the network with or without inputs for velocities, and with the given number of hidden neurons, at most 8.
 ///
-/// A neuron hears the inputs of this step and all neurons, itself too, of the step before.
+/// A neuron receives the inputs of this step and the states of all neurons, its state included, of the previous step.
 pub fn layout(velocities: bool, hidden: u32) -> BlockLayout<'static> {
     let plans = if velocities { &WITH_VELOCITIES } else { &WITHOUT_VELOCITIES };
     plans[hidden.min(MOST_HIDDEN) as usize].layout()
 }
 
-/// The parameters of such a network neuron by neuron, for searches that keep the weights of a neuron together: for each place
-/// in that order the place in the layout's; and the weights of each neuron.
+/// The parameters of such a network neuron by neuron, for searches that keep the weights of a neuron together. Returns the place in
+/// the layout for each place in that order, and the weights of each neuron.
 pub fn neuron_order(velocities: bool, hidden: u32) -> (Vec<usize>, usize) {
     let layout = layout(velocities, hidden);
     let (inputs, neurons) = (layout.inputs(), layout.neurons() - layout.inputs());

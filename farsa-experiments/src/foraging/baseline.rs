@@ -7,8 +7,8 @@ use crate::team::config::EYES;
 use crate::team::robots::OUTPUTS;
 use crate::team::steering::{away, eyes};
 
-/// Drives circles that lead back to the nest before the energy is used up, and straight on through the nest, so that the
-/// circles make a rosette around it; turns away from what its infrared sensors see.
+/// Drives circles that lead back to the nest before the energy is used up, and straight on through the nest. The circles make a
+/// rosette around it. It turns away from objects in its infrared sensors.
 ///
 /// No memory, no camera, no LEDs. Inputs and outputs are those of [`crate::foraging::ForagingEpisode`].
 #[derive(Clone, Debug)]

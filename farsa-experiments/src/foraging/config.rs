@@ -7,9 +7,9 @@ use crate::team::config::{TeamConfig, whole};
 use crate::team::nest::{COLORS, NEST};
 use crate::team::{nest, task};
 
-/// What the robots forage in; the defaults are those of a condition, the robot's name.
+/// The arena of foraging. The defaults are those of a condition, the robot's name.
 ///
-/// Lengths are metres.
+/// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForagingConfig {
     /// The robots.
@@ -36,7 +36,7 @@ impl ForagingConfig {
             "khepera" => (0.12, team.speed),
             _ => (0.4, 0.5),
         };
-        // The MarXbot's camera sees all around; what shines behind a robot shows it where others are.
+        // The MarXbot's camera sees all around. Lights behind a robot show it the others.
         let field_of_view = if team.uses_marxbots() { core::f64::consts::TAU } else { team.field_of_view };
         Self {
             team: TeamConfig { speed, field_of_view, trials: 4, ..team },
@@ -57,7 +57,7 @@ impl ForagingConfig {
         let speed = if self.team.uses_marxbots() { speed.given() } else { speed };
         table.extend([
             speed.doc(
-                "The fastest that a robot drives; the source's 500 mm/s are a MarXbot's, the others keep their own.",
+                "Largest speed of a robot. The source's 500 mm/s are a MarXbot's, and the others have the speed of their wheels.",
             ),
             length("nest.radius", self.nest_radius).doc("Radius of the nest."),
             length("nest.to_wall", self.nest_to_wall).doc("Least distance of the nest's middle from the walls."),
@@ -65,9 +65,9 @@ impl ForagingConfig {
                 .doc("Greatest distance of a robot's middle from the nest's middle at the start."),
             Setting::whole("food.cells", whole(self.cells), 1..=1000)
                 .given()
-                .doc("Cells along a side of the arena; each has one piece of food, which the first robot there takes."),
+                .doc("Cells along a side of the arena. Each has one piece of food, which the first robot there takes."),
             Setting::number("energy.cost", self.cost, 0.0..=1.0).given().doc(
-                "Energy that a step costs of the 1 that the nest gives; a robot without is dead, and its food is lost.",
+                "Energy that a step costs, of the 1 that the nest gives. A robot without energy is dead, and its food is lost.",
             ),
         ]);
         table
@@ -90,7 +90,7 @@ impl ForagingConfig {
         Ok(read)
     }
 
-    /// The arena with robots and nest, which every trial places anew.
+    /// The arena with robots and nest, which every trial places.
     pub fn arena(&self) -> Arena {
         let mut arena = self.team.arena();
         arena.add_area(Area::circle([0.5 * self.team.size; 2], self.nest_radius, NEST));

@@ -22,15 +22,15 @@ use farsa_view::{Channel, Schema};
 
 /// Robots that forage, with a controller each, and the record of their food and energy.
 ///
-/// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), whether the ground under the
-/// robot is the nest's, and its energy; it writes what [`Team`] says. The dead stand still in the dark.
+/// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), 1 in the nest or 0, and its energy. Its
+/// outputs are those of [`Team`]. The dead rest in the dark.
 pub type ForagingEpisode<C> = TeamEpisode<ForagingScenario, C>;
 
 impl<C: Controller> ForagingEpisode<C> {
     /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
-    /// Those of [`Team::new`].
+    /// The errors of [`Team::new`].
     pub fn new(config: ForagingConfig, controllers: Vec<C>) -> Result<Self, Error> {
         Self::from_scenario(ForagingScenario::new(config), controllers)
     }
@@ -42,7 +42,7 @@ pub struct ForagingScenario {
     config: ForagingConfig,
     field: Field,
     nest: BodyId,
-    /// Robots that are there; all but in the cases of `team-size`.
+    /// Robots that take part: all but in the cases of `team-size`.
     present: usize,
 }
 
@@ -61,9 +61,9 @@ impl ForagingScenario {
 
     /// The sizes of a team that are tested: 1, 2, 4 and so on up to all.
     fn sizes(&self) -> Vec<usize> {
-        let all = self.config.team.robots;
+        let robots = self.config.team.robots;
         let doubled = std::iter::successors(Some(1_usize), |size| size.checked_mul(2));
-        doubled.take_while(|size| *size < all).chain([all]).collect()
+        doubled.take_while(|size| *size < robots).chain([robots]).collect()
     }
 
     /// The record of food and energy.
@@ -72,7 +72,7 @@ impl ForagingScenario {
     }
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("energy at the end", 1.0)],
     descriptors: &[("energy at the end", [0.0, 1.0]), ("deaths", [0.0, 4.0])],
@@ -135,12 +135,13 @@ impl Scenario for ForagingScenario {
         self.field.deaths() == self.present
     }
 
-    /// `team-size`: fewer robots than evolved together; `lesions`: without one of the senses, or one hidden neuron; `noise`.
+    /// `team-size` has fewer robots than evolved together, `senses` and `lesions` lack one of the senses or one hidden neuron,
+    /// `noise` changes inputs.
     fn interventions(&self) -> Interventions {
-        let all = self.config.team.robots;
-        let summary = "fewer robots than evolved together; the others are not there";
+        let trained = self.config.team.robots.to_string();
+        let summary = "fewer robots than evolved together, without the others";
         let mut sizes = Protocol::from_list("team-size", summary, self.sizes().iter().map(ToString::to_string));
-        sizes = sizes.with_axes("robots", "").with_held_out(|robots, _| robots != all.to_string());
+        sizes = sizes.with_axes("robots", "").with_held_out(|robots, _| robots != trained);
         let hidden = (0..self.config.team.hidden).map(|neuron| (format!("hidden neuron {}", neuron + 1), neuron));
         let senses = self.inputs();
         let cut = |(name, inputs)| (format!("no {name}"), Intervention::cut(inputs));
@@ -157,7 +158,7 @@ impl Scenario for ForagingScenario {
     }
 
     /// Pieces of food that the team carried to the nest.
-    fn earned(&self, _: usize, _: Moment<'_>) -> f64 {
+    fn reward(&self, _: usize, _: Moment<'_>) -> f64 {
         f64::from(self.field.collected())
     }
 
@@ -170,7 +171,7 @@ impl Scenario for ForagingScenario {
         let robots = self.present.max(1) as f64;
         let energy: f64 = field.robots().iter().take(self.present).map(|forager| forager.energy).sum();
         Outcome {
-            terms: vec![self.earned(own, moment)],
+            terms: vec![self.reward(own, moment)],
             steps: moment.steps,
             success: field.deaths() == 0,
             notes: vec![

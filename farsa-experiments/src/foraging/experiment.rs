@@ -11,11 +11,11 @@ use crate::team::task::evaluator;
 
 /// Can robots that see little and die soon feed a nest together? \[FARSA2\]
 ///
-/// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is
-/// used up. The condition is the robot: arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's;
-/// the number of robots, the time step, the camera's view and the network's other traits are ours, as the settings say.
-/// What a robot carries is not limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors; the
-/// source's bias neuron is the network's biases, which only its hidden neurons have.
+/// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is used up. The
+/// condition is the robot. Arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's. The number of robots,
+/// the time step, the camera's view and the network's other traits are ours, as the settings show. The load of a robot is not
+/// limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors. The source's bias neuron is the
+/// network's biases, which only its hidden neurons have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Foraging;
 
@@ -41,7 +41,7 @@ impl Experiment for Foraging {
     }
 }
 
-/// Runs one trial of a team of any controllers and returns what came of it, as an outcome of the experiment does.
+/// Runs one trial of a team of any controllers and returns its outcome.
 pub fn forage<C: Controller>(episode: &mut ForagingEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
     farsa_lab::run_episode(episode, world, id, None);
     episode.outcome(0)

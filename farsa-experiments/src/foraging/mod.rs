@@ -1,13 +1,12 @@
 //! The experiment `foraging`: a team carries food to its nest.
-//!
-//! - `baseline`: a forager without evolution, to compare evolved ones with
-//! - `config`: the values of `foraging`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `foraging`: robots carry food from a field to their nest, and must return to survive
 
+/// A forager without evolution, to compare evolved ones with.
 mod baseline;
+/// The values of `foraging`, as settings.
 mod config;
+/// An episode of `foraging`: robots carry food from a field to their nest, and must return to survive.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
 
 pub use crate::team::config::TeamConfig;

@@ -10,7 +10,7 @@ pub(crate) const INPUTS: usize = 3;
 /// Motor neurons.
 pub(crate) const MOTORS: usize = 6;
 
-/// What the network senses and commands.
+/// Inputs and commands of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// The target's place is sensed, joint angles are commanded.
@@ -23,16 +23,16 @@ impl Condition {
     /// The names on the command line.
     pub const NAMES: [&'static str; 2] = ["steady", "velocity"];
 
-    /// The condition of this name; the first one for another.
+    /// The condition of this name, or the first one.
     pub fn from_name(name: &str) -> Self {
         if name == Self::NAMES[1] { Self::Velocity } else { Self::Steady }
     }
 }
 
-/// Half an ellipsoid: what is in front of its centre.
+/// Half an ellipsoid: the part in front of its center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// Centre of the ellipsoid, relative to the body's centre \[m\].
+    /// Center of the ellipsoid, relative to the body's center \[m\].
     pub centre: [f64; 3],
     /// Its semi-axes along x, y and z \[m\].
     pub semi_axes: [f64; 3],
@@ -45,20 +45,20 @@ impl Volume {
         [if axis == 0 { centre } else { centre - half }, centre + half]
     }
 
-    /// The point at so many semi-axes from the centre \[m\].
+    /// The point at the given multiples of the semi-axes from the center \[m\].
     pub fn at(&self, parts: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| self.centre[k] + self.semi_axes[k] * parts[k])
     }
 }
 
-/// All values of the experiment; where they are from say the settings.
+/// All values of the experiment. The settings name their sources.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// What is sensed and commanded.
+    /// Inputs and commands.
     pub condition: Condition,
     /// Targets of an evaluation.
     pub targets: u32,
-    /// Whether all generations have the same targets.
+    /// The same targets in all generations.
     pub same_targets: bool,
     /// Steps of a trial.
     pub steps: u32,
@@ -145,7 +145,7 @@ impl Config {
         ((self.window / self.time_step + 0.5) as u32).clamp(1, self.steps)
     }
 
-    /// What goes together.
+    /// Rules between values.
     ///
     /// # Errors
     /// [`Error::Setting`] for a start out of the joints' limits.

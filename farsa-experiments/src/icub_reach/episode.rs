@@ -6,12 +6,12 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId,
 use farsa_lab::{Episode, EpisodeId};
 
 use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
-use crate::icub_reach::ledger::Ledger;
+use crate::icub_reach::totals::RewardTotals;
 use crate::icub_reach::scene::Scene;
 
-/// What moves the hand.
+/// A controller of the hand.
 pub trait Reacher {
-    /// Forgets an earlier trial.
+    /// Clears the state of an earlier trial.
     fn reset(&mut self);
     /// Senses `x`, has the six joints at `joints` \[rad\], and writes the motors' values `y`, 0..1.
     ///
@@ -24,14 +24,14 @@ pub trait ReachingWorld: Kinematics + Joints + Handles<Body = BodyId, Joint = Jo
 
 impl<W> ReachingWorld for W where W: Kinematics + Joints + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// What a trial asks.
+/// The demands of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Reaching {
-    /// Where the target is; where none is said it is the trial's own \[m\].
+    /// The target \[m\]. Without it each trial draws its target.
     pub target: Option<[f64; 3]>,
     /// From which step on it is another one of the trial's own.
     pub jump: Option<u32>,
-    /// Whether the trunk stays as it is at the start.
+    /// The trunk keeps its posture of the start.
     pub locked_torso: bool,
     /// The mass that hangs on the hand \[kg\].
     pub load: f64,
@@ -39,7 +39,7 @@ pub struct Reaching {
 
 /// A trial of a network or of a script.
 ///
-/// Where the target jumps, the ledger begins anew.
+/// A jump of the target restarts the totals.
 #[derive(Clone, Debug)]
 pub struct ReachEpisode<C> {
     scene: Arc<Scene>,
@@ -47,7 +47,7 @@ pub struct ReachEpisode<C> {
     asked: Reaching,
     targets: [[f64; 3]; 2],
     hand: [f64; 3],
-    ledger: Ledger,
+    totals: RewardTotals,
     steps: u32,
     x: [f32; INPUTS],
     y: [f32; MOTORS],
@@ -56,13 +56,13 @@ pub struct ReachEpisode<C> {
 impl<C: Reacher> ReachEpisode<C> {
     /// Trials in a scene.
     pub fn new(scene: Arc<Scene>, reacher: C) -> Self {
-        let ledger = Ledger::default();
+        let totals = RewardTotals::default();
         let (targets, hand) = ([[0.0; 3]; 2], [0.0; 3]);
         let asked = Reaching::default();
-        Self { scene, reacher, asked, targets, hand, ledger, steps: 0, x: [0.0; INPUTS], y: [0.0; MOTORS] }
+        Self { scene, reacher, asked, targets, hand, totals, steps: 0, x: [0.0; INPUTS], y: [0.0; MOTORS] }
     }
 
-    /// What the next trials ask.
+    /// Sets the demands of the next trials.
     pub fn ask(&mut self, asked: Reaching) {
         self.asked = asked;
     }
@@ -72,7 +72,7 @@ impl<C: Reacher> ReachEpisode<C> {
         &self.scene
     }
 
-    /// What moves the hand.
+    /// The controller of the hand.
     pub fn reacher(&self) -> &C {
         &self.reacher
     }
@@ -83,8 +83,8 @@ impl<C: Reacher> ReachEpisode<C> {
     }
 
     /// The distances so far.
-    pub fn ledger(&self) -> &Ledger {
-        &self.ledger
+    pub fn totals(&self) -> &RewardTotals {
+        &self.totals
     }
 
     /// Steps so far.
@@ -92,17 +92,17 @@ impl<C: Reacher> ReachEpisode<C> {
         self.steps
     }
 
-    /// What was sensed last \[3\].
+    /// The last inputs \[3\].
     pub fn sensed(&self) -> &[f32; INPUTS] {
         &self.x
     }
 
-    /// What was done last \[6\].
+    /// The last outputs \[6\].
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }
 
-    /// The palm's centre \[m\].
+    /// The palm's center \[m\].
     pub fn hand(&self) -> [f64; 3] {
         self.hand
     }
@@ -112,9 +112,9 @@ impl<C: Reacher> ReachEpisode<C> {
         self.targets[usize::from(self.asked.jump.is_some_and(|at| self.steps >= at))]
     }
 
-    /// What the trial earns if it ends now.
+    /// The reward if the trial ends now.
     pub fn fitness(&self) -> f64 {
-        self.ledger.fitness(self.scene.config.least_start)
+        self.totals.fitness(self.scene.config.least_start)
     }
 
     fn look<W: ReachingWorld + ?Sized>(&mut self, world: &W) -> f64 {
@@ -146,13 +146,13 @@ where
         let [own, next] = self.scene.two_targets(id);
         self.targets = [self.asked.target.unwrap_or(own), next];
         (self.steps, self.x, self.y) = (0, [0.0; INPUTS], [0.0; MOTORS]);
-        self.ledger = Ledger::new(self.look(world));
+        self.totals = RewardTotals::new(self.look(world));
     }
 
     fn act(&mut self, world: &mut W) {
         self.sense();
         let scene = Arc::clone(&self.scene);
-        let joints = scene.controlled.map(|one| world.position(one.joint));
+        let joints = scene.controlled.map(|driven| world.position(driven.joint));
         self.reacher.step(&self.x, &joints, &mut self.y);
         let Config { condition, speed, hold_rate, .. } = scene.config;
         for (number, one) in scene.controlled.iter().chain(&scene.held).enumerate() {
@@ -183,12 +183,12 @@ where
         let Config { steps, .. } = self.scene.config;
         let distance = self.look(world);
         if self.asked.jump == Some(self.steps) {
-            self.ledger = Ledger::new(distance);
+            self.totals = RewardTotals::new(distance);
         } else {
-            self.ledger.add(distance, self.steps + self.scene.config.window_steps() > steps);
+            self.totals.add(distance, self.steps + self.scene.config.window_steps() > steps);
         }
         if !distance.is_finite() {
-            self.ledger.add(f64::NAN, true);
+            self.totals.add(f64::NAN, true);
             return Some(f64::NAN);
         }
         (self.steps >= steps).then(|| self.fitness())

@@ -8,14 +8,13 @@ use crate::icub_reach::scene::Scene;
 use crate::icub_reach::task::ReachTask;
 use crate::strategy::strategy;
 
-/// How does an iCub come to reach for any target in front of it, by six joints and a network without memory?
+/// Can an iCub reach any target in front of it, by six joints and a network without memory?
 ///
-/// Torso yaw and pitch and the left arm's shoulder and elbow move; all other joints keep their angles. Under `steady` the network
-/// senses where the target is and commands joint angles, which are the same from beginning to end; under `velocity` it senses
-/// the way from hand to target and commands joint speeds.
+/// Torso yaw and pitch and the left arm's shoulder and elbow move. All other joints keep their angles. Under `steady` the network
+/// senses the target and commands joint angles, which are the same from beginning to end. Under `velocity` it senses the way from
+/// hand to target and commands joint speeds.
 ///
-/// Deviations: of the source only openings of its pages are known to us; what they do not say is of our own making, and the
-/// settings say which that is.
+/// Deviations: only the openings of the source's pages were available. All other values are ours, and the settings mark them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReach;
 

@@ -64,7 +64,7 @@ pub(crate) fn parameters(range: f64) -> Vec<Parameter> {
     let first =
         ["x", "y", "z"].into_iter().flat_map(|axis| hidden.clone().map(move |to| format!("weight of {axis} on {to}")));
     let second = hidden.clone().flat_map(|from| motors.clone().map(move |to| format!("weight of {from} on {to}")));
-    let biases = hidden.clone().chain(motors.clone()).map(|of| format!("bias of {of}"));
+    let biases = hidden.clone().chain(motors.clone()).map(|neuron| format!("bias of {neuron}"));
     first.chain(second).chain(biases).map(|name| Parameter::new(name, [-range, range])).collect()
 }
 

@@ -12,32 +12,32 @@ use crate::icub_reach::scene::CONTROLLED;
 
 /// Places of the grid along an axis.
 pub const GRID: usize = 5;
-/// How far the targets of `outside` are, in parts of the volume's surface.
+/// Distance of the targets of `outside`, in parts of the volume's surface.
 const OUTSIDE: f64 = 1.1;
-/// What hangs on the hand in `load` \[kg\].
+/// The weight on the hand in `load` \[kg\].
 const LOAD: f64 = 0.5;
-/// Trials of a case with targets of its own.
+/// Trials of a case with separate targets.
 const TRIALS: u32 = 50;
 
-/// A point of a half cube, x from 0 to 1, y and z from -1 to 1, on the half ball: along the same ray, on the sphere of as many
-/// parts of its radius.
+/// Maps a point of a half cube to the half ball, with x from 0 to 1, y and z from -1 to 1. The point keeps its ray and its share of
+/// the radius.
 fn on_ball(cube: [f64; 3]) -> [f64; 3] {
     let most = cube.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let length = Scalar::sqrt(cube.iter().fold(0.0, |sum, x| sum + x * x));
     if length > 0.0 { cube.map(|x| x * (most / length)) } else { cube }
 }
 
-/// The 125 places of the grid \[m\], the last axis first: five layers from the centre forwards, each of five by five places.
+/// The 125 places of the grid \[m\], the last axis first: five layers from the center forwards, each of five by five places.
 pub fn grid(volume: &Volume) -> Vec<[f64; 3]> {
     let part = |place: usize| place as f64 / (GRID - 1) as f64;
     let cube = |n: usize| [part(n / (GRID * GRID)), 2.0 * part(n / GRID % GRID) - 1.0, 2.0 * part(n % GRID) - 1.0];
     (0..GRID * GRID * GRID).map(|n| volume.at(on_ball(cube(n)))).collect()
 }
 
-/// Places beyond the volume's curved surface, by a tenth of the way from the centre \[m\], with their parts of the semi-axes.
+/// Places beyond the volume's curved surface, by a tenth of the way from the center \[m\], with their parts of the semi-axes.
 pub fn outside(volume: &Volume) -> Vec<([f64; 3], [f64; 3])> {
-    let all = (0..27).map(|n| [f64::from(n / 9) * 0.5, f64::from(n / 3 % 3) - 1.0, f64::from(n % 3) - 1.0]);
-    let surface = all.filter(|cube| cube.iter().any(|x| x.abs() >= 1.0));
+    let grid = (0..27).map(|n| [f64::from(n / 9) * 0.5, f64::from(n / 3 % 3) - 1.0, f64::from(n % 3) - 1.0]);
+    let surface = grid.filter(|cube| cube.iter().any(|x| x.abs() >= 1.0));
     let farther = surface.map(|cube| on_ball(cube).map(|x| x * OUTSIDE));
     farther.map(|parts| (parts, volume.at(parts))).collect()
 }
@@ -102,12 +102,12 @@ impl Protocols {
         self.interventions.protocols()
     }
 
-    /// What is done to the network in an evaluation.
+    /// The change of the network in an evaluation.
     pub(crate) fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
         self.interventions.applied(evaluation)
     }
 
-    /// What a trial asks in a case.
+    /// The demands of a trial in a case.
     pub(crate) fn asked(&self, case: Option<CaseId>) -> Reaching {
         let plain = Reaching::default();
         match self.interventions.named(case) {

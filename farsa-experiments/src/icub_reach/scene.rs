@@ -47,7 +47,7 @@ pub struct Scene {
     pub robot: Robot,
     /// Every value of the experiment.
     pub config: Config,
-    /// The palm's centre in its frame \[m\].
+    /// The palm's center in its frame \[m\].
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,
@@ -61,7 +61,7 @@ impl Scene {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let wrong = |error: IcubError| Error::Other(format!("icub-reach: {error}"));
@@ -73,12 +73,12 @@ impl Scene {
             let actuator = icub.actuator(&joint_of.name).map_err(wrong)?;
             Ok(Driven { joint, actuator, start, range: joint_of.range })
         };
-        let all: Vec<Driven> = robot.joints().zip(icub.start()).map(driven).collect::<Result<_, _>>()?;
-        let is_controlled = |one: &Driven| CONTROLLED.contains(&robot.segments[one.joint.index()].joint.name.as_str());
-        let (controlled, held): (Vec<Driven>, Vec<Driven>) = all.into_iter().partition(is_controlled);
+        let joints: Vec<Driven> = robot.joints().zip(icub.start()).map(driven).collect::<Result<_, _>>()?;
+        let is_controlled = |driven: &Driven| CONTROLLED.contains(&robot.segments[driven.joint.index()].joint.name.as_str());
+        let (controlled, held): (Vec<Driven>, Vec<Driven>) = joints.into_iter().partition(is_controlled);
         let controlled = controlled
             .try_into()
-            .map_err(|found: Vec<Driven>| Error::Other(format!("icub-reach: {} joints, not 6", found.len())))?;
+            .map_err(|joints: Vec<Driven>| Error::Other(format!("icub-reach: {} joints, not 6", joints.len())))?;
         let palm_centre = icub.palm_centre(Side::Left);
         debug_assert_eq!(Self::PALM, Icub::palm(Side::Left));
         Ok(Self { robot, config, palm_centre, controlled, held, burdened })
@@ -111,7 +111,7 @@ impl Scene {
         robot
     }
 
-    /// Commands the torques of a weight that hangs on the palm's centre, `mass` \[kg\], until the next command.
+    /// Commands the torques of a weight at the palm's center, `mass` \[kg\], until the next command.
     ///
     /// A force F at the point p turns a joint at o about the unit axis a by a . (p - o) x F. Inertia of the load is left out.
     pub(crate) fn hang<W>(&self, world: &mut W, hand: [f64; 3], mass: f64)
@@ -127,7 +127,7 @@ impl Scene {
         }
     }
 
-    /// How the articulated world is stepped.
+    /// Options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, .. } = self.config;
         Options { time_step, substeps, ..Options::default() }
@@ -135,23 +135,23 @@ impl Scene {
 
     /// The limits of the six joints \[rad\].
     pub fn ranges(&self) -> [[f64; 2]; 6] {
-        self.controlled.map(|one| one.range)
+        self.controlled.map(|driven| driven.range)
     }
 
     /// The six joints at the start \[rad\].
     pub fn start(&self) -> [f64; 6] {
-        self.controlled.map(|one| one.start)
+        self.controlled.map(|driven| driven.start)
     }
 
     /// The kinematics of the six joints alone: the others are fixed where they are held.
     ///
     /// # Errors
-    /// What [`KinematicTree::new`] refuses.
+    /// The errors of [`KinematicTree::new`].
     pub fn kinematics(&self) -> Result<KinematicTree, RobotError> {
         let mut robot = Robot { actuators: Vec::new(), pairs: Vec::new(), ..self.robot.clone() };
         for Driven { joint, start, .. } in &self.held {
-            let own = &mut robot.segments[joint.index()].joint;
-            *own = own.locked(*start);
+            let joint = &mut robot.segments[joint.index()].joint;
+            *joint = joint.locked(*start);
         }
         KinematicTree::new(&robot)
     }
@@ -173,7 +173,7 @@ impl Scene {
         Stream::new(id.seed, Domain::Start, id.trial, 0, generation)
     }
 
-    /// By rejection from the half ellipsoid's box; half of the points are in it.
+    /// By rejection from the half ellipsoid's box. Half of the points are in it.
     fn draw(&self, stream: &mut Stream) -> [f64; 3] {
         loop {
             let parts = [stream.range_f64(0.0, 1.0), stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
@@ -197,7 +197,7 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// How far a point is from another \[m\].
+    /// The distance between two points \[m\].
     pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         Scalar::sqrt(x * x + y * y + z * z)

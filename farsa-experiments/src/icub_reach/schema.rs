@@ -1,4 +1,4 @@
-//! What an episode of `icub-reach` records, by name.
+//! The recorded channels of `icub-reach`, by name.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};
@@ -67,9 +67,9 @@ where
         recorder.contact(pair, &world.pair_contact(pair));
     }
     let mut scalars = [0.0; 2 + 6 + MOTORS];
-    let joints = scene.controlled.map(|one| f64::from(world.position(one.joint)));
-    let all = [episode.ledger().last(), episode.fitness()].into_iter().chain(hand).chain(target).chain(joints);
-    scalars.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    let joints = scene.controlled.map(|driven| f64::from(world.position(driven.joint)));
+    let values = [episode.totals().last(), episode.fitness()].into_iter().chain(hand).chain(target).chain(joints);
+    scalars.iter_mut().zip(values).for_each(|(to, x)| *to = x);
     recorder.scalars(&scalars);
     recorder.tick(seconds(episode.steps(), scene.config.time_step));
 }

@@ -8,7 +8,7 @@ use crate::icub_reach::config::{Condition, Config};
 use crate::icub_reach::episode::Reacher;
 use crate::icub_reach::scene::Scene;
 
-/// Speed of the hand for each metre that it is away from the target \[1/s\].
+/// Speed of the hand per meter of distance from the target \[1/s\].
 const RATE: f64 = 3.0;
 /// Damping of the least squares \[m\].
 const DAMPING: f64 = 0.03;
@@ -29,7 +29,7 @@ pub struct Script {
     ranges: [[f64; 2]; 6],
     stiffness: [f64; 6],
     poses: Vec<Pose<f64>>,
-    /// What was sensed when the joints' angles were found, and the motors for them.
+    /// The inputs for which the joints' angles were computed, and the motor values.
     found: Option<([f32; 3], [f32; 6])>,
 }
 
@@ -40,7 +40,7 @@ impl Script {
     /// [`Error::Other`] for a robot without kinematics.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = scene.kinematics().map_err(|error| Error::Other(format!("icub-reach: {error}")))?;
-        let stiffness = scene.controlled.map(|one| match scene.robot.actuators[one.actuator.index()].law {
+        let stiffness = scene.controlled.map(|driven| match scene.robot.actuators[driven.actuator.index()].law {
             farsa_body::actuators::Law::Servo(servo) => servo.stiffness,
             _ => f64::INFINITY,
         });
@@ -55,8 +55,8 @@ impl Script {
     /// [`InverseKinematicsError::NotReached`] with the nearest.
     pub fn angles(&self, place: [f64; 3]) -> Result<[f64; 6], InverseKinematicsError> {
         let goal = Goal { body: Scene::PALM, point: self.palm_centre, position: place, orientation: Orientation::Free };
-        let found = InverseKinematics::default().solve(&self.tree, &goal, &self.start)?;
-        Ok(core::array::from_fn(|i| found.joints[i]))
+        let posture = InverseKinematics::default().solve(&self.tree, &goal, &self.start)?;
+        Ok(core::array::from_fn(|i| posture.joints[i]))
     }
 
     fn steady(&mut self, x: &[f32; 3]) -> [f32; 6] {

@@ -22,7 +22,7 @@ impl Config {
         let Volume { centre, semi_axes } = self.volume;
         vec![
             Setting::whole("evolution.generations", 600, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 30, 0..=1_000_000)
                 .doc("Individuals of a generation, twice as many as the strategy's own."),
             number("strategy.sigma", 0.2, 1e-6, 10.0).doc(
@@ -31,27 +31,27 @@ impl Config {
             Setting::whole("trial.targets", i64::from(self.targets), 1..=10_000)
                 .doc("Targets of an evaluation, a trial each."),
             Setting::flag("trial.same_targets", self.same_targets).doc(
-                "Whether all generations have the same targets; where each has others, a network for these alone does not last.",
+                "All generations have the same targets. Other targets in each generation select against networks for a few of them.",
             ),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000)
                 .doc("Control steps of a trial: 10 s at the default step."),
             number("world.time_step", self.time_step, 0.001, 0.2).unit("s").doc("Control step."),
             Setting::whole("world.substeps", i64::from(self.substeps), 1..=1000)
                 .doc(
-                "Dynamics steps of a control step; tests compare with shorter ones. Position servos that saturate swing where there are fewer than eight.",
+                "Dynamics steps of a control step. Tests compare with shorter ones. Position servos that saturate swing where there are fewer than eight.",
             ),
             numbers("target.centre", &centre, -2.0, 2.0).unit("m").doc(
-                "Centre of the ellipsoid of targets, relative to the body's centre: in front of the left shoulder.",
+                "Center of the ellipsoid of targets, relative to the body's center: in front of the left shoulder.",
             ),
             numbers("target.semi_axes", &semi_axes, 0.001, 2.0).unit("m").doc(
-                "Its semi-axes; targets are in its half that is in front of the centre, all of which six joints reach.",
+                "Its semi-axes. Targets are in its half in front of the center, all of which six joints reach.",
             ),
             number("fitness.window", self.window, 0.001, 1000.0)
                 .unit("s")
                 .doc("The last seconds of a trial, of which the mean distance is taken."),
             number("fitness.least_start", self.least_start, 1e-3, 1.0)
                 .unit("m")
-                .doc("Start distances below this count as this: most do, so that fitness is about the mean distance in parts of it; near targets would else weigh more than far ones."),
+                .doc("Start distances below this count as this. Most are below, so fitness is about the mean distance in parts of it. Near targets would else weigh more than far ones."),
             number("success.distance", self.success, 1e-4, 1.0)
                 .unit("m")
                 .doc("The mean distance below which a trial is a success."),
@@ -62,9 +62,9 @@ impl Config {
         let of_robot = vec![
             numbers("start.torso", &self.torso, -180.0, 180.0)
                 .unit("deg")
-                .doc("Pitch, roll and yaw of the trunk at the start; roll is held there."),
+                .doc("Pitch, roll and yaw of the trunk at the start. Roll is held there."),
             numbers("start.arm", &self.arm, -180.0, 180.0).unit("deg").doc(
-                "The left arm's seven joints at the start, from the shoulder on; the wrist's three are held there.",
+                "The left arm's seven joints at the start, from the shoulder on. The wrist's three are held there.",
             ),
         ];
         let of_condition = match self.condition {

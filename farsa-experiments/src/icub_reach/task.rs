@@ -1,4 +1,4 @@
-//! What there is to know of `icub-reach`, and its episodes over parameters.
+//! The description of `icub-reach`, and its episodes over parameters.
 
 use std::sync::Arc;
 
@@ -86,15 +86,15 @@ impl Rollout for ReachTask {
     }
 
     fn outcome(&self) -> Outcome {
-        let ledger = self.episode.ledger();
+        let totals = self.episode.totals();
         let [x, y, z] = self.episode.target();
         Outcome {
             terms: vec![self.episode.fitness()],
             steps: self.episode.steps(),
-            success: ledger.mean() < self.config().success,
+            success: totals.mean() < self.config().success,
             notes: vec![
-                ("distance [cm]", Note::from(100.0 * ledger.mean())),
-                ("start distance [cm]", Note::from(100.0 * ledger.start())),
+                ("distance [cm]", Note::from(100.0 * totals.mean())),
+                ("start distance [cm]", Note::from(100.0 * totals.start())),
                 ("target x [m]", Note::from(x)),
                 ("target y [m]", Note::from(y)),
                 ("target z [m]", Note::from(z)),
@@ -183,7 +183,7 @@ impl Exports for ReachTask {
         let network = NetworkExport::Blocks { layout, leak: Leak::Filter, parameters: parameters.into() };
         let sensors = schema::sensors(self.config()).into_iter().enumerate().map(|(axis, name)| match condition {
             Condition::Steady => {
-                SensorExport::quantity(name, "the target's place relative to the body's centre", "m", volume.ends(axis))
+                SensorExport::quantity(name, "the target's place relative to the body's center", "m", volume.ends(axis))
             }
             Condition::Velocity => SensorExport::quantity(name, "way from hand to target", "m", [0.0, offset]),
         });

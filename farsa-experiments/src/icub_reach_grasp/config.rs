@@ -11,7 +11,7 @@ pub const SENSORS: usize = 15;
 /// Motor neurons.
 pub const MOTORS: usize = 10;
 
-/// How large the area is in which the ball lies while agents evolve.
+/// The area of the ball during evolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Area {
     /// 40 by 40 cm, all that is tested.
@@ -27,7 +27,7 @@ impl Area {
     /// The names of the conditions, as [`Area::from_name`] takes them.
     pub const NAMES: [&str; 3] = ["wide", "medium", "narrow"];
 
-    /// The area of a condition's name; the widest for another one.
+    /// The area of a condition's name, or the widest one.
     pub fn from_name(name: &str) -> Self {
         match name {
             "medium" => Self::Medium,
@@ -46,7 +46,7 @@ impl Area {
     }
 }
 
-/// Every value of the experiment; `settings` has the reasons.
+/// Every value of the experiment. `settings` has the reasons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Trials of an evaluation.
@@ -83,7 +83,7 @@ pub struct Config {
     pub flexion: [f64; 2],
     /// Horizontal field of view of the left eye \[deg\].
     pub field_of_view: f64,
-    /// Whether the head follows the ball.
+    /// The head follows the ball.
     pub tracking: bool,
     /// Part of the angle to the ball that the head makes up for in a step.
     pub head_gain: f64,
@@ -97,7 +97,7 @@ pub struct Config {
     pub window: f64,
     /// Height of the ball above the table that earns all there is to earn and counts as lifted \[m\].
     pub height: f64,
-    /// How long the ball must be up at the end of a trial that succeeds \[s\].
+    /// Time for which the ball must be up at the end of a successful trial \[s\].
     pub hold: f64,
 }
 
@@ -181,7 +181,7 @@ impl Config {
         ((seconds / self.time_step + 0.5) as u32).clamp(1, self.steps)
     }
 
-    /// What goes together.
+    /// Rules between values.
     ///
     /// # Errors
     /// [`Error::Setting`] for a start out of the joints' limits, or a ball that does not lie on the table.

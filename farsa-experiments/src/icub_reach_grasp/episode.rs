@@ -13,9 +13,9 @@ use crate::icub_reach_grasp::motors::Motors;
 use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// What moves the robot.
+/// A controller of the robot.
 pub trait Grasper {
-    /// Forgets an earlier trial; the ball is here in the next one \[m\], which an agent is not told.
+    /// Starts a trial with the ball at this place \[m\]. An agent does not sense it and clears its state.
     fn start(&mut self, ball: [f64; 3]);
     /// Senses `x` and writes the motors' values `y`, 0..1.
     fn step(&mut self, x: &[f32; SENSORS], y: &mut [f32; MOTORS]);
@@ -26,10 +26,11 @@ pub trait GraspingWorld: Kinematics + Joints + Contacts + Handles<Body = BodyId,
 
 impl<W> GraspingWorld for W where W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// What a trial asks.
+/// The demands of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Lifting {
-    /// In which cell of the tested area the ball is, of so many along X and Y; where none is said, in the trial's own part of the area.
+    /// The cell of the ball, and the number of cells along X and Y of the tested area. Without it each trial has its part of the
+    /// area.
     pub cell: Option<[[u32; 2]; 2]>,
     /// Largest error of the offsets in the eye's image.
     pub noise: f32,
@@ -60,7 +61,7 @@ impl<C: Grasper> GraspEpisode<C> {
         Ok(Self { scene, senses, motors, grasper, asked, seen, score, x: [0.0; SENSORS], y: [0.0; MOTORS] })
     }
 
-    /// What the next trials ask.
+    /// Sets the demands of the next trials.
     pub fn ask(&mut self, asked: Lifting) {
         self.asked = asked;
     }
@@ -70,7 +71,7 @@ impl<C: Grasper> GraspEpisode<C> {
         &self.scene
     }
 
-    /// What moves the robot.
+    /// The controller of the robot.
     pub fn grasper(&self) -> &C {
         &self.grasper
     }
@@ -80,7 +81,7 @@ impl<C: Grasper> GraspEpisode<C> {
         &mut self.grasper
     }
 
-    /// What was seen after the last step.
+    /// The observation after the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
@@ -90,22 +91,22 @@ impl<C: Grasper> GraspEpisode<C> {
         &self.score
     }
 
-    /// What was sensed last \[15\].
+    /// The last inputs \[15\].
     pub fn sensed(&self) -> &[f32; SENSORS] {
         &self.x
     }
 
-    /// What was done last \[10\].
+    /// The last outputs \[10\].
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }
 
-    /// What the trial earns if it ends now: nearness, touch, height, each from 0 to 1.
+    /// The terms of the reward if the trial ends now: nearness, touch, height, each from 0 to 1.
     pub fn terms(&self) -> [f64; 3] {
         self.score.terms(&self.scene.config)
     }
 
-    /// Whether the trial succeeds if it ends now.
+    /// True if the trial succeeds when it ends now.
     pub fn succeeds(&self) -> bool {
         self.score.succeeds(&self.scene.config)
     }
@@ -136,7 +137,7 @@ where
         self.motors.drive(&self.y, world);
     }
 
-    /// A trial ends after its last step or when the ball has fallen off the table; the return is the sum of the terms.
+    /// A trial ends after its last step or when the ball has fallen off the table. The return is the sum of the terms.
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.seen = self.scene.observe(world);
         if !self.seen.is_finite() {

@@ -8,13 +8,12 @@ use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::icub_reach_grasp::task::GraspTask;
 use crate::strategy::strategy;
 
-/// How does an iCub come to reach for a ball that lies anywhere on a table, to grasp it and to lift it?
+/// Can an iCub reach a ball anywhere on a table, grasp it and lift it?
 ///
-/// Its left eye sees how far ball and hand are apart, its head follows the ball by a reflex, so that the angles of neck and trunk
-/// say where the ball is; nine touch sensors feel it. The network commands angles of trunk, right arm and hand.
+/// Its left eye sees the offset between ball and hand. Its head follows the ball by a reflex, so that the angles of neck and trunk
+/// show the ball's place. Nine touch sensors feel it. The network commands angles of trunk, right arm and hand.
 ///
-/// Deviations: of the source only openings of its pages are known to us; what they do not say is of our own making, and the
-/// settings say which that is.
+/// Deviations: only the openings of the source's pages were available. All other values are ours, and the settings mark them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReachGrasp;
 

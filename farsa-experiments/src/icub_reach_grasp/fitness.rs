@@ -1,4 +1,4 @@
-//! What a trial of `icub-reach-grasp` earns.
+//! The reward of a trial of `icub-reach-grasp`.
 
 use farsa_num::Scalar;
 
@@ -6,47 +6,47 @@ use crate::icub_reach_grasp::config::Config;
 
 /// Parts of the hand: the palm and fifteen phalanges.
 pub(crate) const PARTS: usize = 16;
-/// What a touch by one part alone earns of all that touch can.
+/// The share of the touch reward for a touch by one part alone.
 const ONE_TOUCH: f64 = 0.25;
 
-/// What is seen of a world after a step.
+/// The judge's view of a world after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The palm's centre \[m\].
+    /// The palm's center \[m\].
     pub palm: [f64; 3],
-    /// The ball's centre \[m\].
+    /// The ball's center \[m\].
     pub ball: [f64; 3],
-    /// From the palm's centre to the ball's surface, 0 within it \[m\].
+    /// From the palm's center to the ball's surface, 0 within it \[m\].
     pub distance: f64,
-    /// Of the ball's lowest point above the table \[m\].
+    /// Height of the ball's lowest point above the table \[m\].
     pub height: f64,
     /// Parts of the hand that touch the ball.
     pub touching: u32,
-    /// How far two of them are on opposite sides of it, [`opposition`].
+    /// The opposition of two touching parts, [`opposition`].
     pub opposition: f64,
-    /// Whether anything but the hand touches the ball.
+    /// Something else than the hand touches the ball.
     pub supported: bool,
 }
 
 impl Observation {
-    /// Whether all is finite.
+    /// True if all values are finite.
     pub fn is_finite(&self) -> bool {
         let Self { palm, ball, opposition, .. } = self;
         palm.iter().chain(ball).chain([opposition]).all(|x| x.is_finite())
     }
 
-    /// What the touch earns: nothing without, a quarter by one side, all by two that are opposite.
+    /// The share of the touch reward: nothing without a touch, a quarter for one side, all for two opposite ones.
     pub fn touch(&self) -> f64 {
         if self.touching == 0 { 0.0 } else { ONE_TOUCH + (1.0 - ONE_TOUCH) * self.opposition }
     }
 
-    /// Whether the hand holds the ball, and nothing else touches it.
+    /// True if the hand holds the ball, and nothing else touches it.
     pub fn is_held(&self) -> bool {
         self.touching > 0 && !self.supported
     }
 }
 
-/// How far two of some directions from a centre, of any length \[n x 3\], are opposite.
+/// The largest opposition of two of these directions from a center, of any length \[n x 3\].
 ///
 /// 0 for one direction or none, 1 for opposite ones, in general (1 - cos) / 2 of the largest angle between two.
 pub fn opposition(directions: &[[f64; 3]]) -> f64 {
@@ -72,7 +72,7 @@ pub struct Score {
     pub held: u32,
     /// The greatest height of the ball while it was held \[m\].
     pub highest: f64,
-    /// Whether the ball has fallen off the table.
+    /// The ball has fallen off the table.
     pub fallen: bool,
     start: f64,
     nearness: f64,
@@ -107,14 +107,14 @@ impl Score {
         self.nearness = f64::NAN;
     }
 
-    /// What the trial earns if it ends now, each from 0 to 1: nearness of the hand, the mean over the trial; touch and height, the
-    /// means over its last seconds. Steps that a fall off the table has cost earn nothing.
+    /// The terms of the reward if the trial ends now, each from 0 to 1. Nearness of the hand is a mean over the trial. Touch and
+    /// height are means over its last seconds. Steps lost by a fall off the table earn nothing.
     pub fn terms(&self, config: &Config) -> [f64; 3] {
         let window = f64::from(config.window_steps());
         [self.nearness / f64::from(config.steps), self.touch / window, self.lift / window]
     }
 
-    /// Whether a trial that has ended succeeds.
+    /// True if an ended trial succeeds.
     pub fn succeeds(&self, config: &Config) -> bool {
         self.held >= config.hold_steps() && !self.fallen
     }

@@ -1,31 +1,30 @@
 //! The experiment `icub-reach-grasp`: an iCub reaches for a ball on a table, grasps it and lifts it.
-//!
-//! - `agent`: the network of an agent
-//! - `config`: its values
-//! - `episode`: an episode: the ball is somewhere, and shall be lifted
-//! - `experiment`: its name and settings, and what runs its trials
-//! - `fitness`: what a trial earns
-//! - `motors`: what the robot does
-//! - `protocols`: its test protocols
-//! - `scene`: the robot, the table and the ball, and what is seen of them
-//! - `schema`: what an episode records, by name
-//! - `script`: a controller written by hand
-//! - `senses`: what the robot senses
-//! - `settings`: its values as settings
-//! - `task`: what there is to know of it, and its episodes over parameters
 
+/// The network of an agent.
 mod agent;
+/// Its values.
 mod config;
+/// An episode: the ball is somewhere, and shall be lifted.
 mod episode;
+/// Its name and settings, and what runs its trials.
 mod experiment;
+/// The reward of a trial.
 mod fitness;
+/// The robot's motors.
 mod motors;
+/// Its test protocols.
 mod protocols;
+/// The robot, the table and the ball, and what is seen of them.
 mod scene;
+/// The recorded channels, by name.
 mod schema;
+/// A controller written by hand.
 mod script;
+/// The senses of the robot.
 mod senses;
+/// Its values as settings.
 mod settings;
+/// Its description, and episodes over parameters.
 mod task;
 
 pub use agent::Agent;

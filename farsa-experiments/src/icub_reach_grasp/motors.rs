@@ -1,4 +1,4 @@
-//! What the robot does: trunk, right arm and hand by the network, the head by its reflex.
+//! The robot's motors: trunk, right arm and hand by the network, the head by its reflex.
 
 use farsa_body::motors::{HeadTracking, ServoGroup, ServoRange};
 use farsa_body::ports::{Actuated, ActuatorId, BodyId, Channels, Handles, Kinematics, Motor};
@@ -22,14 +22,14 @@ pub(crate) const CONTROLLED: [&str; 9] = [
     "r_wrist_yaw",
 ];
 
-/// The joints of the hand that abduct the fingers; all others follow one motor neuron.
+/// The joints of the hand that abduct the fingers. All others follow one motor neuron.
 const ABDUCTION: [u16; 4] = [12, 16, 20, 24];
 /// The thumb's opposition, and its flexion.
 const OPPOSITION: u16 = 8;
 const THUMB: [u16; 3] = [9, 10, 11];
 
-/// The motors in the order of the network's outputs: desired angles of pitch and yaw of the trunk and of the right arm's seven joints
-/// from the lower to the upper limit \[9\], and the hand, 0 open and 1 closed \[1\].
+/// The motors in the order of the network's outputs. The first nine are desired angles of pitch and yaw of the trunk and of the
+/// right arm's seven joints, from the lower to the upper limit. The last one is the hand, 0 open and 1 closed.
 ///
 /// The trunk's roll and the abduction of the fingers stay as they are, and the neck follows the ball by
 /// [`HeadTracking`] or stays too.

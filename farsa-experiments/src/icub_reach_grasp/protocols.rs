@@ -54,12 +54,12 @@ impl Protocols {
         self.interventions.protocols()
     }
 
-    /// What is done to the network in an evaluation.
+    /// The change of the network in an evaluation.
     pub(crate) fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
         self.interventions.applied(evaluation)
     }
 
-    /// What a trial asks in a case.
+    /// The demands of a trial in a case.
     pub(crate) fn asked(&self, case: Option<CaseId>) -> Lifting {
         let plain = Lifting::default();
         match self.interventions.named(case) {

@@ -14,7 +14,7 @@ use crate::icub_reach_grasp::fitness::{Observation, PARTS, opposition};
 /// The parts of the area in which the ball lies in a round of twelve trials, along X and Y.
 const GRID: [u32; 2] = [3, 4];
 
-/// The colour in which the robot's own eye sees it.
+/// Its color in the robot's eye.
 const SKIN: [f64; 3] = [0.78, 0.80, 0.84];
 
 /// A part of the hand: its pair with the ball, and a point in its middle.
@@ -54,7 +54,7 @@ impl Scene {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let icub = config.icub();
@@ -92,7 +92,7 @@ impl Scene {
         Ok(Self { robot, icub, config, start, parts, others })
     }
 
-    /// How the articulated world is stepped.
+    /// Options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, .. } = self.config;
         Options { time_step, substeps, ..Options::default() }
@@ -127,8 +127,7 @@ impl Scene {
         self.parts.iter().map(|part| part.on_ball)
     }
 
-    /// Where the ball lies in a trial, X and Y \[m\]: anywhere in one of the twelve parts of the area, those of a round of twelve
-    /// trials one after the other.
+    /// The place of the ball in a trial, X and Y \[m\]. Twelve consecutive trials take one each of the twelve parts of the area.
     ///
     /// From the stream of [`Domain::Start`]: the same for all individuals of a generation.
     pub fn place(&self, id: EpisodeId) -> [f64; 2] {
@@ -136,7 +135,7 @@ impl Scene {
         self.place_of(id, [part / GRID[1], part % GRID[1]], GRID, self.config.area_size)
     }
 
-    /// Where the ball lies in a trial if it is in a cell of the tested area, which is divided into so many along X and Y \[m\].
+    /// The place of the ball in a trial within a cell of the tested area, which has `cells` cells along X and Y \[m\].
     pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
         self.place_of(id, cell, cells, self.config.tested_size)
     }
@@ -163,7 +162,7 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// What is seen of a world.
+    /// The observation of a world.
     pub fn observe<W>(&self, world: &W) -> Observation
     where
         W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized,

@@ -1,4 +1,4 @@
-//! What an episode of `icub-reach-grasp` records, by name.
+//! The recorded channels of `icub-reach-grasp`, by name.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{PairId, Vision};
@@ -13,7 +13,7 @@ use crate::icub_reach_grasp::motors::Motors;
 use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// What is recorded beside the network.
+/// The recorded scalars.
 const SCALARS: [(&str, &str); 13] = [
     ("fitness", "nearness so far"),
     ("fitness", "touch so far"),
@@ -64,8 +64,8 @@ where
     }
     let mut scalars = [0.0; SCALARS.len()];
     let judged = [seen.distance, seen.height, f64::from(seen.touching), seen.opposition];
-    let all = episode.terms().into_iter().chain(judged).chain(seen.palm).chain(seen.ball);
-    scalars.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    let values = episode.terms().into_iter().chain(judged).chain(seen.palm).chain(seen.ball);
+    scalars.iter_mut().zip(values).for_each(|(to, x)| *to = x);
     recorder.scalars(&scalars);
     recorder.tick(seconds(episode.score().steps, scene.config.time_step));
 }

@@ -14,15 +14,15 @@ use crate::icub_reach_grasp::motors::CONTROLLED;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::smooth::smooth;
 
-/// How far down the palm looks: it comes from above and from the right \[deg\].
+/// Downward pitch of the palm, which comes from above and from the right \[deg\].
 const DOWN: f64 = 60.0;
-/// Where it looks to beside the left, turned about the vertical: the first that inverse kinematics reaches is taken \[deg\].
+/// Turns of the palm's direction about the vertical, from the left. The first one in reach of inverse kinematics is taken \[deg\].
 const TURNS: [f64; 6] = [40.0, 20.0, 0.0, -20.0, -40.0, -60.0];
-/// How far the ball is ahead of the palm's centre, towards the fingertips \[m\].
+/// Distance of the ball ahead of the palm's center, towards the fingertips \[m\].
 const AHEAD: f64 = 0.015;
-/// How far the palm is from the ball before it comes near, and how far above its way \[m\].
+/// Distance of the palm from the ball before the approach, and its height above the way \[m\].
 const BEFORE: [f64; 2] = [0.07, 0.02];
-/// How far the palm is lifted \[m\].
+/// Height of the lift \[m\].
 const LIFT: f64 = 0.14;
 /// When each posture is reached, closing begins and ends, and lifting begins and ends \[s\].
 const TIMES: [f64; 6] = [2.5, 4.5, 4.6, 5.8, 6.5, 9.0];
@@ -31,7 +31,7 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// Angles of the nine joints \[rad\].
 type Angles = [f64; 9];
 
-/// Reaches by kinematics for a ball whose place it is told, closes the hand and lifts it; it senses nothing.
+/// Reaches by kinematics for a ball at a given place, closes the hand and lifts it. It has no sensors.
 ///
 /// It commands the angles that inverse kinematics has for trunk and arm, and what the servos give way under gravity.
 #[derive(Clone, Debug)]
@@ -58,10 +58,10 @@ impl Script {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = KinematicTree::new(&arm(scene)?).map_err(|error| wrong(&error))?;
         let (mut start, mut ranges, mut stiffness) = ([0.0; 9], [[0.0; 2]; 9], [0.0; 9]);
-        let all = scene.icub.start();
+        let posture = scene.icub.start();
         for (i, name) in CONTROLLED.into_iter().enumerate() {
             let actuator = scene.actuator(name)?.index();
-            (start[i], ranges[i]) = (all[actuator], scene.range(name)?);
+            (start[i], ranges[i]) = (posture[actuator], scene.range(name)?);
             stiffness[i] = match scene.robot.actuators[actuator].law {
                 Law::Servo(servo) => servo.stiffness,
                 _ => f64::INFINITY,
@@ -82,7 +82,7 @@ impl Script {
         })
     }
 
-    /// Whether it has postures for the ball of this trial; without any the robot stays as it is.
+    /// True if it has postures for the ball of this trial. Without any the robot does not move.
     pub fn has_found(&self) -> bool {
         self.found
     }
@@ -99,15 +99,15 @@ impl Script {
         let solve = |position: [f64; 3], from: &Angles| -> Option<Angles> {
             let orientation = Orientation::Direction { own: Icub::PALM_NORMAL, wanted: normal };
             let goal = Goal { body: Scene::PALM, point: self.palm_centre, position, orientation };
-            let found = solver.solve(&self.tree, &goal, from).ok()?;
-            found.joints.try_into().ok()
+            let posture = solver.solve(&self.tree, &goal, from).ok()?;
+            posture.joints.try_into().ok()
         };
         let place = |gap: f64, above: f64, fingers: [f64; 3]| {
             let mut place = [0, 1, 2].map(|k| ball[k] - normal[k] * (self.ball_radius + gap) - AHEAD * fingers[k]);
             place[2] += above;
             place
         };
-        // Where the fingers point is known when the palm is there.
+        // The first posture gives the direction of the fingers.
         let first = solve(place(BEFORE[0], BEFORE[1], [0.0; 3]), &self.start)?;
         let fingers = self.tree.poses(&first)[Scene::PALM.index()].rotate([1.0, 0.0, 0.0]);
         let before = solve(place(BEFORE[0], BEFORE[1], fingers), &first)?;
@@ -116,7 +116,7 @@ impl Script {
         Some([before, at, lifted])
     }
 
-    /// The posture wanted at a time \[s\].
+    /// The target posture at a time \[s\].
     fn wanted(&self, time: f64) -> Angles {
         let [before, near, _, _, lift, up] = TIMES;
         let [first, at, lifted] = &self.postures;

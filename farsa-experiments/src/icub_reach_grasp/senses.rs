@@ -1,4 +1,4 @@
-//! What the robot senses: where the ball is in its left eye, four of its joints, touch.
+//! The senses of the robot: the ball in its left eye, four of its joints, touch.
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, PairId, Sensor};
@@ -12,7 +12,7 @@ use crate::icub_reach_grasp::scene::{Scene, wrong};
 
 /// The joints that are sensed.
 const JOINTS: [&str; 4] = ["neck_pitch", "neck_yaw", "torso_pitch", "torso_yaw"];
-/// As far as the eye could see \[m\]; nothing hides what the offsets are of.
+/// Range of the eye \[m\]. Nothing hides the ball.
 const RANGE: f32 = 10.0;
 
 /// The four patches of the palm, which feel the ball: towards fingers or wrist, on the thumb's side or the other.
@@ -30,7 +30,7 @@ impl Channels for PalmPatches {
 }
 
 impl<W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized> Sensor<W> for PalmPatches {
-    /// The palm is flat: a ball touches it where its centre is above.
+    /// The palm is flat: a ball touches it if its center is above.
     fn read(&mut self, world: &W, out: &mut [f32]) {
         out.fill(0.0);
         if world.touches(self.on_ball) {
@@ -41,10 +41,9 @@ impl<W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized> Sensor<W> for P
     }
 }
 
-/// The sensors in the order of the network's inputs: the ball's offset from the hand in the left eye's image, to the left and
-/// upwards, -1..1 \[2\]; pitch and yaw of the neck, pitch and yaw of the trunk, 0 at the lower and 1 at the upper limit \[4\];
-/// touch of the five fingertips with ball or table, from the thumb's to the little finger's, and of four patches of the palm with
-/// the ball, 0 or 1 \[9\].
+/// The sensors in the order of the network's inputs. First the ball's offset from the hand in the left eye's image, to the left and
+/// upwards, -1..1 \[2\]. Then pitch and yaw of the neck and of the trunk, 0 at the lower and 1 at the upper limit \[4\]. Then touch
+/// of the five fingertips with ball or table, from the thumb on, and of four patches of the palm with the ball, 0 or 1 \[9\].
 #[derive(Clone, Debug)]
 pub struct Senses {
     offset: VisualOffset,
@@ -71,8 +70,8 @@ impl Senses {
         };
         let [a, b, c, d] = JOINTS.map(joint);
         let tip = |finger: Finger| {
-            let own = scene.icub.fingertip(Side::Right, finger).0;
-            let mine = |collider: &usize| scene.robot.colliders[*collider].body == Some(own);
+            let fingertip = scene.icub.fingertip(Side::Right, finger).0;
+            let mine = |collider: &usize| scene.robot.colliders[*collider].body == Some(fingertip);
             let foreign =
                 |collider: &usize| scene.robot.colliders[*collider].body.is_none_or(|body| body == Scene::BALL);
             let pairs = scene.robot.pairs.iter().enumerate();
@@ -104,7 +103,7 @@ impl Senses {
         Camera::new(Icub::HEAD, Self::eye(), size, view, RANGE).map_err(|error| wrong(&error))
     }
 
-    /// Starts a trial in which each offset is wrong by up to so much; what it reads does not depend on earlier ones.
+    /// Starts a trial with errors of the offsets up to `noise`. The readings do not depend on earlier trials.
     pub fn start(&mut self, id: EpisodeId, noise: f32) {
         self.noise = noise;
         self.errors = Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation);

@@ -21,22 +21,22 @@ impl Config {
     fn of_trials(&self) -> Vec<Setting> {
         vec![
             Setting::whole("evolution.generations", 1000, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 40, 0..=1_000_000)
-                .doc("Individuals of a generation; 0 for 4 + 3 ln n of n genes."),
+                .doc("Individuals of a generation. 0 for 4 + 3 ln n of n genes."),
             number("strategy.sigma", 0.2, 1e-6, 10.0).doc(
                 "Initial standard deviation, in halves of a range: with 0.5 and weights up to 8, 80 generations earned what ten do so.",
             ),
             Setting::whole("trial.trials", i64::from(self.trials), 1..=10_000)
-                .doc("Trials of an evaluation; twelve have a part of the area each."),
+                .doc("Trials of an evaluation. Twelve have a part of the area each."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000)
                 .doc("Control steps of a trial: 15 s at the default step."),
             number("world.time_step", self.time_step, 0.001, 0.2).unit("s").doc("Control step."),
             Setting::whole("world.substeps", i64::from(self.substeps), 1..=1000)
-                .doc("Dynamics steps of a control step; with half as many the script fails in 2 of 32 trials."),
+                .doc("Dynamics steps of a control step. With half as many the script fails in 2 of 32 trials."),
             numbers("area.centre", &self.area_centre, -2.0, 2.0)
                 .unit("m")
-                .doc("Middle of the area in which the ball lies, forwards and leftwards of the body's centre."),
+                .doc("Middle of the area of the ball, forwards and leftwards of the body's center."),
             numbers("area.size", &self.area_size, 0.0, 2.0).unit("m").doc("Its extent along both axes."),
             numbers("area.tested", &self.tested_size, 0.0, 2.0)
                 .unit("m")
@@ -53,7 +53,7 @@ impl Config {
         vec![
             numbers("start.torso", &self.torso, -180.0, 180.0)
                 .unit("deg")
-                .doc("Pitch, roll and yaw of the trunk at the start; roll is held there."),
+                .doc("Pitch, roll and yaw of the trunk at the start. Roll is held there."),
             numbers("start.neck", &self.neck, -180.0, 180.0)
                 .unit("deg")
                 .doc("Pitch, roll and yaw of the head at the start: it looks at the table."),
@@ -67,13 +67,13 @@ impl Config {
                 .unit("deg")
                 .doc("Opposition of the thumb at output 0 and 1 of the hand: it is under the palm from the start."),
             numbers("hand.flexion", &self.flexion, 0.0, 180.0).unit("deg").doc(
-                "Flexion of each joint of the thumb, and of each of the other fingers, at output 1; 0 at output 0.",
+                "Flexion of each joint of the thumb, and of each of the other fingers, at output 1. It is 0 at output 0.",
             ),
             number("eye.field_of_view", self.field_of_view, 1.0, 170.0)
                 .unit("deg")
-                .doc("Horizontal field of view of the left eye; offsets count in its image's width."),
+                .doc("Horizontal field of view of the left eye. Offsets count in its image's width."),
             Setting::flag("head.tracking", self.tracking).doc(
-                "Whether the head follows the ball by a reflex; without it the neck's angles stay as at the start.",
+                "The head follows the ball by a reflex. Without it the neck keeps its angles of the start.",
             ),
             number("head.gain", self.head_gain, 1e-3, 1.0)
                 .doc("Part of the angle between gaze and ball that the head makes up for in a step."),
@@ -102,7 +102,7 @@ impl Config {
                 .doc("Height of the ball above the table that earns all there is to earn and counts as lifted."),
             number("success.hold", self.hold, 0.001, 1000.0)
                 .unit("s")
-                .doc("How long the ball must be up, touched by the hand alone, at the end of a trial that succeeds."),
+                .doc("Time for which the ball must be up, touched by the hand alone, at the end of a successful trial."),
         ]
     }
 

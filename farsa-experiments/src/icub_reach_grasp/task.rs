@@ -1,4 +1,4 @@
-//! What there is to know of `icub-reach-grasp`, and its episodes over parameters.
+//! The description of `icub-reach-grasp`, and its episodes over parameters.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub struct GraspTask {
     episode: GraspEpisode<Agent>,
     protocols: Arc<Protocols>,
     parameters: Arc<[Parameter]>,
-    /// What is recorded of the left eye.
+    /// The recorded eye, the left one.
     eye: Arc<Camera>,
 }
 
@@ -113,7 +113,7 @@ impl Rollout for GraspTask {
     }
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("highest [cm]", 1.0), ("distance [cm]", -1.0)],
     descriptors: &[("highest [cm]", [0.0, 40.0]), ("distance [cm]", [0.0, 40.0])],

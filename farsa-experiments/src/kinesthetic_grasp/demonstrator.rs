@@ -14,21 +14,20 @@ use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
 use crate::reach_grasp_lift::script::{GraspPlan, Statics, Timetable};
 
-/// The activation that both muscles of a pair have where no torque is wanted.
+/// The activation of both muscles of a pair without torque.
 const TONUS: f64 = 0.5;
-/// How far a joint of the arm may be from where the script wants it before the script waits \[rad\].
+/// Largest distance of a joint of the arm from the script's angle before the script waits \[rad\].
 const PATIENCE: f64 = 0.25;
-/// How far the sphere may roll before it is lifted, beyond which the script knows no way \[m\].
+/// Largest roll of the sphere before the lift, beyond which the script gives up \[m\].
 const ROLLED: f64 = 0.03;
 
-/// Guides the arm through reach, grasp and lift, and says at every tick what it would do.
+/// Guides the arm through reach, grasp and lift, and returns its commands at every tick.
 ///
-/// The script (IK way-points, inverse statics of the muscles, feedback on the arm's joints) is that of
-/// [`ScriptEpisode`](crate::reach_grasp_lift::ScriptEpisode), with two differences. Of the infinitely many pairs of
-/// activations
-/// that give a torque it wants the one nearest to 0.5 in both: a smooth function of the torque, in the middle of the
-/// network's logistic outputs, where the script's own has one muscle at rest and a kink. And its clock stands while the arm is
-/// farther than 0.25 rad from where it is wanted, so that an arm that is held back is guided on from where it is.
+/// The script is that of [`ScriptEpisode`](crate::reach_grasp_lift::ScriptEpisode): way-points by inverse kinematics, inverse
+/// statics of the muscles, feedback on the arm's joints. It differs in two ways. A torque has infinitely many pairs of activations,
+/// and this script takes the pair nearest to 0.5 in both. That is a smooth function of the torque, in the middle of the network's
+/// logistic outputs, where the other script has one muscle at rest and a kink. And its clock stops while the arm is farther than
+/// 0.25 rad from its target, so that a delayed arm is guided on from its place.
 pub(crate) struct Demonstrator {
     scene: Arc<Scene>,
     world: World<f32>,
@@ -38,19 +37,19 @@ pub(crate) struct Demonstrator {
     motors: Motors,
 }
 
-/// What was sensed and wanted in a demonstration.
+/// Inputs and desired motor values of a demonstration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Record {
     /// Sensor values `[ticks x sensors]`.
     pub(crate) x: Vec<f32>,
-    /// Wanted motor values `[ticks x 23]`.
+    /// Desired motor values `[ticks x 23]`.
     pub(crate) wanted: Vec<f32>,
-    /// Whether the trial succeeded, by the experiment's own definition.
+    /// The trial succeeded by the experiment's definition.
     pub(crate) success: bool,
 }
 
 impl Record {
-    /// What a network can learn from.
+    /// The demonstration as a network learns from it.
     pub(crate) fn demonstration(&self) -> Demonstration<'_> {
         Demonstration { x: &self.x, wanted: &self.wanted }
     }
@@ -69,11 +68,10 @@ impl Demonstrator {
         Ok(Self { scene, world, statics, judge, senses, motors })
     }
 
-    /// Guides the arm through the trial of an id. The motors get the demonstrator's commands, mixed with `share`
-    /// \[0..1\] of those that the network gives for the same sensor values; it is stepped from rest.
+    /// Guides the arm through the trial of an id. The motors get the demonstrator's commands, mixed with `share` \[0..1\] of the
+    /// network's commands for the same sensor values. The network starts from rest.
     ///
-    /// The record ends with the trial, or where the sphere has rolled away by 3 cm; it is empty if the sphere lies out of
-    /// reach.
+    /// The record ends with the trial, or where the sphere has rolled away by 3 cm. It is empty if the sphere is out of reach.
     pub(crate) fn roll_out<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
         let Self { scene, world, statics, judge, senses, motors } = self;
         (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
@@ -108,10 +106,10 @@ struct Guided<'a, C> {
     network: &'a mut C,
     share: f32,
     record: &'a mut Record,
-    /// The script, with the sphere's place; none if the sphere lies out of reach.
+    /// The script, with the sphere's place, if the sphere is in reach.
     plan: Option<(GraspPlan, [f64; 2])>,
     x: Vec<f32>,
-    /// Of the arm's joints before the step \[rad\].
+    /// Positions of the arm's joints before the step \[rad\].
     positions: Vec<f64>,
     /// The script's own \[s\].
     time: f64,
@@ -145,6 +143,7 @@ impl<C: Controller> Episode<World<f32>> for Guided<'_, C> {
         self.record.x.extend_from_slice(&self.x);
         self.record.wanted.extend_from_slice(&wanted);
         for ((y, wanted), own) in y.iter_mut().zip(wanted).zip(own) {
+            // y = (1 - share) script + share network, as DAgger mixes policies [Ross2011].
             *y = wanted + self.share * (own - wanted);
         }
         self.motors.drive(&y, world);
@@ -154,6 +153,7 @@ impl<C: Controller> Episode<World<f32>> for Guided<'_, C> {
     fn judge(&mut self, world: &mut World<f32>) -> Option<f64> {
         let (plan, sphere) = self.plan.as_ref()?;
         let (posture, _) = plan.wanted(self.time);
+        // The clock waits for a joint that is far behind, so that the script does not run away from a slow arm.
         let follows = posture.iter().zip(&self.positions).all(|(wanted, q)| (wanted - q).abs() < PATIENCE);
         self.time += if follows { self.scene.config.time_step } else { 0.0 };
         let [x, y, z] = world.pose(Tabletop::SPHERE).position.map(f64::from);
@@ -181,13 +181,15 @@ fn wanted(statics: &Statics, plan: &GraspPlan, positions: &[f64], torques: &[f64
     y
 }
 
-/// The activations nearest to [`TONUS`] that give a torque \[N m\] at an angle \[rad\] at rest; where it is more than the pair
-/// has, the nearest that there is.
+/// The activations nearest to [`TONUS`] that give a torque \[N m\] at an angle \[rad\] at rest. A torque beyond the pair's range is
+/// clamped.
 fn with_tonus(muscle: &MusclePair<f64>, q: f64, torque: f64) -> [f64; 2] {
     let at = |activations| muscle.effort(q, 0.0, activations).torque;
     let passive = at([0.0, 0.0]);
-    // What full activations add: the agonist pulls towards the lower limit.
+    // The effect of full activations: the agonist pulls towards the lower limit.
     let (down, up) = (at([1.0, 0.0]) - passive, at([0.0, 1.0]) - passive);
+    // Torques are linear in the activations: passive + down a + up b. The pair nearest to (t, t) on this line is (t, t) + more (down,
+    // up), with more = (torque - passive - t (down + up)) / (down^2 + up^2).
     let strength = down * down + up * up;
     if strength.is_nan() || strength <= 0.0 {
         return [TONUS; 2];
@@ -222,7 +224,7 @@ mod tests {
                     assert!((torque(pair) - wanted).abs() < 1e-9, "J{} at {q}: {pair:?}", i + 1);
                     assert!(pair.iter().all(|a| (0.0..=1.0).contains(a)));
                 }
-                // Beyond what there is, all that there is; and no torque needs no more than the middle where muscles agree.
+                // A torque beyond the range gives full activations, and no torque needs at most the middle if the muscles agree.
                 assert_eq!(with_tonus(muscle, q, 2.0 * most - least), [0.0, 1.0]);
             }
             let middle = with_tonus(muscle, 0.5 * (low + high), 0.0);

@@ -18,21 +18,18 @@ use farsa_lab::{
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///
-/// Robot, sensors, motors, trials and fitness are those of `reach-grasp-lift` with labels. Instead of evolving, one network
-/// is trained: the scripted grasp guides the arm through reach, grasp and lift, (sensors, desired motors) is recorded,
-/// and the network learns the desired motors by back-propagation through time. A generation is an episode of the
-/// network in the
-/// four trials, which is its fitness, and then an iteration of training; `learning.csv` in the run's directory has the
-/// errors.
+/// Robot, sensors, motors, trials and fitness are those of `reach-grasp-lift` with labels. Instead of evolving, one network is
+/// trained. The scripted grasp guides the arm through reach, grasp and lift, and (sensors, desired motors) is recorded. The network
+/// learns the desired motors by back-propagation through time. A generation is an episode of the network in the four trials, which
+/// is its fitness, and then an iteration of training. `learning.csv` in the run's directory has the errors.
 ///
-/// What is desired is what the script would do where the arm is, and the network's own commands are mixed in: not at
-/// all in the
-/// first demonstration of an iteration, and up to a share in its last one that grows with the iterations \[Ross2011\].
-/// A network that has only seen where the script goes does not know what to do where its own small errors take it. What
-/// is evaluated and mixed in is the mean of the networks after the latest steps of learning \[Polyak1992\].
+/// The desired motors are the script's commands at the arm's place. The network's commands are mixed in. The first demonstration of
+/// an iteration has none of them, and its last one a share that grows with the iterations \[Ross2011\]. A network that has only
+/// seen the script's way cannot correct its errors. The evaluated and mixed network is the mean of the networks after the latest
+/// gradient steps \[Polyak1992\].
 ///
-/// Deviations from `reach-grasp-lift`: slope 1 and weights within 20, because with slope 0.2 and weights within 6 two
-/// layers cannot amplify as the script's feedback does; 24 hidden neurons.
+/// Deviations from `reach-grasp-lift`: 24 hidden neurons, slope 1 and weights within 20. With slope 0.2 and weights within 6 two
+/// layers cannot amplify as the script's feedback does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct KinestheticGrasp;
 
@@ -41,7 +38,7 @@ pub struct KinestheticGrasp;
 pub struct Config {
     /// The robot, its world, its network and its trials.
     pub reach: Reach,
-    /// How the network is trained.
+    /// The training.
     pub training: Training,
 }
 
@@ -56,7 +53,7 @@ impl Config {
     /// The configuration that checked settings describe.
     ///
     /// # Errors
-    /// As of `reach-grasp-lift`; [`Error::Setting`] for a world other than ours, in which the arm is not guided.
+    /// The errors of `reach-grasp-lift`, and [`Error::Setting`] for another world than ours, in which the arm is not guided.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let reach = Reach::read(true, settings)?;
         if reach.engine != Engine::Articulated {
@@ -81,7 +78,7 @@ impl Experiment for KinestheticGrasp {
         "kinesthetic-grasp"
     }
 
-    // 2: the network is averaged over the latest gradient steps; more demonstrations, fewer epochs.
+    // 2: the network is averaged over the latest gradient steps, with more demonstrations and fewer epochs.
     fn values_version(&self) -> u32 {
         2
     }
@@ -99,16 +96,16 @@ impl Experiment for KinestheticGrasp {
         let whole = |key: &str, value: u32, range| Setting::whole(key, i64::from(value), range);
         let mut table = vec![
             Setting::whole("evolution.generations", 250, 1..=i64::from(u32::MAX) - 1)
-                .doc("Iterations of training, each after an evaluation of what has been learned; the one thing that a resumed run may change."),
+                .doc("Iterations of training, each after an evaluation of the network. A resumed run may change it, and nothing else."),
             whole("lessons.demonstrations", training.demonstrations, 1..=10_000)
-                .doc("Demonstrations in an iteration, each from another start; the four trials take turns."),
+                .doc("Demonstrations in an iteration, each from another start. The four trials take turns."),
             whole("lessons.passes", training.epochs, 1..=1000).doc("Epochs: how often an iteration learns from each of them."),
             whole("lessons.batch", training.batch, 1..=10_000).doc("Demonstrations in a gradient step."),
             Setting::number("lessons.rate", training.rate, 0.0..=1.0).doc("Learning rate of Adam."),
             Setting::number("lessons.half_rate", training.half_rate, 1.0..=1e9)
                 .doc("Iterations after which the rate is half, and a third after twice as many."),
             whole("lessons.mean", training.averaging, 1..=1_000_000)
-                .doc("Gradient steps over which the network is averaged; 1: as the latest one left it."),
+                .doc("Gradient steps over which the network is averaged. 1 takes the latest network."),
             whole("lessons.own_say", training.mixing, 0..=1_000_000)
                 .doc("Iterations until the network alone acts in the last demonstration of an iteration, 0 if it never does."),
         ];

@@ -1,12 +1,10 @@
 //! The experiment `kinesthetic-grasp`: the arm is guided, and the network learns to do it alone.
-//!
-//! - `demonstrator`: the demonstrator: the scripted grasp, with the network's own commands mixed in
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `trainer`: imitation learning: the arm is guided, and a network learns by back-propagation through time what its
-//!   motors should do
 
+/// The demonstrator: the scripted grasp, with the network's own commands mixed in.
 mod demonstrator;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// Imitation learning: the arm is guided, and a network learns by back-propagation through time what its motors should do.
 mod trainer;
 
 pub use experiment::{Config, KinestheticGrasp, Trainee};

@@ -14,12 +14,12 @@ use crate::reach_grasp_lift::scene::Scene;
 
 /// Sensor values of the sphere's place, in cm, enter learning in units of this.
 const CENTIMETRES: f32 = 10.0;
-/// Weights and biases begin within plus and minus this, for such sensor values; leaks between 0.2 and 1.
+/// Initial weights and biases are within plus and minus this, for such sensor values. Leaks are between 0.2 and 1.
 const FIRST_WEIGHTS: f32 = 0.5;
 /// Gradients with a larger norm are scaled down to it.
 const MAX_GRADIENT_NORM: f64 = 1.0;
 
-/// How the network is trained.
+/// The training of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Training {
     /// Demonstrations in an iteration, each from another start.
@@ -32,10 +32,9 @@ pub struct Training {
     pub rate: f64,
     /// Iterations after which that is half, and a third after twice as many.
     pub half_rate: f64,
-    /// Gradient steps over which parameters are averaged; 1 for the latest ones as they are.
+    /// Gradient steps over which parameters are averaged. 1 takes the latest ones.
     pub averaging: u32,
-    /// Iterations until the mixing coefficient of an iteration's last demonstration is 1; 0 if the network never acts
-    /// in one.
+    /// Iterations until the mixing coefficient of an iteration's last demonstration is 1. With 0 the network never acts in one.
     pub mixing: u32,
 }
 
@@ -51,7 +50,7 @@ pub(crate) struct Trainer {
     layout: LeakyLayout,
     leak: Leak,
     weight_range: f64,
-    /// What each sensor value is divided by before it is learned from.
+    /// The divisor of each sensor value in training.
     units: Vec<f32>,
     demonstrator: Demonstrator,
     records: Vec<Record>,
@@ -78,6 +77,8 @@ impl Trainer {
     /// A learner that has learned nothing yet.
     fn learner(&self, seed: u64) -> Option<Learner<f64, Adam>> {
         let mut draw = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
+        // Small weights keep the logistic units out of saturation, where gradients vanish. Leaks of at least 0.2 keep errors from fading
+        // within few steps.
         let first = self.layout.kinds().map(|kind| {
             f64::from(if kind == LeakyParameter::Leak {
                 draw.range(0.2, 1.0)
@@ -96,7 +97,7 @@ impl Trainer {
         )
     }
 
-    /// The state that learning starts from; empty for a network that cannot be built.
+    /// The initial state of learning, empty for a network that cannot be built.
     pub(crate) fn initial_state(&self, seed: u64) -> Vec<f64> {
         self.learner(seed).map_or_else(Vec::new, |learner| learner.state().collect())
     }
@@ -105,6 +106,7 @@ impl Trainer {
     pub(crate) fn parameters(&self, state: &[f64]) -> Vec<f32> {
         let hidden = self.layout.hidden().max(1);
         let of_sensors = self.layout.range(LeakyParameter::SensorWeight);
+        // The network learned x / unit, so a weight of x is the learned one divided by the unit.
         let unit = |index: usize| if of_sensors.contains(&index) { self.units[index / hidden] } else { 1.0 };
         let mean = &state[state.len().saturating_sub(self.layout.parameter_count())..];
         mean.iter().enumerate().map(|(index, p)| (p / f64::from(unit(index))) as f32).collect()
@@ -112,8 +114,7 @@ impl Trainer {
 
     /// One iteration: demonstrations from new starts, then gradient steps, which change the state.
     ///
-    /// The demonstrations of iteration g are trials 4, 5, ... of generation g; those that are run for the fitness are 0
-    /// to 3.
+    /// The demonstrations of iteration g are trials 4, 5, ... of generation g. Trials 0 to 3 are run for the fitness.
     pub(crate) fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration> {
         let mut learner = self.learner(seed)?;
         learner.set_state(state).ok()?;
@@ -122,6 +123,7 @@ impl Trainer {
         let mut network =
             LeakyNetwork::new(self.layout, self.leak, &parameters, vec![0.0; self.layout.state_len()]).ok()?;
         let Training { epochs, batch, rate, half_rate, mixing, .. } = self.training;
+        // beta_g = min(1, g / mixing) is the network's share in the last demonstration of iteration g.
         let largest = match mixing {
             0 => 0.0,
             iterations => (f64::from(generation) / f64::from(iterations)).min(1.0),
@@ -140,12 +142,14 @@ impl Trainer {
             }
         }
         let before = error(&mut squares, &learner, &self.records).ok()?;
+        // rate_g = rate / (1 + g / half_rate): half after half_rate iterations, a third after twice as many.
         learner.optimizer_mut().rate = rate / (1.0 + f64::from(generation) / half_rate);
         let mut draw = Stream::new(seed, Domain::Network, 0, 0, generation);
         for _ in 0..epochs {
             // Every epoch puts other demonstrations together.
             let mut order: Vec<usize> = (0..self.records.len()).collect();
             for end in (1..order.len()).rev() {
+                // Fisher-Yates shuffle.
                 order.swap(end, draw.below(end as u32 + 1) as usize);
             }
             for batch in order.chunks(batch.max(1) as usize) {

@@ -4,7 +4,7 @@ use core::f64::consts::FRAC_PI_6;
 
 use farsa_lab::{Error, Setting, Settings};
 
-/// What an agent under falling objects is; the defaults are those of \[Beer2003\] where the settings say so.
+/// An agent under falling objects. The defaults are those of \[Beer2003\] where the settings are marked as given.
 ///
 /// Lengths and times have no units in the source.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Config {
     pub side: f64,
     /// Speed of the objects.
     pub speed: f64,
-    /// Height of an object's centre above the agent's at the start.
+    /// Height of an object's center above the agent's at the start.
     pub start_height: f64,
     /// That height at which a trial ends.
     pub end_height: f64,
@@ -87,13 +87,13 @@ impl Config {
         let length = |key: &str, value: f64| Setting::number(key, value, 1.0..=10_000.0);
         vec![
             Setting::whole("evolution.generations", 200, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 100, 1..=1_000_000)
                 .doc("Individuals of a generation, a multiple of the parents."),
             Setting::whole("evolution.parents", 20, 1..=1_000_000)
-                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+                .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
             Setting::number("evolution.mutation_rate", 0.015, 0.0..=1.0).doc("Probability that mutation hits a bit."),
-            length("world.width", self.width).given().doc("Width of the line that the agent moves on; it stops at the ends."),
+            length("world.width", self.width).given().doc("Width of the line that the agent moves on. It stops at the ends."),
             Setting::number("world.time_step", self.time_step, 0.001..=1.0)
                 .given()
                 .doc("Step of the Euler method, for the network and for all that moves."),
@@ -107,7 +107,7 @@ impl Config {
                 .doc("Angle between the outermost of the seven rays, which leave the agent's outline upwards."),
             length("agent.ray_length", self.ray_length).given().doc("Length of the rays."),
             Setting::number("agent.input_gain", self.input_gain, 0.0..=1000.0)
-                .doc("Input of a ray that is cut at its origin; it falls linearly to 0 at the ray's end."),
+                .doc("Input of a ray that is cut at its origin. It falls linearly to 0 at the ray's end."),
             Setting::number("agent.velocity_gain", self.velocity_gain, 0.0..=1000.0)
                 .given()
                 .doc("Velocity for a difference of 1 between the outputs of the motor neurons."),
@@ -116,7 +116,7 @@ impl Config {
             Setting::number("object.speed", self.speed, 0.01..=1000.0).given().doc("Speed at which objects fall."),
             length("object.start_height", self.start_height)
                 .given()
-                .doc("Height of an object's centre above the agent's at the start."),
+                .doc("Height of an object's center above the agent's at the start."),
             Setting::number("object.end_height", self.end_height, 0.0..=10_000.0).doc(
                 "That height at which the trial ends: a circle straight above then touches the agent and nothing passes \
                  through it.",
@@ -146,11 +146,11 @@ impl Config {
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let number = |key: &str| settings.number(key);
         let ends = |key: &str| {
-            let found = settings.numbers(key)?;
-            if found[0] > found[1] {
-                return Err(Error::setting(key, format!("{found:?}: the first must not be greater")));
+            let ends = settings.numbers(key)?;
+            if ends[0] > ends[1] {
+                return Err(Error::setting(key, format!("{ends:?}: the first must not be greater")));
             }
-            Ok([found[0], found[1]])
+            Ok([ends[0], ends[1]])
         };
         let config = Self {
             width: number("world.width")?,

@@ -60,7 +60,7 @@ impl AgentEpisode {
         self.network.reset();
     }
 
-    /// Begins the trial of a id: circles and diamonds by turns, each shape at distances of its own part of the range.
+    /// Begins the trial of an id: circles and diamonds by turns, each trial at distances in its part of the range.
     ///
     /// Distance and side are drawn in this order from the stream of [`Domain::Start`], the same for all individuals.
     pub fn arrange(&mut self, id: EpisodeId) {
@@ -74,7 +74,7 @@ impl AgentEpisode {
         self.place(object, if right { distance } else { -distance });
     }
 
-    /// How far each ray is free, at most its length.
+    /// Free length of each ray.
     pub fn free(&self) -> [f64; RAYS] {
         self.free_at(self.height())
     }
@@ -100,23 +100,23 @@ impl AgentEpisode {
         self.steps += 1;
     }
 
-    /// Whether the object has come down.
+    /// True if the object has come down.
     pub fn ended(&self) -> bool {
         self.steps >= self.config.steps()
     }
 
-    /// Height of the object's centre above the agent's.
+    /// Height of the object's center above the agent's.
     pub fn height(&self) -> f64 {
         let Config { start_height, speed, time_step, .. } = self.config;
         start_height - f64::from(self.steps) * speed * time_step
     }
 
-    /// Horizontal distance between the centres.
+    /// Horizontal distance between the centers.
     pub fn distance(&self) -> f64 {
         (self.places[1] - self.places[0]).abs()
     }
 
-    /// What the trial earns if it ends now, 0 to 1.
+    /// The reward if the trial ends now, 0 to 1.
     pub fn score(&self) -> f64 {
         let part = (self.distance() / self.config.clip).min(1.0);
         match self.object {
@@ -140,22 +140,22 @@ impl AgentEpisode {
         self.network.controller()
     }
 
-    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
 
-    /// Changes what the network senses and computes until observations are normalised anew, or nothing.
+    /// Changes inputs and neurons of the network until the next normalization of observations.
     pub(crate) fn intervene(&mut self, intervention: &Intervention, id: EpisodeId) {
         self.network.intervene(intervention, id, 0);
     }
 
-    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    /// The observations since [`normalise`](Self::normalise), if they are normalized.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// What falls.
+    /// The falling object.
     pub fn object(&self) -> Object {
         self.object
     }
@@ -175,12 +175,12 @@ impl AgentEpisode {
         &self.rays
     }
 
-    /// What was sensed last \[7\].
+    /// The last inputs \[7\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What the motor neurons put out last \[2\].
+    /// The last outputs of the motor neurons \[2\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }

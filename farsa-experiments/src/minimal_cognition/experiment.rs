@@ -25,13 +25,13 @@ use farsa_view::{Channel, Links, NodeParameters, Schema, View};
 /// The agent moves along a line under an object that falls. Its continuous-time recurrent network has a sensory neuron for
 /// each ray, five inner and two motor neurons, the same on both sides ([`Wiring`]).
 ///
-/// Deviations: the search is the truncation algorithm over genes of 16 bits, where the source has a genetic algorithm over
-/// real numbers. Starts are random within even parts of the range and drawn anew in every generation, so that none is
-/// learned by heart. A trial ends when a circle would touch the agent. What the settings call chosen we did not have from the
-/// source: the ranges of the network's parameters among it.
+/// Deviations: the search is truncation selection over genes of 16 bits, where the source has a genetic algorithm over real
+/// numbers. Starts are random within even parts of the range and drawn in every generation, so that none is learned by heart. A
+/// trial ends when a circle would touch the agent. The settings mark the values that are ours, among them the ranges of the
+/// network's parameters.
 ///
-/// A mirrored trial has the mirrored way only as far as rounding does not matter: where the two sides of a network compete, the
-/// last bit of a sum, which the kernel adds in the order of the neurons, may say which of them wins before anything is seen.
+/// A mirrored trial has the mirrored way only while rounding does not matter. The kernel adds in the order of the neurons. Where
+/// the two sides of a network compete, the last bit of such a sum can decide between them before anything is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct MinimalCognition;
 
@@ -44,7 +44,7 @@ impl Experiment for MinimalCognition {
         "an agent with a continuous-time network catches circles and avoids diamonds that fall"
     }
 
-    // 2: genes stand in the order of `CtrnnSymmetry`.
+    // 2: genes have the order of `CtrnnSymmetry`.
     fn values_version(&self) -> u32 {
         2
     }
@@ -63,7 +63,7 @@ const AGENT: BodyId = BodyId(0);
 const OBJECTS: [BodyId; 2] = [BodyId(1), BodyId(2)];
 /// Half the thickness that things are drawn with.
 const THICK: f64 = 2.0;
-/// What does not fall in a trial lies this far under the ground.
+/// Depth below the ground of the object that does not fall in a trial.
 const AWAY: f64 = -20.0;
 const PAPER: Color = [244, 243, 238];
 
@@ -151,8 +151,7 @@ fn record(episode: &AgentEpisode, recorder: &mut dyn Recorder) {
     recorder.tick(seconds(episode.steps(), time_step));
 }
 
-/// The parameters as [`TaskInfo::schema`] says where they are: the weights between the layers, then biases, gains and time
-/// constants.
+/// The parameters in the order of [`TaskInfo::schema`]: weights between the layers, biases, gains, time constants.
 fn in_schema_order(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
     let linked = LINKED.into_iter().flat_map(|(sources, targets)| {

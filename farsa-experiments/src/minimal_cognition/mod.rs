@@ -1,15 +1,14 @@
 //! The experiment `minimal-cognition`: categorical perception.
-//!
-//! - `config`: the values of `minimal-cognition`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `minimal-cognition`: one object falls, and the agent moves under it
-//! - `network`: the network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right
-//! - `object`: what falls in `minimal-cognition`, and where a ray meets it
 
+/// The values of `minimal-cognition`, as settings.
 mod config;
+/// An episode of `minimal-cognition`: one object falls, and the agent moves under it.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
 mod network;
+/// The falling objects of `minimal-cognition`, and their intersections with rays.
 mod object;
 
 pub use config::Config;

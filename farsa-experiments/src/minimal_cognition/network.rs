@@ -41,8 +41,8 @@ const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
 /// | gain of the sensory neurons | 7 | 1 | 1 |
 /// | time constants | 14 | as the biases | 5 |
 ///
-/// All other weights are 0, all other gains 1. Genes stand in the order of the first parameters that they fill, as
-/// [`CtrnnSymmetry`] has them: an inner neuron's weights to the motor neurons follow those to the inner ones.
+/// All other weights are 0, all other gains 1. Genes have the order of the first parameters that they fill, as in
+/// [`CtrnnSymmetry`]: an inner neuron's weights to the motor neurons follow those to the inner ones.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     symmetry: CtrnnSymmetry<'static>,
@@ -54,7 +54,7 @@ impl Wiring {
     /// The wiring, its genes decoded to the ranges of a configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for a range that is none.
+    /// [`Error::Other`] for an empty range.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?
             .with_links(&LINKED)?
@@ -91,7 +91,7 @@ impl Wiring {
         &self.parameters
     }
 
-    /// The network's parameters, in the order of [`LAYOUT`], that these numbers make; `None` for another count of them.
+    /// The network's parameters, in the order of [`LAYOUT`], or `None` for another count of numbers.
     pub fn expand(&self, values: &[f32]) -> Option<Vec<f32>> {
         let mut parameters = vec![0.0; LAYOUT.parameter_count()];
         self.symmetry.expand(values, &mut parameters).ok()?;
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(wiring.genes(), 47);
         assert!(wiring.expand(&[0.0; 46]).is_none());
         let plain = decoded(&[20_000; 47]);
-        // How many parameters follow each gene: a pair, the middle alone, or the sensory neurons together.
+        // The number of parameters of each gene: a pair, the middle alone, or the sensory neurons together.
         let followers: Vec<usize> = (0..47)
             .map(|gene| {
                 let mut genes = [20_000; 47];
@@ -126,7 +126,7 @@ mod tests {
             .collect();
         let mut expected = vec![2; 17];
         expected.push(1);
-        // Two inner neurons to five and to the two motors; the middle one to two pairs, to itself and to the motors.
+        // Two inner neurons to five and to the two motors, and the middle one to two pairs, to itself and to the motors.
         expected.extend([2; 2 * (5 + 2) + 2]);
         expected.extend([1, 2]);
         let biases = [7, 2, 2, 1, 2];

@@ -1,6 +1,6 @@
-//! What falls in `minimal-cognition`, and where a ray meets it.
+//! The falling objects of `minimal-cognition`, and their intersections with rays.
 
-/// A falling object, about its centre.
+/// A falling object, about its center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Object {
     /// To be caught.
@@ -26,7 +26,7 @@ impl Object {
         Self::Diamond { half: side * core::f64::consts::FRAC_1_SQRT_2 }
     }
 
-    /// What it is called.
+    /// The name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Circle { .. } => "circle",
@@ -34,8 +34,8 @@ impl Object {
         }
     }
 
-    /// Where a ray from `from`, seen from the object's centre, along the unit vector `direction` first meets the object: its
-    /// distance, 0 from within; `None` if it misses.
+    /// The distance at which a ray from `from`, seen from the object's center, along the unit vector `direction` enters the object.
+    /// It is 0 from within and `None` for a miss.
     pub fn meet(self, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
         let ([x, y], [u, v]) = (from, direction);
         let [first, last] = match self {
@@ -60,12 +60,13 @@ impl Object {
     }
 }
 
-/// The distances between which a ray is within `half` of 0 on one axis; empty if first > last.
+/// The distances between which a ray is within `half` of 0 on one axis. The range is empty if first > last.
 fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     if direction == 0.0 {
         let inside = origin.abs() <= half;
         return if inside { [f64::NEG_INFINITY, f64::INFINITY] } else { [f64::INFINITY, f64::NEG_INFINITY] };
     }
+    // |origin + t direction| = half at both ends of the slab. min and max order them for rays from either side.
     let (a, b) = ((-half - origin) / direction, (half - origin) / direction);
     [a.min(b), a.max(b)]
 }
@@ -83,7 +84,7 @@ mod tests {
         }
     }
 
-    /// Goes along the ray in small steps and halves the one that enters; rays that graze by less than a step are missed.
+    /// Marches along the ray in small steps and bisects the step that enters. Rays that graze by less than a step are missed.
     fn marched(object: Object, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
         const STEP: f64 = 0.02;
         let at = |distance: f64| [0, 1].map(|k| from[k] + distance * direction[k]);
@@ -116,7 +117,7 @@ mod tests {
             let (met, expected) = (object.meet(from, direction), marched(object, from, direction));
             match (met, expected) {
                 (Some(met), Some(expected)) => prop_assert!((met - expected).abs() < 1e-9, "{met} {expected}"),
-                // What the walk stepped over: the way through it is short.
+                // The march stepped over the object: the way through it is short.
                 (Some(met), None) => {
                     let beyond = met + 0.021;
                     prop_assert!(!within(object, [x + beyond * sine, y + beyond * cosine]));

@@ -6,7 +6,7 @@ use crate::predator_prey::config::{OUTPUTS, PredatorPreyConfig};
 use crate::team::config::EYES;
 use crate::team::steering::{away, eyes};
 
-/// What to do about the other robot.
+/// The reaction to the other robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Aim {
     To,
@@ -44,7 +44,7 @@ impl Chaser {
         Self { inputs: config.inputs(), sectors: (0..count).map(middle).collect(), eyes: eyes(&config.team.robot), aim }
     }
 
-    /// Where the other robot is, counter-clockwise from ahead \[rad\]; `None` if it is not seen.
+    /// The bearing of the other robot, counter-clockwise from ahead \[rad\], or `None` if it is not seen.
     fn bearing(&self, x: &[f32]) -> Option<f32> {
         let seen = x.get(EYES..)?;
         let mut sum = [0.0_f32; 2];

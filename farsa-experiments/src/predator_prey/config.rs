@@ -16,16 +16,16 @@ pub(crate) const NAMES: [&str; 2] = ["predator", "prey"];
 /// Colours of the hulls.
 const COLORS: [[f64; 3]; 2] = [[0.85, 0.15, 0.1], [0.1, 0.25, 0.85]];
 
-/// Where the two robots meet.
+/// The arena of the two robots.
 ///
-/// Lengths are metres.
+/// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PredatorPreyConfig {
     /// The two robots.
     pub team: TeamConfig,
     /// Hulls that are as near as this touch, as do those whose last step would have led into each other.
     pub touch: f64,
-    /// What happens to robots that run into something.
+    /// The rule for robots that run into something.
     pub collisions: CollisionRule,
     /// Individuals of each population.
     pub population: usize,
@@ -55,12 +55,12 @@ impl PredatorPreyConfig {
         table.extend(self.team.table(false, true));
         table.push(
             Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])
-                .doc("Robots slide along what they run into; undone as in the original, chases were seen to end with both stuck a few centimetres apart."),
+                .doc("Robots slide along obstacles. With `undone`, as in the original, chases can end with both stuck a few centimeters apart."),
         );
         table.push(
             Setting::number("capture.touch", self.touch, 0.0..=1.0)
                 .unit("m")
-                .doc("Hulls as near as this touch, which is capture; so do hulls that collided in the last step."),
+                .doc("Hulls as near as this touch, which is capture. So do hulls that collided in the last step."),
         );
         table
     }

@@ -21,25 +21,25 @@ use farsa_view::Channel;
 /// The predator is robot 0, the prey robot 1.
 pub(crate) const PREDATOR: usize = 0;
 pub(crate) const PREY: usize = 1;
-/// What the predator's and the prey's camera see: each other.
+/// The colors in the cameras of predator and prey: each other.
 const SEEN: [[ColorBand; 1]; 2] = [[BLUE], [RED]];
 
 /// A predator and a prey with a controller each.
 ///
-/// A controller reads 8 infrared channels and for each of the camera's sectors how much of it is the other robot; it writes
-/// speed and turn.
+/// A controller reads 8 infrared channels and for each of the camera's sectors the share of the other robot in it. It writes speed
+/// and turn.
 pub type PredatorPreyEpisode<C> = TeamEpisode<PredatorPreyScenario, C>;
 
 impl<C: Controller> PredatorPreyEpisode<C> {
     /// An episode of the predator's controller and the prey's.
     ///
     /// # Errors
-    /// Those of [`Team::new`].
+    /// The errors of [`Team::new`].
     pub fn new(config: PredatorPreyConfig, controllers: [C; 2]) -> Result<Self, Error> {
         Self::from_scenario(PredatorPreyScenario::new(config), controllers.into())
     }
 
-    /// Whether the prey was captured.
+    /// True if the prey was captured.
     pub fn captured(&self) -> bool {
         self.scenario().captured
     }
@@ -70,7 +70,7 @@ impl PredatorPreyScenario {
     }
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("gap at the end [m]", -1.0)],
     descriptors: &[("time [s]", [0.0, 100.0]), ("gap at the end [m]", [0.0, 1.0])],
@@ -124,7 +124,7 @@ impl Scenario for PredatorPreyScenario {
         Ok(())
     }
 
-    /// Capture is known from either robot's contact: one that also collides with a wall may report the wall only.
+    /// Either robot's contact shows a capture: one that also collides with a wall may report the wall only.
     fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let [predator, prey] = [PREDATOR, PREY].map(|robot| moment.places[robot]);
         self.gap = f64::from(distance(predator, prey)) - 2.0 * self.config.team.robot.radius;
@@ -137,7 +137,7 @@ impl Scenario for PredatorPreyScenario {
     }
 
     /// The predator 1 - t/T for a capture at step t of T, the prey the rest of 1.
-    fn earned(&self, own: usize, moment: Moment<'_>) -> f64 {
+    fn reward(&self, own: usize, moment: Moment<'_>) -> f64 {
         let share = f64::from(moment.steps) / f64::from(self.config.team.steps.max(1));
         let predator = if self.captured { 1.0 - share } else { 0.0 };
         if own == PREDATOR { predator } else { 1.0 - predator }
@@ -149,7 +149,7 @@ impl Scenario for PredatorPreyScenario {
 
     fn outcome(&self, own: usize, moment: Moment<'_>) -> Outcome {
         Outcome {
-            terms: vec![self.earned(own, moment)],
+            terms: vec![self.reward(own, moment)],
             steps: moment.steps,
             success: self.captured == (own == PREDATOR),
             notes: vec![
@@ -179,6 +179,6 @@ impl Scenario for PredatorPreyScenario {
     }
 
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64> {
-        vec![self.gap, self.earned(PREDATOR, moment), self.earned(PREY, moment)]
+        vec![self.gap, self.reward(PREDATOR, moment), self.reward(PREY, moment)]
     }
 }

@@ -10,9 +10,9 @@ use crate::team::task::evaluator;
 
 /// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
 ///
-/// Two `MarXbots` of the same abilities in a walled arena. The predators, the first population, earn 1 - t/T for touching
-/// the prey at step t of T, else nothing; the prey, the second, earn the rest of 1. Arena, starts, T and rewards are the
-/// source's; headings, sensors, network and evolution are ours, as the settings say.
+/// Two `MarXbots` of the same abilities in a walled arena. The predators, the first population, earn 1 - t/T for touching the prey
+/// at step t of T, else nothing. The prey, the second, earn the rest of 1. Arena, starts, T and rewards are the source's. Headings,
+/// sensors, network and evolution are ours, as the settings show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PredatorPrey;
 
@@ -34,8 +34,7 @@ impl Experiment for PredatorPrey {
     }
 }
 
-/// Runs one trial of any two controllers and returns what came of it for the predator, as an outcome of the experiment
-/// does.
+/// Runs one trial of any two controllers and returns the predator's outcome.
 pub fn chase<C: Controller>(episode: &mut PredatorPreyEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
     farsa_lab::run_episode(episode, world, id, None);
     episode.outcome(0)

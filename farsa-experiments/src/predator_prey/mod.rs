@@ -1,13 +1,12 @@
 //! The experiment `predator-prey`: two populations evolve against each other.
-//!
-//! - `baseline`: a predator and a prey without evolution, to compare evolved ones with
-//! - `config`: the values of `predator-prey`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `predator-prey`: one robot chases another
 
+/// A predator and a prey without evolution, to compare evolved ones with.
 mod baseline;
+/// The values of `predator-prey`, as settings.
 mod config;
+/// An episode of `predator-prey`: one robot chases another.
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
 
 pub use baseline::Chaser;

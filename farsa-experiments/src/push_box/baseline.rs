@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use crate::push_box::config::PushConfig;
 use crate::push_box::episode::OUTPUTS;
 
-/// Turns to where its infrared sensors see most and drives ahead; drives in circles while they see nothing.
+/// Turns to where its infrared sensors see most and drives ahead. It drives in circles while they see nothing.
 ///
 /// No memory. Inputs and outputs are those of [`PushEpisode`](crate::push_box::PushEpisode).
 #[derive(Clone, Debug)]
@@ -14,10 +14,10 @@ pub struct HomingPusher {
     eyes: Vec<[f32; 2]>,
 }
 
-/// What drives the wheels while nothing is seen: the left one half as fast as the right one, circles of one and a half times
-/// the track in radius.
+/// The wheels' values while nothing is seen. The left one is half as fast as the right one, in circles of one and a half times the
+/// track in radius.
 const CIRCLE: [f32; OUTPUTS] = [0.75, 1.0];
-/// How strongly it steers.
+/// Gain of the steering.
 const GAIN: f32 = 1.5;
 
 impl HomingPusher {

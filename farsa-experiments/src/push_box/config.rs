@@ -4,16 +4,16 @@ use farsa_body::robots::MobileRobot;
 use farsa_lab::{ENGINE, Error, Setting, Settings};
 use farsa_physics::arena::Arena;
 
-/// What the robot pushes and how; the defaults are those of the experiment, all of them chosen.
+/// A robot that pushes a box. The defaults are those of the experiment, all of them chosen.
 ///
-/// Lengths are metres.
+/// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PushConfig {
     /// The robot.
     pub robot: MobileRobot,
     /// Control step \[s\].
     pub time_step: f64,
-    /// Trials of an evaluation, each with a start of its own.
+    /// Trials of an evaluation, each with its own start.
     pub trials: u32,
     /// Steps of a trial.
     pub steps: u32,
@@ -25,7 +25,7 @@ pub struct PushConfig {
     pub friction: f64,
     /// Least and greatest distance between hull and the circle around the box at the start.
     pub apart: [f64; 2],
-    /// How far the box must have come for a trial to be a success.
+    /// Displacement of the box in a successful trial.
     pub far: f64,
     /// Weights and biases are decoded to plus and minus this.
     pub weight_range: f64,
@@ -54,13 +54,13 @@ impl PushConfig {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=100.0).unit("m");
         vec![
             Setting::whole("evolution.generations", 40, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 20, 1..=1_000_000)
                 .doc("Individuals of a generation, a multiple of the parents: few, for rapier takes its time."),
             Setting::whole("evolution.parents", 4, 1..=1_000_000)
-                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+                .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
             Setting::word(ENGINE, "rapier", &["rapier"])
-                .doc("What moves robot and box: in the kinematic arena nothing is pushed."),
+                .doc("Physics of robot and box: in the kinematic arena nothing is pushed."),
             Setting::number("world.time_step", self.time_step, 0.001..=0.2).unit("s").doc("Control step."),
             Setting::whole("trial.count", i64::from(self.trials), 1..=100_000).doc("Trials of an evaluation."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).doc("Steps of a trial."),
@@ -76,7 +76,7 @@ impl PushConfig {
                 .doc("Least distance at the start between the hull and the circle around the box."),
             length("start.farthest", self.apart[1])
                 .doc("Greatest distance there: twice as far as the infrared sensors see, at most."),
-            length("success.far", self.far).doc("How far the box must have come for a trial to be a success."),
+            length("success.far", self.far).doc("Displacement of the box in a successful trial."),
             Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0)
                 .doc("Weights and biases are decoded from gene 0 at plus to the largest gene at minus this."),
         ]
@@ -107,7 +107,7 @@ impl PushConfig {
         })
     }
 
-    /// The endless plane with the robot on it, away from the box, which every trial places anew.
+    /// The endless plane with the robot on it, away from the box. Every trial places the robot.
     pub fn arena(&self) -> Arena {
         let mut arena = Arena { time_step: self.time_step, ..Arena::new() };
         arena.add_robot(self.robot.clone(), [self.size[0] + self.size[1] + 1.0, 0.0], 0.0);

@@ -8,12 +8,12 @@ use crate::push_box::episode::{OUTPUTS, PushEpisode};
 #[cfg(feature = "rapier")]
 use crate::push_box::task::{Layer, layer};
 
-/// How far can a robot push a box that it only feels with its infrared sensors?
+/// Can a robot push a box that it senses by infrared alone?
 ///
-/// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive
-/// its wheels. It starts beside a box, often without sensing it, and earns the distance in metres that the box has come
-/// after 20 s, on the mean over the trials. It runs in rapier alone, as a rigid body on driven wheels
-/// (`farsa_physics::rapier::ArenaWorld`): the crate must be built with the feature `rapier`. All values are chosen.
+/// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive its
+/// wheels. It starts next to a box, often without sensing it. It earns the displacement of the box after 20 s in meters, on the
+/// mean over the trials. It runs in rapier alone, as a rigid body on driven wheels (`farsa_physics::rapier::ArenaWorld`). The crate
+/// must be built with the feature `rapier`. All values are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PushBox;
 
@@ -31,7 +31,7 @@ impl Experiment for PushBox {
         if cfg!(feature = "rapier") {
             "an e-puck pushes a box as far as it can, by its infrared sensors alone, in rapier"
         } else {
-            "an e-puck pushes a box as far as it can; runs in rapier, so it needs a build with --features rapier"
+            "an e-puck pushes a box as far as it can, in rapier, which needs a build with --features rapier"
         }
     }
 

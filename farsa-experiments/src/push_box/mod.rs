@@ -1,17 +1,16 @@
 //! The experiment `push-box`: what only a general world can do.
-//!
-//! - `baseline`: a pusher without evolution, to compare evolved ones with
-//! - `config`: the values of `push-box`, as settings
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `episode`: an episode of `push-box`: one trial with a robot and a box on an endless plane
-//! - `task`: what there is to know of `push-box`, and its episodes over parameters
 
+/// A pusher without evolution, to compare evolved ones with.
 #[cfg(feature = "rapier")]
 mod baseline;
+/// The values of `push-box`, as settings.
 mod config;
+/// An episode of `push-box`: one trial with a robot and a box on an endless plane.
 #[cfg(feature = "rapier")]
 mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// Its description, and episodes over parameters.
 #[cfg(feature = "rapier")]
 mod task;
 

@@ -23,7 +23,7 @@ pub enum Displacement {
     PerIndividual,
 }
 
-/// How the source's sphere positions (tx, ty) \[cm\] lie in our world.
+/// The orientation in our world of the source's sphere positions (tx, ty) \[cm\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SphereFrame {
     /// X = ty, Y = tx: negative tx is towards the right arm.
@@ -33,14 +33,14 @@ pub enum SphereFrame {
     Icub,
 }
 
-/// The values of `reach-grasp-lift`; the defaults are those of the specification.
+/// The values of `reach-grasp-lift`. The defaults are those of the specification.
 ///
-/// Lengths are metres, angles degrees, other units SI unless a field says otherwise.
+/// Lengths are in meters and angles in degrees. Other units are SI, with exceptions at their fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// Whether the controller senses the phase: condition A `labels`, or B `no-labels`.
+    /// The controller senses the phase: condition A `labels`, or B `no-labels`.
     pub labels: bool,
-    /// What moves the bodies.
+    /// The physics of the bodies.
     pub engine: Engine,
     /// Control step \[s\].
     pub time_step: f64,
@@ -60,7 +60,7 @@ pub struct Config {
     pub arm_poses: [f64; 4 * TRIALS],
     /// (tx, ty) of the sphere at the start of each trial \[cm\].
     pub sphere_positions: [f64; 2 * TRIALS],
-    /// How these lie in the world.
+    /// Their orientation in the world.
     pub sphere_frame: SphereFrame,
     /// Largest displacement of a joint at the start \[deg\].
     pub joint_displacement: f64,
@@ -68,7 +68,7 @@ pub struct Config {
     pub sphere_displacement: f64,
     /// Which individuals share the displacements.
     pub displacement: Displacement,
-    /// Where the axes of J1..J3 meet \[m\].
+    /// The intersection of the axes of J1..J3 \[m\].
     pub shoulder: [f64; 3],
     /// Which reading of the muscle model.
     pub muscles: MuscleVariant,
@@ -124,7 +124,7 @@ pub struct Config {
     pub leak: Leak,
     /// Weights and biases are decoded to plus and minus this.
     pub weight_range: f64,
-    /// How trials are judged.
+    /// The rules of the judge.
     pub judgement: Judgement,
 }
 
@@ -191,7 +191,7 @@ impl Config {
         Self { labels, ..Self::default() }
     }
 
-    /// Where the sphere's centre is at the start of a trial, displacement aside, x and y in the world \[m\].
+    /// The sphere's center at the start of a trial, without displacement, x and y in the world \[m\].
     pub fn sphere_start(&self, trial: usize) -> [f64; 2] {
         let [tx, ty] = [0, 1].map(|k| self.sphere_positions[2 * (trial % TRIALS) + k] / 100.0);
         match self.sphere_frame {
@@ -243,7 +243,7 @@ impl Config {
         }
     }
 
-    /// How rapier moves the scene; the other numbers of [`Config::options`] mean nothing there.
+    /// Options of rapier. The other numbers of [`Config::options`] have no meaning there.
     #[cfg(feature = "rapier")]
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
         farsa_physics::rapier::Options {
@@ -254,7 +254,7 @@ impl Config {
         }
     }
 
-    /// How our physics moves the scene.
+    /// Options of our physics.
     pub fn options(&self) -> Options {
         Options {
             time_step: self.time_step,

@@ -12,7 +12,7 @@ use crate::reach_grasp_lift::fitness::{Rewards, Trial};
 use crate::reach_grasp_lift::phase::Observation;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
 
-/// The judge of one trial: sees every step, keeps the score and says when the trial is over.
+/// The judge of one trial. It sees every step, keeps the score and ends the trial.
 #[derive(Clone, Debug)]
 pub struct Judge {
     scene: Arc<Scene>,
@@ -39,9 +39,9 @@ impl Judge {
         self.trial = Trial::default();
     }
 
-    /// Judges the step that has passed; `Some` ends the trial with what it would earn alone, NaN if the world broke down.
+    /// Judges the step that has passed. `Some` ends the trial with its reward alone, NaN if the world broke down.
     ///
-    /// A trial ends after its last step or when the sphere's centre is below the table's top; what was earned stays.
+    /// A trial ends after its last step or when the sphere's center is below the table's top. The rewards so far remain.
     pub fn judge<W>(&mut self, world: &W) -> Option<f64>
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -71,17 +71,17 @@ impl Judge {
         &self.trial
     }
 
-    /// What was seen of the last step.
+    /// The observation of the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
 
-    /// What the last step earned.
+    /// The rewards of the last step.
     pub fn earned(&self) -> &Rewards {
         &self.earned
     }
 
-    /// Whether the trial succeeds if it ends now.
+    /// True if the trial succeeds when it ends now.
     pub fn succeeds(&self) -> bool {
         self.trial.succeeds(self.scene.config.steps_per_second())
     }
@@ -89,8 +89,8 @@ impl Judge {
 
 /// A trial run by a controller: the robot senses, the controller steps, the motors act, every control step.
 ///
-/// The return of this [`Episode`] is what its one trial would earn alone; that of an individual takes the sums of the
-/// rewards of its four trials ([`Rewards::total`]).
+/// The return of this [`Episode`] is the reward of its one trial alone. The return of an individual takes the sums of the rewards
+/// of its four trials ([`Rewards::total`]).
 #[derive(Clone, Debug)]
 pub struct ReachEpisode<C> {
     judge: Judge,
@@ -153,12 +153,12 @@ impl<C: Controller> ReachEpisode<C> {
         (self.judge.starts, self.wrong_label) = (starts, wrong_label);
     }
 
-    /// What was sensed last \[29 or 26\].
+    /// The last inputs \[29 or 26\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What was done last \[23\].
+    /// The last outputs \[23\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
@@ -182,7 +182,7 @@ where
         self.motors.reset();
     }
 
-    /// Senses, computes and acts; the label is the phase after the step before.
+    /// Senses, computes and acts. The label is the phase after the previous step.
     fn act(&mut self, world: &mut W) {
         let phase = self.judge.trial().phase;
         self.senses.set_label(if self.wrong_label { phase.following() } else { phase });

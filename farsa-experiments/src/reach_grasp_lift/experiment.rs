@@ -10,10 +10,9 @@ use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings}
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
-/// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere, either with the phase of the task
-/// given by three
-/// more inputs (condition `labels`, A) or not (`no-labels`, B). Every value that the source does not give is a setting
-/// with its reason; [`Config`] lists them.
+/// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere. Three more inputs give the phase of the task
+/// (condition `labels`, A) or are missing (`no-labels`, B). Every value that the source does not give is a setting with its reason.
+/// [`Config`] lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ReachGraspLift;
 

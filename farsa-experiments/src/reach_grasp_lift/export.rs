@@ -49,7 +49,7 @@ impl Scene {
         }
     }
 
-    /// What every sensor channel reads, in the order of [`Scene::senses`].
+    /// The quantity that every sensor channel reads, in the order of [`Scene::senses`].
     fn readings(&self) -> Vec<SensorReading> {
         let config = &self.config;
         let joints = self.sensed_joints().into_iter();
@@ -71,7 +71,7 @@ impl Scene {
         joints.chain(patches).chain(way).chain(labels).collect()
     }
 
-    /// What every motor channel drives, in the order of [`Scene::motors`].
+    /// The quantity that every motor channel drives, in the order of [`Scene::motors`].
     fn drives(&self) -> Vec<MotorDrive> {
         let muscles = (0..7).flat_map(|i| [0, 1].map(|muscle| (ActuatorId(i), muscle)));
         let muscles = muscles.map(|(pair, muscle)| MotorDrive::Muscle { actuator: self.actuator_name(pair), muscle });
@@ -158,7 +158,7 @@ mod tests {
         world.pose(scene.robot.body(&point.body).unwrap()).cast::<f64>().transform(point.at)
     }
 
-    /// What a channel reads by its description alone.
+    /// The reading of a channel by its description alone.
     fn reading(scene: &Scene, world: &World<f32>, phase: Phase, reads: &SensorReading) -> f64 {
         match reads {
             SensorReading::JointPosition { joint, from, to } => {
@@ -206,7 +206,7 @@ mod tests {
         commands
     }
 
-    /// Remembers what it is commanded.
+    /// Stores the commands.
     struct Commanded(Vec<[f32; 2]>);
 
     impl farsa_body::ports::Handles for Commanded {
@@ -246,7 +246,7 @@ mod tests {
                 senses.read(&world, &mut x);
                 for (sensor, x) in exported.sensors.iter().zip(&x) {
                     let read = reading(&scene, &world, phase, &sensor.reads);
-                    // Single precision, in centimetres; the sphere may fall far.
+                    // Single precision, in centimeters. The sphere may fall far.
                     assert!(
                         (read - f64::from(*x)).abs() < 1e-6 * (10.0 + read.abs()),
                         "step {step}: {} {x} {read}",

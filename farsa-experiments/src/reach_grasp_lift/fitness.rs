@@ -20,7 +20,7 @@ pub enum ContactTerm {
     /// 0.2 min(1, contacts/4): a grasp step pays at most 0.6, as the cap of 720 = 0.6 * 1200 suggests.
     #[default]
     Capped,
-    /// 0.2/(1 + contacts/4), as printed; it punishes contacts.
+    /// 0.2/(1 + contacts/4), as printed. It punishes contacts.
     Literal,
     /// 0.2 (1 - 1/(1 + contacts/4)).
     Saturating,
@@ -30,7 +30,7 @@ impl ContactTerm {
     /// All readings.
     pub const ALL: [Self; 3] = [Self::Capped, Self::Literal, Self::Saturating];
 
-    /// What a grasp step earns for `contacts` phalanges on the sphere.
+    /// The reward of a grasp step for `contacts` phalanges on the sphere.
     pub fn value(self, contacts: u32) -> f64 {
         let quarter = f64::from(contacts) / 4.0;
         match self {
@@ -56,8 +56,8 @@ impl ContactTerm {
 pub struct Judgement {
     /// The reading of the contact term.
     pub contact_term: ContactTerm,
-    /// Height of the sphere's centre above the table from which a lift may be a success \[cm\], 5 by default: the printed
-    /// reward alone is satisfied by a sphere that lies on a hand that lies on the table.
+    /// Height of the sphere's center above the table from which a lift may be a success \[cm\], 5 by default. The printed reward
+    /// alone also accepts a sphere on a hand that rests on the table.
     pub success_height: f64,
 }
 
@@ -125,13 +125,13 @@ pub struct Trial {
     /// Number of steps up to the last one, without a gap, in each of which the sphere touched the fingers and not the
     /// table.
     pub lifted: u32,
-    /// The same, counting only steps with the sphere's centre at least [`Judgement::success_height`] above the table.
+    /// Lifted steps with the sphere's center at least [`Judgement::success_height`] above the table.
     pub held: u32,
-    /// The largest height of the sphere's centre above the table so far \[cm\].
+    /// The largest height of the sphere's center above the table so far \[cm\].
     pub highest: f64,
-    /// Whether the sphere fell off the table and ended the trial.
+    /// The sphere fell off the table and ended the trial.
     pub fallen: bool,
-    /// What the steps earned; the bonus only once the trial has ended.
+    /// The rewards of the steps. The bonus is added when the trial has ended.
     pub rewards: Rewards,
 }
 
@@ -154,8 +154,8 @@ impl Trial {
         self.rewards.bonus = self.phase.bonus();
     }
 
-    /// Whether the trial succeeds if it ends now: the sphere was held up in every one of the last `second` steps and
-    /// did not fall.
+    /// True if the trial succeeds when it ends now: the sphere was held up in every one of the last `second` steps and did not
+    /// fall.
     pub fn succeeds(&self, second: u32) -> bool {
         second > 0 && self.held >= second && !self.fallen
     }
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn the_caps_are_over_the_trials_and_not_on_each() {
-        // 125 perfect reach steps in each trial fill the cap exactly; with 100 in three and 200 in one it is the same.
+        // 125 perfect reach steps in each trial fill the cap exactly. With 100 in three and 200 in one the sum is the same.
         let reach = |counts: [usize; 4]| {
             individual(&counts.map(|n| sequence(&[(best_reach(), n), (far_away(), 0)])), ContactTerm::Capped).total()
         };

@@ -1,29 +1,28 @@
 //! The experiment `reach-grasp-lift`: an arm and hand reach for a sphere, grasp it and lift it.
-//!
-//! - `config`: the values of `reach-grasp-lift` and what is built from them
-//! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `export`: the controller of `reach-grasp-lift` and its starts for other programs
-//! - `fitness`: the reward of `reach-grasp-lift`: what a step earns, the caps over an individual's trials, and success
-//! - `episode`: an episode of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall
-//! - `parameters`: the parameters of `reach-grasp-lift`
-//! - `phase`: the three phases of `reach-grasp-lift` and what is observed of a step to distinguish them
-//! - `scene`: the scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees
-//! - `script`: a grasp by script: what the task asks of arm, hand and contacts, shown without evolution
-//! - `settings`: every value of `reach-grasp-lift` as a setting: its key, limits, unit, source and reason
-//! - `task`: what there is to know of `reach-grasp-lift`, and its episodes over parameters
-//! - `schema`: what an episode of `reach-grasp-lift` records, by name
 
+/// The values of `reach-grasp-lift` and what is built from them.
 pub(crate) mod config;
+/// An episode of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
 pub(crate) mod episode;
+/// Its name, conditions and settings, and what runs its trials.
 pub(crate) mod experiment;
+/// The controller of `reach-grasp-lift` and its starts for other programs.
 mod export;
+/// The reward of `reach-grasp-lift`: what a step earns, the caps over an individual's trials, and success.
 mod fitness;
+/// The parameters of `reach-grasp-lift`.
 mod parameters;
+/// The three phases of `reach-grasp-lift` and what is observed of a step to distinguish them.
 mod phase;
+/// The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
 pub(crate) mod scene;
+/// The recorded channels of `reach-grasp-lift`, by name.
 mod schema;
+/// A grasp by script: what the task asks of arm, hand and contacts, shown without evolution.
 pub(crate) mod script;
+/// Every value of `reach-grasp-lift` as a setting: its key, limits, unit, source and reason.
 mod settings;
+/// The description of `reach-grasp-lift`, and its episodes over parameters.
 pub(crate) mod task;
 
 pub use crate::worlds::Engine;

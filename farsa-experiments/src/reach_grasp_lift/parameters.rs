@@ -17,19 +17,19 @@ impl Ranges {
     /// The ranges of a network's parameters.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a range that is none.
+    /// [`Error::Setting`] for an empty range.
     pub(crate) fn new(layout: LeakyLayout, leak: Leak, range: f32) -> Result<Self, Error> {
         network_parameters(&layout, f64::from(range), [0.0, 1.0], "network.range")?;
         Ok(Self { layout, range, evonet: leak == Leak::Evonet })
     }
 
-    /// What an evaluation takes.
+    /// The parameters of an evaluation.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
         let leaks = if self.evonet { [-self.range, self.range] } else { [0.0, 1.0] };
         network_parameters(&self.layout, f64::from(self.range), leaks, "network.range").unwrap_or_default()
     }
 
-    /// What the network takes.
+    /// The parameters of the network.
     pub(crate) fn to_network(&self, parameters: &[f32]) -> Vec<f32> {
         let mut parameters = parameters.to_vec();
         if self.evonet {

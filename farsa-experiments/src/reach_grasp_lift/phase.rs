@@ -3,7 +3,7 @@
 use farsa_num::exp;
 use serde::{Deserialize, Serialize};
 
-/// A phase of a trial; a trial passes through them in this order and never back.
+/// A phase of a trial. A trial passes through them in this order and never back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
@@ -16,31 +16,31 @@ pub enum Phase {
     Lift,
 }
 
-/// What the reward sees of the world after one step.
+/// The reward's view of the world after one step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// ds: distance from the palm's centre to the point 5 cm above the sphere's centre \[cm\].
+    /// ds: distance from the palm's center to the point 5 cm above the sphere's center \[cm\].
     pub reach_distance: f64,
-    /// graspQ: distance from the centroid of fingertips and palm centre to the sphere's centre \[cm\].
+    /// graspQ: distance from the centroid of fingertips and palm center to the sphere's center \[cm\].
     pub grasp_distance: f64,
-    /// Number of phalanges that touch the sphere; the palm does not count.
+    /// Number of phalanges that touch the sphere. The palm does not count.
     pub contacts: u32,
     /// fOpen: mean openness of the 15 flexion joints, 0 closed, 1 extended.
     pub openness: f64,
-    /// pRot: cosine between the palm's direction and straight down; 1 palm down, -1 palm up.
+    /// pRot: cosine between the palm's direction and straight down, 1 for palm down, -1 for palm up.
     pub palm_down: f64,
-    /// Whether the sphere touches the table.
+    /// The sphere touches the table.
     pub on_table: bool,
-    /// Height of the sphere's centre above the table's top \[cm\].
+    /// Height of the sphere's center above the table's top \[cm\].
     pub height: f64,
-    /// Where the palm's centre is in the world \[m\]; the distances say all that the reward needs of it.
+    /// The palm's center in the world \[m\]. The reward uses the distances only.
     pub palm: [f64; 3],
-    /// Where the centroid of fingertips and palm centre is in the world \[m\].
+    /// The centroid of fingertips and palm center in the world \[m\].
     pub grasp_centre: [f64; 3],
 }
 
 impl Observation {
-    /// Whether a phalanx touches the sphere.
+    /// True if a phalanx touches the sphere.
     pub fn on_fingers(&self) -> bool {
         self.contacts > 0
     }
@@ -65,7 +65,7 @@ impl Observation {
         1.0 - exp(-0.3 * f64::from(self.contacts))
     }
 
-    /// Whether every number is finite.
+    /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
         [self.reach_distance, self.grasp_distance, self.openness, self.palm_down, self.height]
             .iter()
@@ -79,8 +79,8 @@ impl Phase {
 
     /// The phase after a step that ended as `seen` \[Ferrauto2010, 2.3.4\].
     ///
-    /// Reach is left for grasp when not (r > g or g < 0.5), grasp for lift when g > 0.7 and l > 0.6; never back.
-    /// Deviations: the source gives the three conditions as a classification; at most one transition a step is ours.
+    /// Reach changes to grasp when not (r > g or g < 0.5), grasp to lift when g > 0.7 and l > 0.6, and never back. Deviations: the
+    /// source gives the three conditions as a classification. At most one transition a step is ours.
     #[must_use]
     pub fn next(self, seen: &Observation) -> Self {
         let g = seen.g();
@@ -114,7 +114,7 @@ impl Phase {
         }
     }
 
-    /// What a trial that ends in this phase earns on top of its steps \[Ferrauto2010, 2.3.4\].
+    /// The bonus of a trial that ends in this phase, on top of its steps \[Ferrauto2010, 2.3.4\].
     pub fn bonus(self) -> f64 {
         match self {
             Self::Reach => 0.0,

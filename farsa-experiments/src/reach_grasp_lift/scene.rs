@@ -16,9 +16,9 @@ use farsa_num::{Domain, Scalar, Stream};
 use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};
 use crate::reach_grasp_lift::phase::{Observation, Phase};
 
-/// Sensor channels beside the labels.
+/// Sensor channels without the labels.
 const PLAIN_SENSORS: usize = 26;
-/// Units per metre of the sphere's position: centimetres.
+/// Units per meter of the sphere's position: centimeters.
 pub(crate) const TARGET_SCALE: f32 = 100.0;
 /// Output channels: an activation for each of the 14 muscles, a position for each of the 9 servo groups.
 pub const OUTPUTS: usize = 23;
@@ -48,11 +48,11 @@ pub struct Scene {
 
 /// The robot's sensors in the order of the network's inputs, 29 or (without labels) 26 channels \[Ferrauto2010, 2.3.3\]:
 ///
-/// 17 proprioceptors (J1..J7; J8, J9, J10, J13, J14, J17, J18, J21, J22, J16), 6 tactile (thumb, index, middle, ring,
-/// little finger, palm), 3 for the sphere's centre relative to the palm's \[cm\], 3 labels.
+/// 17 proprioceptors (J1..J7, J8, J9, J10, J13, J14, J17, J18, J21, J22, J16) and 6 tactile sensors (thumb, index, middle, ring,
+/// little finger, palm). Then come 3 channels for the sphere's center relative to the palm's \[cm\] and 3 labels.
 ///
-/// Deviations: the page with the source's list is lost to us; which ten hand joints are sensed and how values are scaled
-/// is chosen. Touch sensors feel with all sides of a phalanx, not the inner one alone.
+/// Deviations: the page with the source's list is not available. The choice of the ten sensed hand joints and the scales are ours.
+/// Touch sensors feel with all sides of a phalanx, not the inner one alone.
 #[derive(Clone, Debug)]
 pub struct Senses {
     parts: (Vec<JointPosition>, TouchPatches, TargetPosition, Option<Signal<3>>),
@@ -127,7 +127,7 @@ impl Scene {
     pub(crate) fn sensed_joints(&self) -> Vec<(JointId, [f32; 2])> {
         let arm = ArmAndHand::joints().into_iter().zip(self.arm.arm_ranges);
         let hand = SENSED_HAND_JOINTS.into_iter().map(|number| {
-            // Abduction over its range; opposition and flexion from extended, the upper limit.
+            // Abduction over its range. Opposition and flexion from extended, the upper limit.
             let [low, high] = match number {
                 8 => self.arm.opposition_range,
                 16 => self.arm.abduction_ranges[1],
@@ -142,7 +142,7 @@ impl Scene {
     pub(crate) fn patches(&self) -> Vec<Vec<PairId>> {
         let fingers = Finger::ALL.map(|finger| ArmAndHand::phalange_colliders(finger).to_vec());
         let patches = fingers.into_iter().chain([vec![ArmAndHand::ARM_COLLIDERS[2]]]);
-        patches.map(|own| self.foreign_pairs(&own)).collect()
+        patches.map(|colliders| self.foreign_pairs(&colliders)).collect()
     }
 
     /// The pairs of these colliders with anything that is not of the arm and hand.
@@ -158,9 +158,9 @@ impl Scene {
 
     /// J1..J27 at the start of a trial \[rad\] and the sphere's place on the table \[m\], displacements included.
     ///
-    /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y; joints
-    /// are clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by
-    /// up to 1.5 cm; that both are uniform and that the hand's joints are among them is chosen.
+    /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y. Joints are
+    /// clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by up to 1.5 cm.
+    /// Uniform distributions and displaced joints of the hand are our choice.
     pub fn start(&self, id: EpisodeId) -> ([f64; 27], [f64; 2]) {
         self.start_from(id, [id.trial as usize; 2])
     }
@@ -184,7 +184,7 @@ impl Scene {
         (joints, sphere)
     }
 
-    /// What a MuJoCo model of the scene says beside the robot: the dynamics step, and the starts without displacements.
+    /// Options of a MuJoCo model of the scene: the dynamics step, and the starts without displacements.
     pub fn mjcf_options(&self) -> MjcfOptions {
         let config = &self.config;
         let start = |trial: usize| {
@@ -226,17 +226,17 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// The palm's centre in the world \[m\].
+    /// The palm's center in the world \[m\].
     pub fn palm_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(ArmAndHand::PALM).cast::<f64>().transform(self.arm.palm_centre)
     }
 
-    /// The sphere's centre in the world \[m\].
+    /// The sphere's center in the world \[m\].
     pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(Tabletop::SPHERE).position.map(f64::from)
     }
 
-    /// What the judge sees of a world.
+    /// The judge's view of a world.
     pub fn observe<W>(&self, world: &W) -> Observation
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -276,7 +276,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Senses {
-    /// Sets the label of the next reading; without labels there is none to set.
+    /// Sets the label of the next reading, if there are labels.
     pub fn set_label(&mut self, phase: Phase) {
         if let Some(label) = &mut self.parts.3 {
             label.set_one_hot(phase.index(), self.label_amplitude);

@@ -1,4 +1,4 @@
-//! What an episode of `reach-grasp-lift` records, by name.
+//! The recorded channels of `reach-grasp-lift`, by name.
 
 use farsa_body::actuators::{Law, MusclePair};
 use farsa_body::ports::{BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairId};
@@ -15,8 +15,8 @@ use crate::reach_grasp_lift::scene::Scene;
 /// The controller's episode in a trial.
 pub(crate) type NetworkEpisode = ReachEpisode<NormalisedController<OwnedNetwork>>;
 
-/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
-/// speeds of joints and sphere.
+/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17 forces, 27 +
+/// 6 speeds of joints and sphere.
 pub(crate) const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
 
 /// Fills the first places of a slice and returns the others.
@@ -35,7 +35,7 @@ fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
     scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
-/// What pages call the groups of servos that follow one output.
+/// Labels in pages of the groups of servos that follow one output.
 const GROUP_LABELS: [(&str, &str); 5] = [
     ("J10 J11", "thumb outer"),
     ("J14 J15", "index outer"),
@@ -44,7 +44,7 @@ const GROUP_LABELS: [(&str, &str); 5] = [
     ("J21-J23 J25-J27", "ring and little"),
 ];
 
-/// What pages call the channels of joints, muscles and groups of servos.
+/// Labels in pages of the channels of joints, muscles and groups of servos.
 fn labels() -> Vec<(String, &'static str)> {
     let groups = GROUP_LABELS.map(|(name, label)| (name.into(), label)).into_iter();
     let muscles = (1..).zip(ArmAndHand::muscle_labels()).flat_map(|(n, [agonist, antagonist])| {
@@ -197,7 +197,7 @@ mod tests {
             assert!(shown.insert((&channel.group, text)), "{channel:?} is in its group twice");
             labelled += usize::from(numbered);
         }
-        // Joints and speeds; lengths and torques; sensors; outputs.
+        // Joints and speeds, lengths and torques, sensors, outputs.
         assert_eq!(labelled, 2 * 27 + 21 + 17 + 23);
         let label = |name: &str| schema.outputs.iter().find(|output| output.name == name).unwrap().label.as_str();
         assert_eq!(

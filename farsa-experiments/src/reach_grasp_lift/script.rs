@@ -12,8 +12,8 @@ use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
 use crate::smooth::smooth;
 
-/// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
-/// posture begins.
+/// Postures with the palm exactly down, its center 5 cm above the sphere in its four places \[deg\]. The search for a posture
+/// begins there.
 const PALM_DOWN: [[f64; 7]; 4] = [
     [-92.0, -8.0, 53.0, -102.0, -28.0, -48.0, 11.0],
     [-82.0, -26.0, 18.0, -66.0, -18.0, -25.0, 6.0],
@@ -24,19 +24,19 @@ const PALM_DOWN: [[f64; 7]; 4] = [
 /// The places that they belong to, X and Y in the world \[m\].
 const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
-/// What the script does when; chosen by trial in another simulator and in ours.
+/// The times of the script, chosen by trial in another simulator and in ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
-    /// Duration of reaching the way-point, descending, closing and lifting, one after the other \[s\]; the rest is holding.
+    /// Duration of reaching the way-point, descending, closing and lifting, one after the other \[s\]. The rest is holding.
     pub durations: [f64; 4],
-    /// Height of the palm's centre above the table at the way-point \[m\].
+    /// Height of the palm's center above the table at the way-point \[m\].
     pub way_point: f64,
-    /// Height of the palm's centre above the table that is aimed at for grasping \[m\]: below the sphere's top, so that the
-    /// palm presses gently.
+    /// Target height of the palm's center above the table for grasping \[m\]: below the sphere's top, so that the palm presses
+    /// gently.
     pub palm: f64,
-    /// How far the sphere is ahead of the palm's centre, towards the fingertips \[m\].
+    /// Distance of the sphere ahead of the palm's center, towards the fingertips \[m\].
     pub ahead: f64,
-    /// How far the palm is lifted \[m\].
+    /// Height of the lift \[m\].
     pub lift: f64,
     /// The nine servo groups closed around the sphere.
     pub closed: [f64; 9],
@@ -92,10 +92,10 @@ impl Statics {
         &self.tree
     }
 
-    /// The posture with the palm down and its centre at a place in the world \[m\], searched from another posture, J1..J27 \[rad\].
+    /// The posture with the palm down and its center at a place in the world \[m\], searched from another posture, J1..J27 \[rad\].
     ///
     /// # Errors
-    /// [`InverseKinematicsError`] when there is none within the joints' ranges.
+    /// [`InverseKinematicsError`] without a posture within the joints' ranges.
     pub fn palm_down(&self, place: [f64; 3], from: &[f64]) -> Result<Vec<f64>, InverseKinematicsError> {
         let goal = Goal {
             body: ArmAndHand::PALM,
@@ -106,10 +106,10 @@ impl Statics {
         InverseKinematics::default().solve(&self.tree, &goal, from).map(|solution| solution.joints)
     }
 
-    /// A posture with the palm down and its centre at a height \[m\] above a point of the table, J1..J27 \[rad\].
+    /// A posture with the palm down and its center at a height \[m\] above a point of the table, J1..J27 \[rad\].
     ///
     /// # Errors
-    /// [`InverseKinematicsError`] when there is none within the joints' ranges.
+    /// [`InverseKinematicsError`] without a posture within the joints' ranges.
     pub fn above(&self, [x, y]: [f64; 2], height: f64) -> Result<Vec<f64>, InverseKinematicsError> {
         let far = |place: &[f64; 2]| (place[0] - x) * (place[0] - x) + (place[1] - y) * (place[1] - y);
         let mut nearest = 0;
@@ -127,13 +127,13 @@ impl Statics {
 
     /// Activations of agonist and antagonist of J1..J7 for torques \[N m\] at a posture \[rad\], and whether they reach them.
     pub fn activations(&self, joints: &[f64], torques: &[f64]) -> ([[f64; 2]; 7], bool) {
-        let mut all = true;
+        let mut all_reached = true;
         let activations = core::array::from_fn(|i| {
             let (pair, reached) = self.muscles[i].activations(joints[i], torques[i]);
-            all &= reached;
+            all_reached &= reached;
             pair
         });
-        (activations, all)
+        (activations, all_reached)
     }
 
     /// The arm's muscles, J1..J7.
@@ -184,7 +184,7 @@ impl GraspPlan {
         Ok(Self { timetable, statics, postures })
     }
 
-    /// The posture wanted at a time \[s\] and how far the hand shall have closed.
+    /// The target posture at a time \[s\], and the share by which the hand is closed.
     pub fn wanted(&self, time: f64) -> ([f64; 7], f64) {
         let [reach, descend, close, lift] = self.timetable.durations;
         let ends = [reach, reach + descend, reach + descend + close];
@@ -271,12 +271,12 @@ impl ScriptEpisode {
         &self.statics
     }
 
-    /// The plan of the trial; `None` if the sphere was out of reach.
+    /// The plan of the trial, or `None` if the sphere was out of reach.
     pub fn plan(&self) -> Option<&GraspPlan> {
         self.plan.as_ref()
     }
 
-    /// What was done last.
+    /// The last outputs.
     pub fn done(&self) -> &[f32; OUTPUTS] {
         &self.done
     }

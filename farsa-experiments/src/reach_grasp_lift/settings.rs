@@ -10,7 +10,7 @@ use crate::reach_grasp_lift::config::{Config, Displacement, SphereFrame};
 use crate::reach_grasp_lift::fitness::ContactTerm;
 use crate::worlds::Engine;
 
-/// How a field of the configuration is read and written.
+/// The reader and writer of a field of the configuration.
 enum Field {
     Number(fn(&mut Config) -> &mut f64, RangeInclusive<f64>),
     Numbers(fn(&mut Config) -> &mut [f64], RangeInclusive<f64>),
@@ -45,7 +45,7 @@ fn world_entries() -> Vec<Entry> {
             Word(&Engine::NAMES, |c| c.engine.name(), |c, w| c.engine = w.parse().unwrap_or_default()),
             "",
             Chosen,
-            "Whose dynamics: ours, or rapier's, which knows no sweeps, slip, limit frequency, stiffness and damping of contacts.",
+            "Physics: ours, or rapier's, which has no sweeps, slip, limit frequency, stiffness and damping of contacts.",
         ),
         entry("world.time_step", Number(|c| &mut c.time_step, 0.001..=0.05), "s", Given, "Control step."),
         entry(
@@ -53,7 +53,7 @@ fn world_entries() -> Vec<Entry> {
             Whole(|c| &mut c.substeps, 1..=100),
             "",
             Chosen,
-            "Dynamics steps per control step; 4 is the least at which no bound of the physics is broken in 10^6 random steps.",
+            "Dynamics steps per control step. 4 is the least at which no bound of the physics is broken in 10^6 random steps.",
         ),
         entry("world.gravity", Number(|c| &mut c.gravity, 0.0..=100.0), "m/s2", Chosen, "Gravity, downwards."),
         entry(
@@ -97,7 +97,7 @@ fn start_entries() -> Vec<Entry> {
             Numbers(|c| &mut c.sphere_positions, -100.0..=100.0),
             "cm",
             Given,
-            "(tx, ty) of the sphere at the start, trial after trial; pose k goes with position k (chosen).",
+            "(tx, ty) of the sphere at the start, trial after trial. Pose k goes with position k (chosen).",
         ),
         entry(
             "start.sphere_frame",
@@ -111,21 +111,21 @@ fn start_entries() -> Vec<Entry> {
             ),
             "",
             Chosen,
-            "How tx and ty lie in the world: forward X = ty, Y = tx; icub X = -tx, Y = -ty reverses the pairing with the poses.",
+            "Orientation of tx and ty in the world: forward X = ty, Y = tx, icub X = -tx, Y = -ty, which reverses the pairing with the poses.",
         ),
         entry(
             "start.joint_displacement",
             Number(|c| &mut c.joint_displacement, 0.0..=180.0),
             "deg",
             Given,
-            "Largest displacement of a joint at the start; uniform, on all 27 joints, clamped into their ranges (chosen).",
+            "Largest displacement of a joint at the start, uniform, on all 27 joints, clamped into their ranges (chosen).",
         ),
         entry(
             "start.sphere_displacement",
             Number(|c| &mut c.sphere_displacement, 0.0..=100.0),
             "cm",
             Given,
-            "Largest displacement of the sphere at the start along x and y; uniform (chosen).",
+            "Largest displacement of the sphere at the start along x and y, uniform (chosen).",
         ),
         entry(
             "start.displacement",
@@ -142,7 +142,7 @@ fn start_entries() -> Vec<Entry> {
             ),
             "",
             Chosen,
-            "Which individuals share the displacements; shared by a generation, its individuals are compared on equal terms.",
+            "Individuals that share the displacements. Sharing by a generation compares its individuals on equal terms.",
         ),
     ]
 }
@@ -156,7 +156,7 @@ fn arm_entries() -> Vec<Entry> {
             Numbers(|c| &mut c.shoulder, -10.0..=10.0),
             "m",
             Chosen,
-            "Where the axes of J1..J3 meet; the highest place from which the far sphere is still reached.",
+            "Intersection of the axes of J1..J3, the highest place from which the far sphere is in reach.",
         ),
         entry(
             "arm.muscles",
@@ -177,14 +177,14 @@ fn arm_entries() -> Vec<Entry> {
             Number(|c| &mut c.moment_arm, 1e-4..=1.0),
             "m",
             Chosen,
-            "Moment arm of the muscles: 3 N m on most joints hold every posture of the task; 1 m reads N as N m.",
+            "Moment arm of the muscles: 3 N m on most joints hold every posture of the task. 1 m reads N as N m.",
         ),
         entry(
             "arm.passive_reduction",
             Number(|c| &mut c.passive_reduction, 0.0..=1.0),
             "",
             Chosen,
-            "Further factor on the passive tension of the original program's muscles; its value there is not known to us.",
+            "Further factor on the passive tension of the original program's muscles. Its value there is not published.",
         ),
         entry(
             "arm.damping",
@@ -385,7 +385,7 @@ fn reward_entries() -> Vec<Entry> {
 }
 
 impl Config {
-    /// The table of settings; the labels' amplitude is listed only where there are labels.
+    /// Returns the table of settings. The labels' amplitude is listed only where there are labels.
     pub(crate) fn table(&self) -> Vec<Setting> {
         let mut defaults = self.clone();
         let listed = |entry: &Entry| self.labels || entry.key != "sensors.label_amplitude";
@@ -412,7 +412,7 @@ impl Config {
     /// The configuration that checked settings describe.
     ///
     /// # Errors
-    /// [`Error::Unknown`] if the settings are of another table; [`Error::Setting`] for a table's end before its beginning.
+    /// [`Error::Unknown`] if the settings are of another table, and [`Error::Setting`] for a table's end before its beginning.
     pub fn read(labels: bool, settings: &Settings) -> Result<Self, Error> {
         let mut config = Self::for_condition(labels);
         for Entry { key, field, .. } in entries() {

@@ -1,4 +1,4 @@
-//! What there is to know of `reach-grasp-lift`, and its episodes over parameters.
+//! The description of `reach-grasp-lift`, and its episodes over parameters.
 
 use std::sync::Arc;
 
@@ -47,8 +47,8 @@ impl ReachTask {
         Ok(task)
     }
 
-    /// `start-positions`: every posture of the arm with every place of the sphere, of which four pairs were trained; `labels`,
-    /// where there are any: right, removed, and those of another phase; `lesions`.
+    /// `start-positions` has every posture of the arm with every place of the sphere, of which four pairs were trained. `labels`,
+    /// where there are any, has the right one, none, and those of another phase. Then come `lesions`.
     fn interventions(&self) -> Interventions {
         let config = &self.scene().config;
         let groups = self.description().sensors;
@@ -61,14 +61,14 @@ impl ReachTask {
         let number = |name: &str| name.rsplit(' ').next().map(str::to_owned);
         let starts = starts.with_axes("arm", "sphere").with_held_out(|row, column| number(row) != number(column));
         let hidden = (0..config.layout().hidden()).map(|neuron| (format!("hidden neuron {}", neuron + 1), neuron));
-        let mut all = Interventions::default().with_protocol(starts, Vec::new());
+        let mut interventions = Interventions::default().with_protocol(starts, Vec::new());
         if let Some((_, labels)) = input_ranges(&groups).find(|(name, _)| name == "label") {
             let cases = ["as trained", "removed", "of the next phase"];
             let protocol = Protocol::from_list("labels", "the label of the phase is removed, or wrong", cases);
             let protocol = protocol.with_held_out(|row, _| row != cases[0]);
-            all = all.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
+            interventions = interventions.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
         }
-        all.with_lesions(input_ranges(&groups), hidden)
+        interventions.with_lesions(input_ranges(&groups), hidden)
     }
 
     fn scene(&self) -> &Scene {
@@ -127,7 +127,7 @@ impl Rollout for ReachTask {
         let trial = judge.trial();
         let Rewards { reach, grasp, lift, bonus } = trial.rewards;
         let second = judge.scene().config.steps_per_second();
-        // What the printed reward alone would call a success: any height will do.
+        // Success by the printed reward alone: any height will do.
         let printed = trial.lifted >= second && !trial.fallen;
         Outcome {
             terms: vec![reach, grasp, lift, bonus],
@@ -147,7 +147,7 @@ impl Rollout for ReachTask {
     }
 }
 
-/// What an individual did, for strategies that want more than its fitness.
+/// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
     objectives: &[("held [s]", 1.0), ("highest [cm]", 1.0)],
     descriptors: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
@@ -173,7 +173,7 @@ impl ReachTask {
                 6,
                 &format!("thumb, index, middle, ring, little finger, palm: touching pairs / {saturation}, at most 1"),
             ),
-            ChannelGroup::new("sphere position", 3, "sphere's centre relative to the palm's, x, y, z [cm]"),
+            ChannelGroup::new("sphere position", 3, "sphere's center relative to the palm's, x, y, z [cm]"),
         ];
         if config.labels {
             let meaning = format!("{} for the present phase (reach, grasp, lift), else 0", config.label_amplitude);

@@ -1,4 +1,4 @@
-//! What experiments with many wheeled robots have in common, as settings.
+//! Settings of all experiments with many wheeled robots.
 
 use farsa_body::robots::MobileRobot;
 use farsa_lab::{Error, Setting, Settings};
@@ -7,18 +7,18 @@ use farsa_physics::arena::Arena;
 
 /// The robots of a team, their world, their eyes and the network that drives each of them.
 ///
-/// Lengths are metres.
+/// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TeamConfig {
-    /// The robot; all are alike.
+    /// The robot. All are alike.
     pub robot: MobileRobot,
-    /// How many there are.
+    /// The number of robots.
     pub robots: usize,
     /// The side of the square arena between its walls.
     pub size: f64,
     /// Control step \[s\].
     pub time_step: f64,
-    /// Trials of an evaluation, each with places of its own.
+    /// Trials of an evaluation, each with its own places.
     pub trials: usize,
     /// Steps of a trial.
     pub steps: u32,
@@ -26,7 +26,7 @@ pub struct TeamConfig {
     pub speed: f64,
     /// Sectors of the camera, from left to right.
     pub sectors: usize,
-    /// How much the camera sees of what is around \[rad\].
+    /// Field of view of the camera \[rad\].
     pub field_of_view: f64,
     /// Rays in a sector.
     pub rays: usize,
@@ -63,13 +63,13 @@ impl TeamConfig {
         }
     }
 
-    /// Whether the team is of the robot that the source's numbers are for.
+    /// True if the team is of the robot that the source's numbers are for.
     pub(crate) fn uses_marxbots(&self) -> bool {
         self.robot.name == "MarXbot"
     }
 
-    /// Every value as a setting, with these as defaults; `robots`: whether their number is one of them; `size_given`: whether
-    /// the source states the arena's size for this robot.
+    /// Returns every value as a setting, with these as defaults. `robots` adds the number of robots, and `size_given` marks the
+    /// arena's size as the source's.
     pub(crate) fn table(&self, robots: bool, size_given: bool) -> Vec<Setting> {
         let size = Setting::number("world.size", self.size, 0.1..=1000.0).unit("m");
         let size = if size_given { size.given() } else { size };
@@ -77,22 +77,22 @@ impl TeamConfig {
             size.doc("Side of the square arena between its walls."),
             Setting::number("world.time_step", self.time_step, 0.001..=0.2)
                 .unit("s")
-                .doc("Control step; 0.1 s is that of the source's other experiments on these robots."),
+                .doc("Control step. 0.1 s is that of the source's other experiments on these robots."),
             Setting::whole("trial.count", whole(self.trials), 1..=100_000)
-                .doc("Trials of an evaluation; a few, because a trial is the mean of many robots' luck already."),
+                .doc("Trials of an evaluation. A few suffice, because a trial is already a mean over many robots."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).given().doc("Steps of a trial."),
         ];
         if robots {
             table.push(Setting::whole("team.robots", whole(self.robots), 1..=10_000).doc(
-                "Robots of the team, one genome in all of them; 10 fit into the nests and leave room to miss each other.",
+                "Robots of the team, one genome in all of them. 10 fit into the nests and leave room to miss each other.",
             ));
         }
         table.extend([
             Setting::number("camera.field_of_view", self.field_of_view.to_degrees(), 1.0..=360.0)
                 .unit("deg")
-                .doc("How much the camera sees, around straight ahead: sectors of 36 degrees as the real e-puck's camera, or all around."),
+                .doc("Field of view of the camera, around straight ahead: sectors of 36 degrees as the real e-puck's camera, or all around."),
             Setting::whole("camera.rays", whole(self.rays), 1..=1000)
-                .doc("Rays by which each sector is searched; a sector reads the share of them that see its colour."),
+                .doc("Rays in each sector. A sector reads the share of them that see its color."),
             Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0)
                 .doc("Weights and biases are decoded to plus and minus this, for a logistic function of slope 1."),
         ]);
@@ -122,7 +122,7 @@ impl TeamConfig {
         MobileRobot { max_wheel_speed: self.speed / self.robot.wheel_radius, ..self.robot.clone() }
     }
 
-    /// The walled arena with the robots parked beside it: every trial places them anew.
+    /// The walled arena with the robots parked outside. Every trial places them.
     pub fn arena(&self) -> Arena {
         let mut arena = Arena { time_step: self.time_step, ..Arena::walled(self.size, self.size) };
         let apart = 3.0 * self.robot.radius;
@@ -132,12 +132,12 @@ impl TeamConfig {
         arena
     }
 
-    /// Channels of infrared and camera, for so many colours.
+    /// Channels of infrared and camera, for the given number of colors.
     pub(crate) fn seen(&self, colors: usize) -> usize {
         EYES + self.sectors * colors
     }
 
-    /// The network between so many inputs and outputs.
+    /// The network between the given numbers of inputs and outputs.
     pub(crate) fn layout(&self, inputs: usize, outputs: usize) -> LeakyLayout {
         LeakyLayout::new(inputs, self.hidden, outputs).with_slope(1.0)
     }
@@ -151,17 +151,17 @@ pub(crate) fn whole(count: usize) -> i64 {
 /// Infrared channels of every robot.
 pub(crate) const EYES: usize = 8;
 
-/// The settings of evolution with defaults of our own: the source's evolve for days.
+/// The settings of evolution with other defaults: the source's evolve for days.
 pub(crate) fn evolution([generations, population, parents]: [i64; 3], mutation_rate: f64) -> Vec<Setting> {
     vec![
         Setting::whole("evolution.generations", generations, 1..=i64::from(u32::MAX) - 1)
-            .doc("Generations that are evaluated; enough for what the results show, in minutes."),
+            .doc("Generations that are evaluated. Enough for what the results show, in minutes."),
         Setting::whole("evolution.population", population, 1..=1_000_000)
-            .doc("Individuals of a generation, of each population where there are two; a multiple of the parents."),
+            .doc("Individuals of a generation, of each population where there are two. A multiple of the parents."),
         Setting::whole("evolution.parents", parents, 1..=1_000_000)
-            .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+            .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
         Setting::number("evolution.mutation_rate", mutation_rate, 0.0..=1.0).doc(
-            "Probability that mutation hits a bit, which is then drawn anew; that of the runs in docs/results/swarm.md, not compared over many runs.",
+            "Probability that mutation hits a bit, which is then drawn again. It is that of the runs in docs/results/swarm.md, and was not tuned.",
         ),
     ]
 }

@@ -1,4 +1,4 @@
-//! An episode of a team: robots with a controller each, and a scenario that says what they are to do.
+//! An episode of a team: robots with a controller each, and a scenario.
 
 use farsa_body::Recorder;
 use farsa_body::sensors::ColorBand;
@@ -19,21 +19,21 @@ pub struct Moment<'a> {
     pub steps: u32,
 }
 
-/// What a team is to do: what differs between experiments with teams.
+/// A task of a team: the differences between experiments with teams.
 pub trait Scenario: Send {
     /// The robots.
     fn robots(&self) -> &TeamConfig;
 
-    /// The arena with the robots, in their order, and whatever else a trial places anew.
+    /// The arena with the robots, in their order, and everything else that a trial places.
     fn arena(&self) -> Arena;
 
     /// Number of a controller's inputs, those of the eyes first, and outputs.
     fn shape(&self) -> [usize; 2];
 
-    /// What the camera of a robot sees; as many colours for every robot.
+    /// The colors in the camera of a robot, as many for every robot.
     fn colors(&self, robot: usize) -> &'static [ColorBand];
 
-    /// What the populations are called: with several, robot p has the genome of population p, else all robots have one.
+    /// The names of the populations. With several, robot p has the genome of population p, else all robots have one.
     fn population_names(&self) -> &[&'static str] {
         &["0"]
     }
@@ -59,13 +59,13 @@ pub trait Scenario: Send {
         "world.size"
     }
 
-    /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'; false if it is dead.
+    /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'. Returns false if it is dead.
     fn sense<W: PlanarWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let _ = (world, robot, at, rest);
         true
     }
 
-    /// Scores the step that has passed; true if the trial is over before its time.
+    /// Scores the step that has passed. Returns true if the trial is over before its time.
     fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
 
     /// The test protocols, with what they do to the controllers.
@@ -73,18 +73,18 @@ pub trait Scenario: Send {
         Interventions::default()
     }
 
-    /// Takes part in a case of the protocol of this name, or in none; what an earlier one changed is forgotten.
+    /// Begins a case of the protocol of this name, or none, and discards the changes of an earlier one.
     fn begin_case(&mut self, case: Option<(&str, usize)>) {
         let _ = case;
     }
 
-    /// What population `own` has earned so far.
-    fn earned(&self, own: usize, moment: Moment<'_>) -> f64;
+    /// The reward of population `own` so far.
+    fn reward(&self, own: usize, moment: Moment<'_>) -> f64;
 
     /// Names of the terms of the fitness.
     fn terms(&self) -> Vec<String>;
 
-    /// What there is to say of an individual beside its fitness.
+    /// Objectives and measures of an individual, in addition to its fitness.
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         None
     }
@@ -101,7 +101,7 @@ pub trait Scenario: Send {
     /// The channels of [`scalars`](Self::scalars).
     fn channels(&self) -> Vec<Channel>;
 
-    /// What is recorded at every step beside robots and poses.
+    /// The recorded scalars of a step.
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64>;
 
     /// A schema of the arena and the channels with what else is to be seen.
@@ -131,7 +131,7 @@ impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
     /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
-    /// Those of [`Team::new`].
+    /// The errors of [`Team::new`].
     pub fn from_scenario(scenario: M, controllers: Vec<C>) -> Result<Self, Error> {
         let config = scenario.robots();
         Ok(Self {
@@ -157,9 +157,9 @@ impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
         Moment { places: &self.places, steps: self.steps }
     }
 
-    /// What the first population has earned so far; NaN for a trial that failed.
+    /// The reward of the first population so far, or NaN for a failed trial.
     pub fn fitness(&self) -> f64 {
-        if self.failed { f64::NAN } else { self.scenario.earned(0, self.moment()) }
+        if self.failed { f64::NAN } else { self.scenario.reward(0, self.moment()) }
     }
 
     /// The outcome of the trial for population `own`.
@@ -170,7 +170,7 @@ impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
         self.scenario.outcome(own, self.moment())
     }
 
-    /// What the robots are to do, with its score.
+    /// The scenario, with its score.
     pub fn scenario(&self) -> &M {
         &self.scenario
     }
@@ -195,7 +195,7 @@ impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
         self.steps
     }
 
-    /// Whether something had no free place, or a value was not finite.
+    /// True if something had no free place, or a value was not finite.
     pub fn failed(&self) -> bool {
         self.failed
     }
@@ -221,7 +221,7 @@ impl<M: Scenario, C: Controller, W: PlanarWorld> Episode<W> for TeamEpisode<M, C
         });
     }
 
-    /// Judges the step that has passed; `Some` ends the trial with what the first population earned.
+    /// Judges the step that has passed. `Some` ends the trial with the reward of the first population.
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         let Self { scenario, team, places, .. } = self;
         self.steps += 1;

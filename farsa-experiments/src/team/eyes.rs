@@ -1,4 +1,4 @@
-//! What a robot of a team senses of its surroundings.
+//! The eyes of a robot of a team.
 
 use farsa_body::ports::{BodyId, Sensor as _};
 use farsa_body::robots::{MobileParts, MobileRobot};
@@ -9,14 +9,14 @@ use farsa_body::{ChannelError, Recorder};
 use crate::team::config::{EYES, TeamConfig};
 use farsa_lab::PlanarWorld;
 
-/// What shines red, whatever else shines with it.
+/// Everything that shines red, with or without other colors.
 pub(crate) const RED: ColorBand = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };
-/// What shines blue, whatever else shines with it.
+/// Everything that shines blue, with or without other colors.
 pub(crate) const BLUE: ColorBand = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0, 0.3, 1.0] };
 
 /// Eight infrared channels and a camera of a robot, all read from the world's ports.
 ///
-/// A ring of more than eight sensors is read in eight groups of neighbours, each of which gives its largest value.
+/// A ring of more than eight sensors is read in eight groups of neighbors, each of which gives its largest value.
 #[derive(Clone, Debug)]
 pub struct RobotEyes {
     body: BodyId,
@@ -26,7 +26,7 @@ pub struct RobotEyes {
 }
 
 impl RobotEyes {
-    /// The eyes of a robot of the team, with a camera for these colours.
+    /// The eyes of a robot of the team, with a camera for these colors.
     ///
     /// # Errors
     /// [`ChannelError`] for a robot without eight sensors or a multiple of eight, and for a camera that cannot be.
@@ -42,15 +42,15 @@ impl RobotEyes {
         })
     }
 
-    /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
+    /// Reads the infrared channels and then the camera's \[8 + sectors x colors\].
     pub fn read<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
         self.infrared.read(world, near);
         self.camera.read(world, seen);
     }
 
-    /// Records a ray for each infrared sensor, of the robot where it read `x` last and in the same world;
-    /// `met`: only of those that read something.
+    /// Records a ray for each infrared sensor of the robot that read `x` last in the same world. With `met` it records only those
+    /// that read something.
     ///
     /// One that did not read because its robot is dead records none.
     pub(crate) fn record<W: PlanarWorld>(&self, world: &W, x: &[f32], met: bool, recorder: &mut dyn Recorder) {

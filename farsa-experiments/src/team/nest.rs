@@ -6,7 +6,7 @@ use farsa_lab::PlanarWorld;
 
 use crate::team::eyes::{BLUE, RED};
 
-/// What the cameras see.
+/// The colors in the cameras.
 pub(crate) const COLORS: [ColorBand; 2] = [RED, BLUE];
 
 /// Colour of a nest: dark on the white ground.
@@ -14,13 +14,12 @@ pub(crate) const NEST: [f64; 3] = [0.45, 0.45, 0.45];
 /// The ground is darker than this in a nest.
 const DARK: f32 = 0.7;
 
-/// Whether the ground there is a nest's, as a sensor reads it \[0 or 1\].
+/// The reading of the ground: 1 on a nest, else 0.
 pub(crate) fn on_nest<W: PlanarWorld>(world: &W, [x, y]: [f32; 2]) -> f32 {
     if world.ground([x, y])[0] < DARK { 1.0 } else { 0.0 }
 }
 
-/// Refuses a nest of no size, and one that is to be farther from all walls than the middle of the arena is; lengths in
-/// metres.
+/// Refuses a nest of no size, and one that cannot be as far from all walls. Lengths are in meters.
 pub(crate) fn check(radius: f64, to_wall: f64, size: f64) -> Result<(), Error> {
     if radius <= 0.0 {
         return Err(Error::setting("nest.radius", "must be more than 0"));

@@ -18,8 +18,8 @@ use farsa_lab::PlanarWorld;
 
 /// The robots of a team in their world, with a controller each.
 ///
-/// The controllers read infrared and camera ([`RobotEyes`]), then what the experiment adds; they write speed and turn
-/// ([`SpeedAndTurn::forwards`]), then the brightness of the red and the blue LED where the robot has any.
+/// The controllers read infrared and camera ([`RobotEyes`]), then the inputs of the experiment. They write speed and turn
+/// ([`SpeedAndTurn::forwards`]), then the brightness of the red and the blue LED of robots with LEDs.
 #[derive(Clone, Debug)]
 pub struct Team<C> {
     members: Vec<Member>,
@@ -49,8 +49,8 @@ pub(crate) const OUTPUTS: usize = 4;
 const APART: f64 = 0.1;
 
 impl<C: Controller> Team<C> {
-    /// The team of a configuration, with a camera for the colours of each robot by its number; one controller for each
-    /// robot, of `inputs` inputs and four outputs, or two where no robot has LEDs to drive.
+    /// Builds the team of a configuration, with a camera for the colors of each robot by its number. There is one controller for
+    /// each robot, of `inputs` inputs and four outputs, or two where no robot has LEDs to drive.
     ///
     /// # Errors
     /// [`Error::Other`] for another number of controllers, controllers of another shape, and sensors that cannot be.
@@ -93,7 +93,7 @@ impl<C: Controller> Team<C> {
         })
     }
 
-    /// Puts every robot somewhere at a heading of its own: within `within` \[m\] of a place, or anywhere.
+    /// Puts every robot somewhere with a drawn heading: within `within` \[m\] of a place, or anywhere.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
@@ -106,7 +106,7 @@ impl<C: Controller> Team<C> {
         self.scatter_some(world, near, stream, self.members.len())
     }
 
-    /// The same for the first robots, so many; the others are put outside the arena, farther than anybody sees.
+    /// Puts the first `count` robots somewhere, and the others outside the arena, out of sight.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
@@ -140,22 +140,21 @@ impl<C: Controller> Team<C> {
         Ok(())
     }
 
-    /// Forgets what the controllers remember.
+    /// Clears the memory of the controllers.
     pub fn reset(&mut self) {
         self.controllers.iter_mut().for_each(Controller::reset);
     }
 
-    /// Every robot senses, computes and acts; `more` fills the inputs that are not its eyes', and says whether it is
-    /// alive.
+    /// Every robot senses, computes and acts. `more` fills the inputs that are not its eyes', and returns false for a dead robot.
     ///
-    /// Dead robots stand still with their LEDs off, and neither sense nor compute.
+    /// Dead robots rest with their LEDs off, and neither sense nor compute.
     pub fn act<W: PlanarWorld>(
         &mut self,
         world: &mut W,
         mut more: impl FnMut(&W, usize, &MobileParts, &mut [f32]) -> bool,
     ) {
         let Self { members, controllers, seen, x, y, .. } = self;
-        let [inputs, outputs] = [x.len(), y.len()].map(|all| all / members.len().max(1));
+        let [inputs, outputs] = [x.len(), y.len()].map(|values| values / members.len().max(1));
         // All sense before any acts.
         for (number, (member, x)) in members.iter_mut().zip(x.chunks_exact_mut(inputs)).enumerate() {
             let (eyes, rest) = x.split_at_mut(*seen);
@@ -198,13 +197,13 @@ impl<C: Controller> Team<C> {
         self.members.len()
     }
 
-    /// What a robot sensed last \[inputs\]; NaN if it is dead.
+    /// The last inputs of a robot \[inputs\], NaN if it is dead.
     pub fn sensed(&self, robot: usize) -> &[f32] {
         let inputs = self.x.len() / self.members.len().max(1);
         &self.x[robot * inputs..(robot + 1) * inputs]
     }
 
-    /// What a robot did last \[4, or 2\].
+    /// The last outputs of a robot \[4, or 2\].
     pub fn done(&self, robot: usize) -> &[f32] {
         let outputs = self.y.len() / self.members.len().max(1);
         &self.y[robot * outputs..(robot + 1) * outputs]

@@ -1,4 +1,4 @@
-//! How a robot of a team turns away from what it sees, for controllers without evolution.
+//! Steering away from seen objects, for controllers without evolution.
 
 use crate::team::config::EYES;
 use crate::team::eyes::eye_angles;
@@ -11,7 +11,7 @@ pub(crate) fn eyes(robot: &farsa_body::robots::MobileRobot) -> [(f32, bool); EYE
     })
 }
 
-/// The turn away from what is seen ahead \[0 right..1 left\]; `None` if nothing is.
+/// The turn away from objects ahead \[0 right..1 left\], or `None` without any.
 pub(crate) fn away(eyes: &[(f32, bool); EYES], x: &[f32]) -> Option<f32> {
     let ahead = || eyes.iter().zip(x).filter(|((_, ahead), x)| *ahead && **x > 0.0);
     let left: f32 = ahead().map(|((left, _), x)| left * x).sum();

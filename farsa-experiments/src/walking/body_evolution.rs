@@ -24,17 +24,17 @@ use farsa_view::Schema;
 
 /// Which bodies walk far? `[McGeer1990]`
 ///
-/// Genes make the legs, the masses, the soles, and the push that a walker begins with; the distance that it
-/// walks is its fitness. Under `passive` it walks down a slope without motor and controller; under `powered` on flat ground,
-/// and further genes make a small network that drives a motor at the hip. Distance is counted where feet come to
-/// stand; a body that rolls, slides, hops or finds energy earns nothing by it ([`Rules`]).
+/// Genes make the legs, the masses, the soles, and the first push of a walker. The fitness is the distance that it walks. Under
+/// `passive` it walks down a slope without motor and controller. Under `powered` it walks on flat ground, and further genes make a
+/// small network that drives a motor at the hip. Distance is counted at footfalls. A body that rolls, slides, hops or finds energy
+/// earns nothing by it ([`Rules`]).
 ///
-/// Deviations from the source: its walkers are built, not evolved; hip spacing is a gene that cannot matter, because the
-/// pairs of legs keep the walker in a plane: it shows what genes do that nothing selects.
+/// Deviations from the source: its walkers are built, not evolved. Hip spacing is a gene without effect, because the pairs of legs
+/// keep the walker in a plane. It shows the drift of genes without selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct BodyEvolution;
 
-/// What one gene of a body means, and between which values.
+/// The meaning of one gene of a body, and its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
     key: &'static str,
@@ -61,7 +61,7 @@ const BODY: [Part; 10] = [
         [0.1, 0.5],
         "Distance of the outer feet: a gene, without effect in the plane of motion.",
     ),
-    part("start.angle", "rad", [0.1, 0.4], "How far the legs stand ahead and behind at the launch: a gene."),
+    part("start.angle", "rad", [0.1, 0.4], "Angle of the legs ahead and behind at the launch: a gene."),
     part("start.rate", "sqrt(g/l)", [-0.6, -0.1], "Rate of the stance leg at the launch: a gene."),
     part("start.swing_rate", "sqrt(g/l)", [-0.5, 0.5], "Rate of the swing leg at the launch: a gene."),
 ];
@@ -69,7 +69,7 @@ const BODY: [Part; 10] = [
 /// Parameters of a body.
 const BODY_PARAMETERS: usize = BODY.len();
 
-/// The values of `body-evolution` beside the genes' ranges.
+/// The values of `body-evolution`, without the genes' ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Trials.
@@ -78,7 +78,7 @@ pub struct Config {
     pub substeps: u32,
     /// The surroundings.
     pub walk: Walk,
-    /// What is the same in all bodies.
+    /// Values of all bodies.
     pub walker: Walker,
     /// Lowest and highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
@@ -175,11 +175,11 @@ impl Experiment for BodyEvolution {
         let Config { trials, substeps, walk, walker, hidden, weights, .. } = Config::new(powered);
         let mut table = vec![
             Setting::whole("evolution.generations", if powered { 60 } else { 30 }, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole("evolution.population", 60, 1..=1_000_000)
-                .doc("Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated."),
+                .doc("Individuals of a generation, a multiple of the parents. With no more than them nothing is ever mutated."),
             Setting::whole("evolution.parents", 12, 1..=1_000_000)
-                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+                .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
             Setting::number("evolution.mutation_rate", 0.03, 0.0..=1.0).doc("Probability that mutation hits a bit."),
             engine(),
             Setting::number("world.slope", walk.slope, -0.2..=0.2).unit("rad").doc("Slope, falling ahead."),
@@ -188,14 +188,14 @@ impl Experiment for BodyEvolution {
                 .unit("s")
                 .doc("Tick: so often the network thinks, feet are looked at and ground is given and taken."),
             Setting::whole("world.substeps", i64::from(substeps), 1..=1000).doc("Dynamics steps of a tick."),
-            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with a launch of its own."),
+            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with its own launch."),
             Setting::whole("trial.steps", i64::from(walk.steps), 1..=10_000_000).doc("Most ticks of a trial."),
             Setting::number("start.noise", walk.noise, 0.0..=1.0)
                 .doc("By how much the launch's rates differ from the genes' at most, in parts of them."),
             Setting::number("contact.friction", walker.friction, 0.0..=10.0).doc("Coefficient of friction."),
             Setting::number("contact.stiffness", walker.stiffness, 1.0..=1e9).unit("N/m").doc("Stiffness of a footfall."),
             Setting::number("contact.damping_ratio", walker.damping_ratio, 0.0..=1000.0)
-                .doc("Damping ratio of the walker's mass on that stiffness; below about 3 walkers bounce off their footfalls."),
+                .doc("Damping ratio of the walker's mass on that stiffness. Below about 3 walkers bounce off their footfalls."),
         ];
         for part in BODY {
             let lowest = if part.range[0] > 0.0 { 1e-3 } else { -10.0 };
@@ -257,12 +257,12 @@ impl Experiment for BodyEvolution {
     }
 }
 
-/// Notes that a behaviour is told by.
+/// Notes that behaviors are described by.
 const WORK: &str = "work of the motor [J]";
 const LEGS: &str = "outer legs [m]";
 const SOLES: &str = "soles [m]";
 
-/// Evaluates walkers, each in a world of its own body.
+/// Evaluates walkers, each in the world of its body.
 pub struct Walkers {
     config: Config,
 }
@@ -359,7 +359,7 @@ impl Task for Walkers {
     }
 }
 
-/// How much work a walk takes, and what body walks: its legs and its soles.
+/// The work of a walk, and its body: legs and soles.
 impl Behaviour for Walkers {
     fn objectives(&self) -> Vec<String> {
         vec![format!("minus {WORK}")]
@@ -380,7 +380,7 @@ impl Exports for Walkers {
         Some(mjcf_options(&self.config.walk))
     }
 
-    /// Of parameters as others may have it: ball soles, as in the [`schema`](TaskInfo::schema) of the middle of all bodies.
+    /// The robot of parameters for other programs: ball soles, as in the [`schema`](TaskInfo::schema) of the middle of all bodies.
     fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
         parameters.map(|parameters| exported(&self.body(parameters)))
     }
@@ -427,7 +427,7 @@ impl Evaluator for Walkers {
     }
 }
 
-/// A walk in a world; there is none for a body that cannot be.
+/// A walk in a world, or `None` for a body that cannot be built.
 fn walk_in<W>(
     world: Option<W>,
     mut episode: WalkerEpisode,

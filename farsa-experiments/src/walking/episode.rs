@@ -1,5 +1,4 @@
-//! An episode of a walker: a launch, then steps until it falls or its time is over; with or without a network at the
-//! hip.
+//! An episode of a walker, with or without a network at the hip: a launch, then steps until it falls or its time is over.
 
 use farsa_body::motors::TorqueMotor;
 use farsa_body::ports::{
@@ -17,17 +16,17 @@ use farsa_num::{Domain, Scalar, Stream};
 use crate::walking::gait::{End, Gait, Rules};
 use crate::walking::walker::{Posture, Walker, WalkerParts};
 
-/// What the network of a walker senses: two angles, two speeds, two touches.
+/// Inputs of the network of a walker: two angles, two speeds, two touches.
 pub const SENSES: usize = 6;
-/// How many of the last steps the pace is the mean of.
+/// The number of last steps in the mean of the pace.
 const LAST: usize = 10;
 /// Angle that an angle sensor reads 1 at \[rad\], and speed that a speed sensor reads 1 at \[rad/s\].
 pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 
-/// How a walk begins: angles ahead of the ground's normal \[rad\] and rates \[rad/s\] of the stance and the swing leg.
+/// The start of a walk: angles ahead of the ground's normal \[rad\] and rates \[rad/s\] of the stance and the swing leg.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Launch {
-    /// Of the stance leg and the swing leg \[rad\].
+    /// Angles of the stance leg and the swing leg \[rad\].
     pub angles: [f64; 2],
     /// Their rates \[rad/s\].
     pub rates: [f64; 2],
@@ -46,18 +45,18 @@ pub struct Walk {
     pub steps: u32,
     /// By how much the launch's rates differ from trial to trial at most, in parts of themselves.
     pub noise: f64,
-    /// What a walk may not do.
+    /// Limits of a walk.
     pub rules: Rules,
 }
 
 /// The mean of the last steps.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pace {
-    /// How far the leading leg leant back at footfalls \[rad\].
+    /// Backward lean of the leading leg at footfalls \[rad\].
     pub angle: f64,
-    /// How fast it turned after them \[rad/s\].
+    /// Its rate after them \[rad/s\].
     pub rate: f64,
-    /// How fast the leg turned that began to swing \[rad/s\].
+    /// Rate of the leg that began to swing \[rad/s\].
     pub swing_rate: f64,
     /// Time of a step \[s\].
     pub period: f64,
@@ -91,7 +90,7 @@ impl Brain {
     /// A network of [`SENSES`] sensors and one output, 1/2 for no torque, with these parameters.
     ///
     /// # Errors
-    /// [`Error::Other`] for a walker without motor, a layout of another shape, parameters that are none.
+    /// [`Error::Other`] for a walker without motor, a layout of another shape, and invalid parameters.
     pub fn new(walker: &Walker, parts: &WalkerParts, layout: LeakyLayout, parameters: Vec<f32>) -> Result<Self, Error> {
         let wrong = |error: ChannelError| Error::Other(format!("walker: {error}"));
         let Some(motor) = parts.motor else { return Err(Error::Other("walker: no motor at the hip".into())) };
@@ -138,12 +137,12 @@ impl Brain {
         self.angle = f64::from(world.position(self.hinge));
     }
 
-    /// What the motor has done since the last tick \[J\].
+    /// The work of the motor since the last tick \[J\].
     fn work<W: Joints<Joint = JointId> + ?Sized>(&self, world: &W) -> f64 {
         self.torque * (f64::from(world.position(self.hinge)) - self.angle)
     }
 
-    /// What was sensed last \[6\].
+    /// The last inputs \[6\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
@@ -153,7 +152,7 @@ impl Brain {
         self.network.controller().hidden()
     }
 
-    /// What was answered last \[1\].
+    /// The last output \[1\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
@@ -163,12 +162,12 @@ impl Brain {
         self.network.controller().parameters()
     }
 
-    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
 
-    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    /// The observations since [`normalise`](Self::normalise), if there are any statistics.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
@@ -186,7 +185,7 @@ pub struct WalkerEpisode {
     launch: Launch,
     gait: Gait,
     brain: Option<Brain>,
-    /// The last step whose pace is known, and how many are.
+    /// The number of steps whose pace is counted.
     noted: u32,
     known: usize,
     paces: [Pace; LAST],
@@ -200,8 +199,7 @@ impl WalkerEpisode {
         Self { walk, launch, gait, brain, noted: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
-    /// From the first stance to the last footfall \[m\]: only feet that came to stand count. NaN for a broken walk, 0 for one with energy
-    /// from nowhere.
+    /// From the first stance to the last footfall \[m\]. NaN for a broken walk, 0 for one with energy from nowhere.
     pub fn distance(&self) -> f64 {
         match self.gait.end() {
             Some(End::Broken) => f64::NAN,
@@ -210,7 +208,7 @@ impl WalkerEpisode {
         }
     }
 
-    /// The mean of the last ten steps; `None` before so many are known.
+    /// The mean of the last ten steps, or `None` before there are ten.
     pub fn pace(&self) -> Option<Pace> {
         let mean = |of: fn(&Pace) -> f64| self.paces.iter().map(of).sum::<f64>() / LAST as f64;
         (self.known >= LAST).then(|| Pace {
@@ -253,8 +251,8 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
         + ?Sized,
 {
-    /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
-    /// first, from the stream of [`Domain::Start`] of the id's trial, individual and generation.
+    /// Launches the walker. Its rates are those of the launch times 1 + noise * u, with a u from -1 to 1 for each leg, the stance
+    /// leg's first. They are drawn from the stream of [`Domain::Start`] of the id's trial, individual and generation.
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
@@ -273,7 +271,7 @@ where
         }
     }
 
-    /// Judges the tick that has passed; `Some` ends the walk with the distance walked \[m\], NaN for a broken one.
+    /// Judges the tick that has passed. `Some` ends the walk with the distance walked \[m\], NaN for a broken one.
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
         let end = self.gait.judge(world, work);

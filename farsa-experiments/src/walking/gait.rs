@@ -1,10 +1,10 @@
-//! What a walker's feet do: which of them stands, when they change places, and how the walk ends.
+//! The feet of a walker: stance and swing, the change between them, and the end of the walk.
 
 use farsa_body::ports::{Arrange, Contacts, Handles, JointId, Joints};
 
 use crate::walking::walker::{ASIDE, Posture, Walker, WalkerParts};
 
-/// How a walk ended.
+/// The end of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The hip came too low, or a leg too far over.
@@ -32,20 +32,20 @@ impl End {
     }
 }
 
-/// What a walk may not do; lengths in the longer legs, times in seconds.
+/// Limits of a walk. Lengths are in units of the longer legs, times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// A foot counts as ahead, and finds ground, from this distance to the standing one on.
     pub shortest_step: f64,
     /// The hip's lowest height, in the shorter legs.
     pub lowest_hip: f64,
-    /// How far the standing foot may slide within a step.
+    /// Longest slide of the stance foot within a step.
     pub longest_slide: f64,
-    /// How long both feet may be off the ground \[s\].
+    /// Longest time of both feet off the ground \[s\].
     pub longest_flight: f64,
-    /// How much energy may appear from nowhere, in weight times leg.
+    /// Largest gain of energy from nowhere, in weight times leg.
     pub largest_gain: f64,
-    /// How long a footfall shakes the walker before its rate can be measured \[s\].
+    /// Time after a footfall before the rate of the walker can be measured \[s\].
     pub settling: f64,
 }
 
@@ -62,7 +62,7 @@ impl Default for Rules {
     }
 }
 
-/// One step of a walk: the other foot came to stand.
+/// One step of a walk: the other foot begins its stance.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Footfall {
     /// When the foot met the ground \[s\], between two ticks.
@@ -71,30 +71,30 @@ pub struct Footfall {
     pub foot: usize,
     /// Where the sole met the ground \[m\].
     pub place: f64,
-    /// How far its leg leant back from the ground's normal when it met the ground, `theta` of the walking model \[rad\].
+    /// Backward lean of its leg from the ground's normal at the footfall, `theta` of the walking model \[rad\].
     pub angle: f64,
-    /// How fast it and the leg that then swings turned after the blow, forward of the ground's normal: `theta'` and
-    /// `theta' - phi'` of the walking model at the time of the footfall, by straight lines through the rates one and two
-    /// times [`Rules::settling`] later \[rad/s\]; none before.
+    /// Rates after the blow of this leg and of the leg that then swings, forward of the ground's normal: `theta'` and `theta' -
+    /// phi'` of the walking model at the footfall. Straight lines through the rates one and two times [`Rules::settling`] later
+    /// give them \[rad/s\]. `None` before.
     pub rates: Option<[f64; 2]>,
 }
 
-/// Which foot stands, and what the other is allowed.
+/// The stance foot, and the phase of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// It swings and there is no ground under it.
     Passes,
     /// It swings above its ground.
     Falls,
-    /// It stands ahead, while the hind foot is still on the ground.
+    /// It is ahead on the ground, while the hind foot is still on the ground.
     Both,
 }
 
 /// The record of a walk.
 ///
-/// A leg that swings has no ground from the moment its foot leaves the ground until that foot is ahead of the standing
-/// one and above the ground again: stiff legs would scuff as they pass. A step counts only when the foot ahead carries
-/// and the hind foot has left the ground, so a body that rolls, slides, hops or stands makes none.
+/// A leg that swings has no ground from the moment its foot leaves the ground until that foot is ahead of the stance foot and above
+/// the ground again. Stiff legs would scuff as they pass. A step counts only when the foot ahead carries and the hind foot has left
+/// the ground. A body that rolls, slides, hops or rests makes no steps.
 #[derive(Clone, Debug)]
 pub struct Gait {
     walker: Walker,
@@ -177,8 +177,8 @@ impl Gait {
         [posture.hip[0] + x, posture.hip[1] + low]
     }
 
-    /// Judges the step that has passed, with the work that the motor did in it \[J\], and gives and takes ground; `Some` is how the
-    /// walk ended.
+    /// Judges the step that has passed, with the motor's work in it \[J\], and gives and takes ground. `Some` is the end of the
+    /// walk.
     pub fn judge<W>(&mut self, world: &mut W, work: f64) -> Option<End>
     where
         W: Joints + Contacts + Arrange + Handles<Joint = JointId> + ?Sized,
@@ -204,6 +204,7 @@ impl Gait {
         if !energy.is_finite() {
             return Some(End::Broken);
         }
+        // The scale of energies is weight times leg: m g l.
         let size = walker.mass() * self.gravity[2].abs() * longer;
         if energy - self.energy - self.work > rules.largest_gain * size {
             return Some(End::Gained);
@@ -214,6 +215,7 @@ impl Gait {
         let stance = self.stance;
         if touching[stance] && self.phase != Phase::Both {
             let [_, _, low] = walker.legs[stance].sole(now.angles[stance]);
+            // The sole's lowest point moves at v + w z, with z below the hip. A rolling foot has 0 here.
             self.slid += (now.velocity[0] + now.rates[stance] * low).abs() * self.time_step;
         }
         if self.slid > rules.longest_slide * longer {
@@ -241,6 +243,7 @@ impl Gait {
             Phase::Falls if touching[swing] => {
                 // Where between the last tick and this one the sole met the ground.
                 let [_, before] = self.sole(&self.last, swing);
+                // Linear between ticks: the height is 0 at the share before / (before - height) of the step.
                 let share = if before > 0.0 && height < 0.0 { before / (before - height) } else { 1.0 };
                 let between = |a: f64, b: f64| a + share * (b - a);
                 self.met = Footfall {
@@ -262,7 +265,7 @@ impl Gait {
         }
     }
 
-    /// Sets the rate after the last footfall once it can be known.
+    /// Sets the rate after the last footfall once it can be measured.
     fn set_rate(&mut self, now: &Posture) {
         let [_, fall] = &mut self.footfalls;
         if self.steps == 0 || fall.rates.is_some() || self.phase == Phase::Both {
@@ -287,7 +290,7 @@ impl Gait {
     {
         let (stance, swing) = (self.stance, 1 - self.stance);
         if !touching[stance] {
-            // Both may be off for a moment after a hard blow: the foot that struck is the one to stand on.
+            // Both may be off for a moment after a hard blow: the foot that struck begins the stance.
             self.footfalls = [self.footfalls[1], self.met];
             self.settled = None;
             self.steps += 1;
@@ -315,12 +318,12 @@ impl Gait {
         self.footfalls
     }
 
-    /// The foot that stands: 0 outer, 1 inner.
+    /// The stance foot: 0 outer, 1 inner.
     pub fn stance(&self) -> usize {
         self.stance
     }
 
-    /// How the walker stood and moved after the last tick.
+    /// Posture of the walker after the last tick.
     pub fn posture(&self) -> &Posture {
         &self.last
     }
@@ -330,12 +333,12 @@ impl Gait {
         self.ticks
     }
 
-    /// How it ended, if it has.
+    /// The end, if the walk is over.
     pub fn end(&self) -> Option<End> {
         self.end
     }
 
-    /// What the motor has done so far, and by how much the walker's energy has changed \[J\].
+    /// The motor's work so far, and the change of the walker's energy \[J\].
     pub fn energies(&self) -> [f64; 2] {
         [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
     }
@@ -345,7 +348,7 @@ impl Gait {
         &self.walker
     }
 
-    /// By which numbers its parts are known.
+    /// The ids of its parts.
     pub fn parts(&self) -> &WalkerParts {
         &self.parts
     }

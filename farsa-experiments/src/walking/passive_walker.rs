@@ -22,15 +22,14 @@ use farsa_lab::{
 };
 use farsa_view::Schema;
 
-/// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
+/// Can a rigid body with light feet walk like the simplest walking model? \[Garcia1998\]
 ///
-/// A biped of two stiff pairs of legs is launched down a slope as the walking model of that slope walks, a little
-/// disturbed. Nothing evolves: a run is one walker in one generation, and its one gene means nothing; it is there so that
-/// `farsa run`, `test`, `replay`, `draw` and `report` work as for the others. What is called fitness is the distance
-/// walked \[m\]. The world computes in f64.
+/// A biped of two stiff pairs of legs is launched down a slope as the walking model of that slope walks, with a small disturbance.
+/// Nothing evolves: a run is one walker in one generation. Its one gene has no effect and exists so that `farsa run`, `test`,
+/// `replay`, `draw` and `report` work as for the others. The fitness is the distance walked \[m\]. The world computes in f64.
 ///
-/// Deviations from the source: feet have mass and a radius, the ground yields, and a walk is that of a rigid body with
-/// contacts; how the result goes to the source's is in `docs/results/walking.md`.
+/// Deviations from the source: feet have mass and a radius, the ground yields, and the walker is a rigid body with contacts.
+/// `docs/results/walking.md` compares the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PassiveWalker;
 
@@ -64,7 +63,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The walker in these surroundings as a world's model, and by which numbers its parts are known.
+    /// The walker in these surroundings as a world's model, and the ids of its parts.
     ///
     /// # Errors
     /// [`Error::Other`] for a body that cannot be.
@@ -83,7 +82,7 @@ impl Config {
         Ok((model, parts))
     }
 
-    /// How rapier is stepped for this walker; its contacts are harder by far than the ground's stiffness says.
+    /// Options of rapier for this walker. Its contacts are harder by far than the ground's stiffness.
     #[cfg(feature = "rapier")]
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
         crate::walking::settings::rapier_options(&self.walk, &self.walker, self.substeps, 200)
@@ -114,7 +113,7 @@ impl Experiment for PassiveWalker {
     }
 
     fn summary(&self) -> &'static str {
-        "two legs walk down a slope by themselves, beside the simplest walking model; nothing evolves"
+        "two legs walk down a slope by themselves, compared with the simplest walking model; nothing evolves"
     }
 
     fn settings(&self, _: &str) -> Vec<Setting> {
@@ -130,14 +129,14 @@ impl Experiment for PassiveWalker {
             Setting::number("world.slope", walk.slope, low..=high)
                 .unit("rad")
                 .given()
-                .doc("Slope, falling ahead; gaits of the walking model are stable up to about 0.015."),
+                .doc("Slope, falling ahead. Gaits of the walking model are stable up to about 0.015."),
             Setting::number("world.gravity", walk.gravity, 0.1..=100.0).unit("m/s2").doc("Gravity."),
             Setting::number("world.time_step", walk.time_step, 1e-6..=0.01)
                 .unit("s")
                 .doc("Tick: so often feet are looked at and ground is given and taken."),
             Setting::whole("world.substeps", i64::from(substeps), 1..=1000)
-                .doc("Dynamics steps of a tick; a footfall needs some within its shortest time, stiffness/damping."),
-            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with a launch of its own."),
+                .doc("Dynamics steps of a tick. A footfall needs some within its shortest time, stiffness/damping."),
+            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with its own launch."),
             Setting::whole("trial.steps", i64::from(walk.steps), 1..=10_000_000).doc("Most ticks of a trial."),
             Setting::number("start.noise", walk.noise, 0.0..=1.0)
                 .doc("By how much the launch's rates differ from the walking model's at most, in parts of them."),
@@ -146,17 +145,17 @@ impl Experiment for PassiveWalker {
             Setting::number("walker.leg_mass", legs.mass, 0.0..=100.0).unit("kg").doc("Mass spread along each pair of legs."),
             Setting::number("walker.foot_mass", legs.foot_mass, 1e-6..=100.0)
                 .unit("kg")
-                .doc("Mass at the soles of each pair; the walking model is the limit of none."),
+                .doc("Mass at the soles of each pair. The walking model is the limit of none."),
             Setting::number("walker.foot_radius", legs.foot_radius, 1e-6..=10.0)
                 .unit("m")
-                .doc("Radius of the soles; the walking model is the limit of points."),
+                .doc("Radius of the soles. The walking model is the limit of points."),
             Setting::number("walker.hip_range", walker.hip_range, 0.1..=3.0)
                 .unit("rad")
-                .doc("How far the legs turn against each other, to each side: stops."),
+                .doc("Largest turn of the legs against each other, to each side."),
             Setting::number("contact.friction", walker.friction, 0.0..=10.0).doc("Coefficient of friction."),
             Setting::number("contact.stiffness", walker.stiffness, 1.0..=1e12).unit("N/m").doc("Stiffness of a footfall."),
             Setting::number("contact.damping_ratio", walker.damping_ratio, 0.0..=1000.0).doc(
-                "Damping ratio of the walker's mass on that stiffness; below about 3 the walker bounces off its footfalls.",
+                "Damping ratio of the walker's mass on that stiffness. Below about 3 the walker bounces off its footfalls.",
             ),
         ]
     }
@@ -221,7 +220,7 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
     Ok(InWorld::new(world, PassiveTrial::new(config, parts)?).with_displacements().with_pushes())
 }
 
-/// A walk on the slope, beside the gait of the simplest walking model.
+/// A walk on the slope, with the gait of the simplest walking model.
 pub struct PassiveTrial {
     config: Config,
     episode: WalkerEpisode,
@@ -315,7 +314,7 @@ impl Rollout for PassiveTrial {
 
     fn outcome(&self) -> Outcome {
         let mut outcome = outcome(&self.episode);
-        // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
+        // A walk of fewer steps has a pace of zeros, so that every trial has the same notes.
         let pace = self.episode.pace().unwrap_or_default();
         let unit = self.episode.unit_of_time();
         let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);

@@ -1,4 +1,4 @@
-//! What a recording of a walker holds, and its shapes.
+//! The recording of a walker, and its shapes.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -11,13 +11,13 @@ use crate::walking::walker::{Walker, WalkerParts};
 
 /// Half the thickness of drawn legs, axle and soles \[m\].
 const THICK: f64 = 0.012;
-/// How far a drawn sole reaches from the leg's end to each side, about its own centre \[rad\], and of how many straight pieces it is.
+/// Reach of a drawn sole from the leg's end to each side, about its center \[rad\], and its number of straight pieces.
 const SOLE: f64 = 0.5;
 const PIECES: usize = 6;
 
-/// The axle and the legs of a walker, two of each pair, without contacts and plates; `sole` makes the foot of a leg.
+/// The axle and the legs of a walker, two of each pair, without contacts and plates. `sole` makes the foot of a leg.
 ///
-/// Bodies have the numbers that they have in [`Walker::robot`]; its plates come after them.
+/// Bodies have the numbers of [`Walker::robot`]. Its plates come after them.
 fn figure(walker: &Walker, mut sole: impl FnMut(&mut Robot, BodyId, &str, [f64; 3], f64)) -> Robot {
     let (mut robot, parts) = walker.robot();
     let WalkerParts { hip, legs, plates, .. } = parts;
@@ -69,8 +69,8 @@ pub(crate) fn exported(walker: &Walker) -> Robot {
     })
 }
 
-/// The schema of a walker as it is drawn or exported; its scalars are what
-/// [`WalkerEpisode`](crate::walking::episode::WalkerEpisode) records.
+/// The schema of a walker as it is drawn or exported. Its scalars are those of
+/// [`WalkerEpisode`](crate::walking::episode::WalkerEpisode).
 pub(crate) fn schema(robot: &Robot) -> Schema {
     let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
     let places = ["hip.x [m]", "hip.z [m]"].map(in_group("place"));

@@ -8,7 +8,7 @@ use crate::walking::gait::End;
 use crate::walking::walker::Walker;
 use crate::worlds::Engine;
 
-/// The surroundings that settings ask for; the rules are those of `plain`.
+/// The surroundings of the settings. The rules are those of `plain`.
 pub(crate) fn walk(settings: &Settings, plain: Walk) -> Result<Walk, Error> {
     Ok(Walk {
         slope: settings.number("world.slope")?,
@@ -26,17 +26,17 @@ pub(crate) fn engine() -> Setting {
         .doc("Whose dynamics: ours, or rapier's, where a foot is as soft as rapier makes of a frequency and a damping ratio.")
 }
 
-/// How many times as high as the whole walker's on the ground's stiffness the frequency of a contact must be in rapier.
+/// Least ratio in rapier of the frequency of a contact and that of the whole walker on the ground's stiffness.
 ///
 /// rapier counts it for the mass that a foot alone resists a blow with, a fraction of the walker's on a leaning light leg. At 1 the
 /// walker of `passive-walker` falls after four steps, at 8 it walks with steps 2 % short.
 #[cfg(feature = "rapier")]
 const HARDER: f64 = 64.0;
 
-/// How rapier is stepped for a walk, with so many sweeps for places and for speeds.
+/// Options of rapier for a walk, with the given numbers of sweeps for places and for speeds.
 ///
-/// A sweep leaves `1 - foot / (hip * (sin(2 angle) / 2)^2)` of what the blow on a leaning leg has still to take, for masses of light feet and
-/// hip; what a step leaves, the next gives back.
+/// A sweep leaves `1 - foot / (hip * (sin(2 angle) / 2)^2)` of the remaining blow on a leaning leg, for masses of light feet and
+/// hip. The next step returns the rest.
 #[cfg(feature = "rapier")]
 pub(crate) fn rapier_options(
     walk: &Walk,
@@ -57,7 +57,7 @@ pub(crate) fn rapier_options(
     }
 }
 
-/// The walker with the contacts that settings ask for.
+/// The walker with the contacts of the settings.
 pub(crate) fn on_contacts(settings: &Settings, walker: Walker) -> Result<Walker, Error> {
     Ok(Walker {
         friction: settings.number("contact.friction")?,
@@ -67,13 +67,13 @@ pub(crate) fn on_contacts(settings: &Settings, walker: Walker) -> Result<Walker,
     })
 }
 
-/// What a MuJoCo model of a walker says beside the robot.
+/// Options of a MuJoCo model of a walker.
 pub(crate) fn mjcf_options(walk: &Walk) -> MjcfOptions {
     let gravity = Walker::gravity(walk.gravity, walk.slope);
     MjcfOptions { time_step: walk.time_step, gravity, ..MjcfOptions::default() }
 }
 
-/// The outcome of a walk that has ended; success is ten strides, twenty steps, without a fall.
+/// The outcome of a walk that has ended. Success is ten strides, twenty steps, without a fall.
 pub(crate) fn outcome(episode: &WalkerEpisode) -> Outcome {
     let gait = episode.gait();
     let end = gait.end().map_or("time", End::name);

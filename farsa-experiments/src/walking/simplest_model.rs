@@ -24,10 +24,10 @@ pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 /// phi''   = theta'' + theta'^2 sin(phi) - cos(theta - gamma) sin(phi)
 /// ```
 ///
-/// The swing foot passes through the slope beside the stance foot and strikes when `phi = 2 theta` comes from below while
-/// `theta < 0`; then the legs change places, `theta -> -theta`, `theta' -> cos(2 theta) theta'`,
-/// `phi' -> cos(2 theta) (1 - cos(2 theta)) theta'`. Deviations: none in the equations; they are integrated by the classic
-/// Runge-Kutta method of fourth order in steps of 0.005, the strike is found by bisection.
+/// The swing foot passes through the slope next to the stance foot and strikes when `phi = 2 theta` comes from below while `theta <
+/// 0`. Then the legs change places, `theta -> -theta`, `theta' -> cos(2 theta) theta'`, `phi' -> cos(2 theta) (1 - cos(2 theta))
+/// theta'`. Deviations: none in the equations. They are integrated by the classic Runge-Kutta method of fourth order in steps of
+/// 0.005, and the strike is found by bisection.
 ///
 /// ```
 /// use farsa_experiments::WalkingModel;
@@ -108,12 +108,15 @@ impl WalkingModel {
     }
 
     fn rates(self, &[theta, rate, phi, swing]: &State) -> State {
+        // theta'' = sin(theta - gamma), the stance leg as an inverted pendulum, and phi'' = theta'' + theta'^2 sin phi - cos(theta - gamma)
+        // sin phi, the swing leg as a pendulum on the moving hip [Garcia1998].
         let (lean, upright) = sin_cos(theta - self.slope);
         let (sine, _) = sin_cos(phi);
         [rate, lean, swing, lean + rate * rate * sine - upright * sine]
     }
 
     fn advanced(self, state: &State, h: f64) -> State {
+        // Runge-Kutta of fourth order: s + h/6 (a + 2 b + 2 c + d).
         let a = self.rates(state);
         let b = self.rates(&moved(state, 0.5 * h, &a));
         let c = self.rates(&moved(state, 0.5 * h, &b));
@@ -121,11 +124,12 @@ impl WalkingModel {
         [0, 1, 2, 3].map(|k| state[k] + h / 6.0 * (a[k] + 2.0 * (b[k] + c[k]) + d[k]))
     }
 
-    /// Where a step ends that begins just after a strike with this angle and rate of the stance leg; `None` if no strike
-    /// comes because the walker falls.
+    /// Where a step ends that begins just after a strike with this angle and rate of the stance leg, or `None` if the walker falls
+    /// without a strike.
     ///
     /// The swing leg begins where the strike left it, at `2 theta` with `(1 - cos(2 theta)) theta'`.
     pub fn step(self, [angle, rate]: [f64; 2]) -> Option<ModelStep> {
+        // The feet are level where phi = 2 theta. A strike is the crossing from below with the stance leg behind the normal, theta < 0.
         let below = |state: &State| state[2] - 2.0 * state[0] < 0.0;
         let (_, cosine) = sin_cos(2.0 * angle);
         let mut state = [angle, rate, 2.0 * angle, (1.0 - cosine) * rate];
@@ -137,8 +141,8 @@ impl WalkingModel {
                 // Halved until no number lies between.
                 for _ in 0..60 {
                     let middle = f64::midpoint(early, late);
-                    let found = self.advanced(&state, middle);
-                    *(if below(&found) { &mut early } else { &mut late }) = middle;
+                    let between = self.advanced(&state, middle);
+                    *(if below(&between) { &mut early } else { &mut late }) = middle;
                 }
                 let [theta, rate, ..] = self.advanced(&state, late);
                 let (_, cosine) = sin_cos(2.0 * theta);
@@ -162,14 +166,15 @@ impl WalkingModel {
             let (ahead, back) = (probe(1.0)?, probe(-1.0)?);
             *column = [0, 1].map(|i| (ahead[i] - back[i]) / (2.0 * PROBE));
         }
+        // From columns to rows.
         let [[a, c], [b, d]] = columns;
         Some([[a, b], [c, d]])
     }
 
-    /// The long-period gait: the fixed point of the return map, by Newton's method; `None` where it finds none.
+    /// The long-period gait: the fixed point of the return map, by Newton's method. `None` if it does not converge.
     ///
-    /// The first guess, `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` with `s = slope^(1/3)`, follows the gaits of
-    /// small slopes; there is another gait, of a shorter period and not stable.
+    /// The first guess, `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` with `s = slope^(1/3)`, follows the
+    /// gaits of small slopes. There is another gait, of a shorter period and unstable.
     pub fn gait(self) -> Option<ModelGait> {
         let size = farsa_num::exp(farsa_num::ln(self.slope) / 3.0);
         let square = size * size;
@@ -200,6 +205,7 @@ impl WalkingModel {
 
 /// The eigenvalues of `[[a, b], [c, d]]`, each real and imaginary part.
 fn eigenvalues(a: f64, b: f64, c: f64, d: f64) -> [[f64; 2]; 2] {
+    // lambda = tr/2 +- sqrt((tr/2)^2 - det).
     let middle = f64::midpoint(a, d);
     let square = middle * middle - (a * d - b * c);
     let root = Scalar::sqrt(square.abs());

@@ -8,7 +8,7 @@ use farsa_num::{Scalar, sin_cos};
 
 /// Half the thickness of legs and of the hip's axle, which nothing but their own small inertia depends on \[m\].
 const THIN: f64 = 0.01;
-/// How far a plate is aside when nothing shall stand on it, and half its width \[m\].
+/// Distance of a withdrawn plate to the side, and half its width \[m\].
 pub(crate) const ASIDE: f64 = 8.0;
 const WIDTH: f64 = 1.0;
 /// Half the length of a plate, and half its thickness \[m\].
@@ -26,28 +26,29 @@ pub struct Legs {
     pub mass: f64,
     /// Mass at the sole \[kg\].
     pub foot_mass: f64,
-    /// Radius of the round sole, whose centre lies on the leg \[m\].
+    /// Radius of the round sole, whose center is on the leg \[m\].
     pub foot_radius: f64,
 }
 
-/// A walker of two stiff pairs of legs on one axle; frame: x ahead, y to the left, z along the ground's normal.
+/// A walker of two stiff pairs of legs on one axle. Frame: x ahead, y to the left, z along the ground's normal.
 ///
-/// The outer pair and the inner pair hold the walker upright sideways, so it moves in the plane of x and z alone. The plane is made of
-/// joints: the hip slides along x and z without weight or friction of the guide, the outer legs turn about it, the inner
-/// legs turn on the outer ones. A slope is gravity that leans ([`Walker::gravity`]).
+/// The outer pair and the inner pair hold the walker upright sideways, so it moves in the plane of x and z alone. Joints make the
+/// plane. The hip slides along x and z without weight or friction of the guide, the outer legs turn about it, the inner legs turn
+/// on the outer ones. A slope is gravity that leans ([`Walker::gravity`]).
 ///
-/// Stiff legs cannot clear the ground beside each other, so each pair has a ground of its own, a plate that a world can
-/// slide aside while that pair swings. The plate slides across the plane of motion: no force of the walk acts on it, and
-/// what it weighs does not matter.
+/// Stiff legs cannot clear the ground next to each other, so each pair has a separate ground, a plate that a world can slide aside
+/// while that pair swings. The plate slides across the plane of motion: no force of the walk acts on it, and its weight has no
+/// effect.
 ///
-/// `[McGeer1990]` is such a machine with round feet; `[Garcia1998]` its limit for point feet without mass.
+/// `[McGeer1990]` is such a machine with round feet, `[Garcia1998]` its limit for point feet without mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
     /// The outer legs and the inner legs.
     pub legs: [Legs; 2],
     /// Mass at the hip \[kg\].
     pub hip_mass: f64,
-    /// Distance of the outer feet; the inner ones are half as far apart \[m\]. Drawn, and without effect on the motion in the plane.
+    /// Distance of the outer feet \[m\]. The inner ones are half as far apart. Drawn, and without effect on the motion in the
+    /// plane.
     pub hip_spacing: f64,
     /// Coefficient of friction.
     pub friction: f64,
@@ -55,13 +56,13 @@ pub struct Walker {
     pub stiffness: f64,
     /// Damping ratio of the whole walker's mass on that stiffness.
     pub damping_ratio: f64,
-    /// How far the inner legs turn against the outer ones, to each side \[rad\].
+    /// Largest turn of the inner legs against the outer ones, to each side \[rad\].
     pub hip_range: f64,
-    /// Largest torque of the hip's motor \[N m\]; 0 for none.
+    /// Largest torque of the hip's motor \[N m\], or 0 without a motor.
     pub torque: f64,
 }
 
-/// By which numbers a world knows the parts of a walker.
+/// The ids of the parts of a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkerParts {
     /// The hip's place along x and z.
@@ -98,7 +99,7 @@ impl Default for Walker {
 }
 
 impl Legs {
-    /// Mass, centre and inertia in the frame of the hip's axle, the legs pointing down.
+    /// Mass, center and inertia in the frame of the hip's axle, the legs pointing down.
     fn body(&self) -> MassProperties {
         let at = |z: f64| Pose::at([0.0, 0.0, z]);
         let foot = MassProperties::sphere(self.foot_mass, THIN * self.length).placed(&at(-self.length));
@@ -106,8 +107,8 @@ impl Legs {
         foot.with(&shank.placed(&at(-0.5 * self.length)))
     }
 
-    /// Where the sole's centre and its lowest point are, seen from the hip, when the leg is turned back by an angle \[rad\]: x, z of the
-    /// centre, z of the lowest point \[m\].
+    /// The sole's center and its lowest point, seen from the hip, with the leg turned back by an angle \[rad\]. Returns x and z of
+    /// the center, and z of the lowest point \[m\].
     pub(crate) fn sole(&self, angle: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(angle);
         let arm = self.length - self.foot_radius;
@@ -127,7 +128,7 @@ impl Walker {
         [size * sine, 0.0, -size * cosine]
     }
 
-    /// The walker with the plates that it walks on, and by which numbers its parts are known.
+    /// The walker with the plates that it walks on, and the ids of its parts.
     pub fn robot(&self) -> (Robot, WalkerParts) {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let mut robot = Robot::new("walker");
@@ -180,7 +181,7 @@ impl Walker {
         (robot, parts)
     }
 
-    /// Kinetic energy, and potential energy under a gravity \[J\], of a posture; see [`Posture`].
+    /// Kinetic energy, and potential energy under a gravity \[J\], of a [`Posture`].
     pub fn energy(&self, posture: &Posture, gravity: [f64; 3]) -> f64 {
         let mut energy = 0.0;
         let mut add = |mass: f64, [x, z]: [f64; 2], [u, w]: [f64; 2]| {
@@ -210,14 +211,14 @@ pub struct Posture {
     pub hip: [f64; 2],
     /// Its velocity \[m/s\].
     pub velocity: [f64; 2],
-    /// How far outer and inner legs are turned back from the ground's normal \[rad\].
+    /// Backward turn of outer and inner legs from the ground's normal \[rad\].
     pub angles: [f64; 2],
     /// Their rates \[rad/s\].
     pub rates: [f64; 2],
 }
 
 impl Posture {
-    /// How a world's walker stands and moves.
+    /// The posture of a world's walker.
     pub fn from_world<W>(world: &W, parts: &WalkerParts) -> Self
     where
         W: farsa_body::ports::Joints<Joint = JointId> + ?Sized,
@@ -233,7 +234,7 @@ impl Posture {
         }
     }
 
-    /// Puts a world's walker so; [`Arrange::finish_placement`](farsa_body::ports::Arrange::finish_placement) must follow.
+    /// Sets the posture of a world's walker. [`Arrange::finish_placement`](farsa_body::ports::Arrange::finish_placement) must follow.
     pub fn place<W>(&self, world: &mut W, parts: &WalkerParts)
     where
         W: farsa_body::ports::Arrange<Joint = JointId> + ?Sized,
@@ -247,8 +248,8 @@ impl Posture {
         world.place_joint(parts.hinges[1], (inner - outer) as f32, (inner_rate - rate) as f32);
     }
 
-    /// The posture of a walker whose stance foot (0 outer, 1 inner) rests and rolls at the origin, as in the walking model:
-    /// `theta` and `theta_rate` of the stance leg, `swing` and `swing_rate` of the other, turned ahead of the ground's normal.
+    /// The posture of a walker whose stance foot (0 outer, 1 inner) rests and rolls at the origin, as in the walking model. `theta`
+    /// and `theta_rate` are those of the stance leg, `swing` and `swing_rate` of the other, turned ahead of the ground's normal.
     pub fn standing(walker: &Walker, stance: usize, [theta, swing]: [f64; 2], [rate, swing_rate]: [f64; 2]) -> Self {
         let mut posture = Self::default();
         posture.angles[stance] = -theta;

@@ -1,4 +1,4 @@
-//! What an attack found, end to end: hostile files, processes at the same time, signals, and what the system refuses.
+//! Results of an attack, end to end: hostile files, processes at the same time, signals, and refusals of the system.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn shell(here: &Path, line: &str) -> Said {
     shell.output().expect("a shell").into()
 }
 
-/// A run that goes on until it is stopped, once it has finished some generations.
+/// A run that continues until it is stopped, once it has finished some generations.
 fn begun(here: &Path, start: &mut Command) -> Child {
     let child = start.current_dir(here).spawn().expect("the program");
     let log = here.join("r/fitness.csv");

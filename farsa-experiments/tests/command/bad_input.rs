@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::tool::{content, farsa, ok, own, say, scratch};
 
-/// The program must refuse with a code and say all of the words, and change nothing.
+/// The program must refuse with a code and print all of the words, and change nothing.
 fn refused(program: &Path, here: &Path, arguments: &str, code: i32, words: &[&str]) {
     let before = content(here);
     let said = say(program, here, arguments);

@@ -31,13 +31,13 @@ fn a_case_is_replayed_as_it_was_tested() {
     let by_number = fs::read_to_string(here.join("steps.csv")).expect("the steps");
     assert_eq!(by_number.lines().count() - 1, steps.parse::<usize>().expect("a number"));
     assert!(by_number.lines().skip(1).all(|line| line.starts_with("1,")), "{by_number}");
-    // By its name on the standard output, the same bytes; another case and another seed are others.
+    // By its name on the standard output, the same bytes. Another case and another seed are others.
     let with = |rest: &str| say(farsa(), &here, &format!("{chosen} {rest} --quiet"));
     assert_eq!(with(&format!("--case {row}")).out, by_number);
     assert_ne!(with("--case 0").out, by_number);
     assert_ne!(say(farsa(), &here, "replay arm --protocol labels --trial 1 --case 1 --quiet").out, by_number);
 
-    // A page of all cases, beside those of another run.
+    // A page of all cases, next to those of another run.
     ok(farsa(), &here, &format!("{short} --seed 2 --out other --quiet"));
     let said = say(farsa(), &here, &format!("{chosen} --html cases.html --compare other"));
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{said:?}");

@@ -78,11 +78,11 @@ fn a_champion_is_written_with_its_channels_and_starts() {
     };
     let (first, other) = (starts(1), starts(2));
     assert_eq!((count(&first), count(&first[0]["joints"]), first == starts(1)), (9, 27, true));
-    // The same place of the table, displaced anew.
+    // The same place of the table, displaced again.
     assert!(first[0] != first[4] && first[0] != other[0] && first[0]["bodies"][0][0] == "sphere");
 }
 
-/// Bytes, Rust and tables hold what the JSON of the same run tells.
+/// Bytes, Rust and tables hold the values in the JSON of the same run.
 fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
     let written = |format: &str| {
         ok(farsa(), here, &format!("export controller r --format {format} --out c.{format}"));

@@ -36,7 +36,7 @@ fn damaged_files_are_named() {
         refused(&here, file, &|bytes| bytes[8] = 99, arguments, &["format version 99"]);
         refused(&here, file, &|bytes| *bytes = b"a text, not a record".to_vec(), arguments, &["is not a", kind]);
     }
-    // How far the record counts, and its checksum, stands in the checkpoint: what comes after is of no generation that is finished.
+    // The checkpoint stores the length of the record and its checksum. Later bytes are of no finished generation.
     for arguments in ["replay r", resume] {
         refused(&here, "record.bin", &|bytes| bytes.truncate(bytes.len() - 1), arguments, &["truncated"]);
         refused(&here, "record.bin", &Vec::clear, arguments, &["truncated"]);
@@ -104,7 +104,7 @@ fn a_full_disk_loses_nothing() {
         fs::read_dir(&here).expect("here").map(|entry| entry.expect("an entry").file_name()).collect();
     left.sort();
     assert_eq!(left, ["r", "whole"]);
-    // With room again the run goes on as if nothing had been.
+    // With room again the run continues as if nothing had happened.
     ok(own(), &here, "run --resume r --generations 40");
     assert_eq!(results(&here.join("r")), results(&here.join("whole")));
 }

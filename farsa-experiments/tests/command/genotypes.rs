@@ -1,4 +1,4 @@
-//! Genotypes from elsewhere: evaluated, and imported as a directory that can be tested and replayed.
+//! External genotypes: evaluated, and imported as a directory that can be tested and replayed.
 
 use std::fs;
 
@@ -171,7 +171,7 @@ fn genotypes_of_several_populations_are_evaluated_against_each_other() {
         ["predator", "prey"].iter().flat_map(|name| of_each.map(|what| format!("{name}_{what}"))).collect();
     assert_eq!(names[..6], expected);
     assert_eq!(names[6..], ["captures_per_trial", "time_s_per_trial", "gap_at_the_end_m_per_trial"]);
-    // What one gains the other loses.
+    // The gain of one is the loss of the other.
     assert!((value(&text, "predator_mean_fitness") + value(&text, "prey_mean_fitness") - 1.0).abs() < 1e-12, "{text}");
     assert_eq!(value(&text, "predator_success_rate") + value(&text, "prey_success_rate"), 1.0);
     for same in [
@@ -227,7 +227,7 @@ fn exported_genotypes_are_imported_and_do_the_same() {
     };
     assert_eq!(tested("r"), tested("i"));
 
-    // Of several populations the one that is named.
+    // One of several populations, by name.
     hunters(&here);
     ok(farsa(), &here, &format!("import a.gen b.gen --experiment predator-prey {SHORT} --out h"));
     for (population, file) in [("predator", "a.gen"), ("prey", "b.gen")] {
@@ -259,7 +259,7 @@ fn imported_populations_meet_in_replays() {
         let last: Vec<&str> = csv.lines().last().expect("a line").split(',').collect();
         ["time [s]", "gap [m]", "predator's reward", "prey's reward"].map(|name| last[at(name)].to_owned())
     };
-    // In trial 0 the first of each meet: it is one episode, from whichever side it is recorded.
+    // In trial 0 the first of each play against each other: it is one episode, whichever side records it.
     assert_eq!(rewards(0, 0), rewards(2, 0));
     assert_eq!(rewards(1, 1), rewards(3, 1));
     assert_ne!(rewards(0, 0), rewards(1, 0));

@@ -32,7 +32,7 @@ fn protocols_print_what_their_guide_shows() {
         let mut printed = String::new();
         for line in commands.lines() {
             let arguments = words(line.strip_prefix("farsa ").expect("a command of ours"));
-            // The reader stands in the clone; what is written here belongs elsewhere.
+            // The reader is in the clone. Files written here belong in other places.
             for file in arguments.iter().filter(|word| root.join(word).is_file()) {
                 let copy = here.join(file);
                 fs::create_dir_all(copy.parent().expect("a folder")).expect("a folder");

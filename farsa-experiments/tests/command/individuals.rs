@@ -55,7 +55,7 @@ fn an_elite_is_tested_by_its_generation_and_number() {
     assert_eq!(files(), before);
 }
 
-/// An individual of one population meets the best of the other; without a choice it is the test of the champions.
+/// An individual of one population plays against the best of the other. Without a choice it is the test of the champions.
 #[test]
 fn an_individual_of_a_population_meets_the_best_of_the_other() {
     let here = scratch("individuals");
@@ -71,7 +71,7 @@ fn an_individual_of_a_population_meets_the_best_of_the_other() {
     assert_ne!(found["notes"], champions["notes"], "{found}");
 }
 
-/// What observations are normalised by is that of the generation.
+/// The statistics of normalization are those of the generation.
 #[test]
 fn observations_are_normalised_as_in_the_generation() {
     let here = scratch("individuals-normalised");
@@ -81,6 +81,6 @@ fn observations_are_normalised_as_in_the_generation() {
     ok(farsa(), &here, &format!("run maze.toml {strategy} {short} --out r"));
     let champion = tested(&here, "r --trials 4");
     assert_eq!(tested(&here, "r --generation 2 --trials 4"), champion);
-    // The genes of the last generation are moved a little; what has been observed is more.
+    // The genes of the last generation are moved a little, and there are more observations.
     assert_ne!(tested(&here, "r --generation 0 --trials 4")["fitness"], champion["fitness"]);
 }

@@ -1,4 +1,4 @@
-//! `farsa evaluate --stdin`: an optimiser of one's own at the other end of two pipes.
+//! `farsa evaluate --stdin`: a custom optimizer at the other end of two pipes.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -44,7 +44,7 @@ impl Served {
     }
 }
 
-/// What is answered to lines that are written all at once.
+/// The answers to lines that are written all at once.
 fn all(program: &Path, here: &Path, arguments: &str, lines: &str) -> Said {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     fs::write(here.join("lines"), lines).expect("a file");
@@ -56,7 +56,7 @@ fn answers(said: &Said) -> Vec<Value> {
     said.out.lines().map(|line| serde_json::from_str(line).expect(line)).collect()
 }
 
-/// A search that moves to the best of ten neighbours, nearer ones each time.
+/// A search that moves to the best of ten neighbors, nearer ones each time.
 #[test]
 fn a_search_of_one_s_own_stops_the_cart() {
     let here = scratch("lines-search");
@@ -199,7 +199,7 @@ fn populations_are_met_or_evaluated() {
     assert!(found[3]["error"].as_str().is_some_and(|why| why.contains("lacks the population `prey`")), "{}", found[3]);
 }
 
-/// A wrong line is answered, the next one is read, and the end says so.
+/// A wrong line is answered, the next one is read, and the end reports it.
 #[test]
 fn wrong_lines_are_refused_one_by_one() {
     let here = scratch("lines-wrong");
@@ -287,6 +287,6 @@ fn the_guide_s_program_finds_the_lamp() {
     assert_eq!(said.out.lines().count(), 60, "{said:?}");
     ok(farsa(), &here, "import best.gen --experiment light.toml --out best");
     let found: Value = serde_json::from_str(&ok(farsa(), &here, "test best --json")).expect("JSON");
-    // Another release of cma searches elsewhere; random networks reach it in a few of a hundred.
+    // Another release of cma searches other places. Random networks reach it in a few of a hundred.
     assert!(found["successes"].as_u64() > Some(50), "{found}");
 }

@@ -23,7 +23,7 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     let names: Vec<&str> =
         page["episodes"].as_array().expect("episodes").iter().filter_map(|l| l["name"].as_str()).collect();
     assert_eq!(names.len(), 6);
-    // Of each run the best trial first, and the best of both beside each other.
+    // The best trial of each run first, and the best of both next to each other.
     let parts = |name: &str| -> (String, f64, String) {
         let (trial, rest) = name.split_once(": ").expect("a trial");
         let (came, run) = rest.split_once("; ").expect("a run");

@@ -1,4 +1,4 @@
-//! What the command says about itself, and how it keeps silent.
+//! The command's messages about itself, and its silence.
 
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ const SUBCOMMANDS: [&str; 19] = [
     "check",
 ];
 
-/// Those that the screen has no room for.
+/// Subcommands without room on the screen.
 const UNLISTED: [&str; 3] = ["completions", "man", "schema"];
 
 #[test]
@@ -82,7 +82,7 @@ fn completions_and_the_manual_know_all_commands() {
             assert!(script.contains(word), "{shell}: no {word}");
         }
     }
-    // Not every shell can be told the words that an argument may have.
+    // Not every shell can have the words of an argument.
     let script = ok(own(), &here, "completions bash");
     assert!(script.contains("cart") && script.contains("smooth"), "{script}");
     let page = ok(own(), &here, "man");
@@ -161,7 +161,7 @@ fn json_is_json() {
     assert_eq!((&trials[2]["trial"], &trials[2]["steps"]), (&2.into(), &500.into()));
     assert_eq!(episode["success"], trials.iter().all(|trial| trial["success"] == true));
 
-    // An episode that failed has earned no number; the other run is told of as well.
+    // An episode that failed has earned no number. The other run is reported as well.
     let other = "run cart --generations 1 --seed 5 --set cart.friction=0 --out s";
     ok(own(), &here, other);
     let log = fs::read_to_string(here.join("s/fitness.csv")).expect("the log");
@@ -233,7 +233,7 @@ fn a_bench_counts_trials() {
     let expected = 20.0 * 30.0 * 3000.0 / (64.0 * number("steps_per_second"));
     assert!((seconds / expected - 1.0).abs() < 1e-9, "{found}");
 
-    // The genomes of a run, under its settings; neither is anything written.
+    // The genomes of a run, under its settings. Nothing is written.
     ok(own(), &here, "run cart --condition smooth --generations 3 --set trial.steps=50 --out r");
     let before = content(&here);
     let text = ok(own(), &here, "bench --run r --seconds 0.05");
@@ -258,7 +258,7 @@ fn a_bench_counts_trials() {
     }
 }
 
-/// Whether there is a byte that colours or moves the cursor.
+/// True for a byte that colors or moves the cursor.
 fn escapes(output: &std::process::Output) -> bool {
     output.stdout.iter().chain(&output.stderr).any(|&byte| byte == 0x1b || byte == b'\r')
 }
@@ -273,7 +273,7 @@ fn pipes_get_no_colours() {
     }
 }
 
-/// On a terminal, made by `script`, help has colours and `NO_COLOR` takes them away; without `script` nothing is tested.
+/// On a terminal, made by `script`, help has colors and `NO_COLOR` takes them away. Without `script` nothing is tested.
 #[cfg(target_os = "linux")]
 #[test]
 fn no_color_is_heeded_on_a_terminal() {
@@ -300,7 +300,7 @@ fn a_run_in_the_way_is_moved_aside_when_that_is_asked_for() {
     let first = content(&here.join("r"));
     let said = say(own(), &here, "run cart --generations 1 --seed 2 --out r");
     assert!(said.code == Some(2) && said.err.contains("or move it aside with --force"), "{said:?}");
-    // What is refused moves nothing.
+    // Refused commands move nothing.
     for wrong in ["--set cart.friction=x", "--lanes 8", "--population 0", "--replications 2", "--strategy none"] {
         assert_eq!(say(own(), &here, &format!("run cart --out r --force {wrong}")).code, Some(2), "{wrong}");
         assert_eq!(content(&here.join("r")), first, "{wrong}");

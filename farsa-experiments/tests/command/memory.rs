@@ -1,4 +1,4 @@
-//! How much memory a run takes.
+//! Memory of a run.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::tool::{command, farsa, scratch};
 
-/// The most memory that a process has had at once \[kB\], by Linux; it never falls while the process lives.
+/// The peak memory of a process \[kB\], by Linux. It never falls during the process.
 fn peak(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().strip_suffix(" kB")?.parse().ok()
@@ -51,6 +51,6 @@ fn a_run_of_the_main_experiment_stays_within_64_mib() {
     let directory = scratch("memory");
     let arguments = "run reach-grasp-lift --generations 3 --population 20 --threads 2 --out run --quiet";
     let most = most(&directory, arguments);
-    // Two threads with eight worlds each take some megabytes; less was not looked at in time.
+    // Two threads with eight worlds each take some megabytes. A smaller peak was not seen in time.
     assert!((4 << 10..64 << 10).contains(&most), "{most} kB");
 }

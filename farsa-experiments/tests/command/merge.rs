@@ -62,7 +62,7 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     assert_eq!(tested, [("", ""), ("2", "5"), ("", ""), ("", "")]);
     assert_eq!(content(&here), before, "reading changes nothing");
 
-    // What is not finished is told, and is in the table.
+    // Unfinished runs are reported, and are in the table.
     let said = say(own(), &here, "merge node2 --csv table.csv");
     assert_eq!(said.out, "3 runs\nnode2/runs/cart-rough-2: not finished: 2 of 3 generations\n");
     let table = fs::read_to_string(here.join("table.csv")).expect("the table");

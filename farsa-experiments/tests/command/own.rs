@@ -88,7 +88,7 @@ fn the_configuration_of_a_run_repeats_it() {
     }
     let text = fs::read_to_string(here.join("a/config.toml")).expect("the configuration");
     assert!(text.contains("motor = \"switched\"") && text.contains("condition = \"smooth\""), "{text}");
-    // What the command line says goes before what the file says.
+    // The command line has precedence over the file.
     ok(own(), &here, "run --config a/config.toml --seed 6 --set cart.motor=linear --generations 2 --out c");
     let text = fs::read_to_string(here.join("c/config.toml")).expect("the configuration");
     assert!(

@@ -1,4 +1,4 @@
-//! Many runs by one command: the same as so many commands, and interrupted any number of times.
+//! Many runs by one command: the same as n commands, and interrupted any number of times.
 
 use std::fs;
 use std::path::Path;
@@ -37,7 +37,7 @@ fn the_same_as_single_runs() {
     assert!(!again.err.contains("generation 0"), "{again:?}");
     assert_eq!(content(&here), before);
 
-    // More of both, elsewhere: from what a single run has begun.
+    // More of both, in another place: from the files of a single run.
     ok(
         own(),
         &here,
@@ -102,7 +102,7 @@ fn generations(run: &Path) -> usize {
     fs::read_to_string(run.join("fitness.csv")).map_or(0, |log| log.lines().count().saturating_sub(1))
 }
 
-/// Begins the command, sends it a signal once the second of its runs has some generations, and returns what it said.
+/// Starts the command, sends it a signal once the second of its runs has some generations, and returns its output.
 #[cfg(unix)]
 fn cut_short(here: &Path, line: &str, signal: &str) -> Said {
     let arguments: Vec<&str> = line.split(' ').collect();
@@ -150,7 +150,7 @@ fn killed_interrupted_and_repeated() {
             results(&here.join(format!("single-{seed}")))
         );
     }
-    // Drafts of a process that was killed while it made a directory would lie beside the runs.
+    // Temporary files of a process that was killed while it made a directory would be next to the runs.
     assert_eq!(fs::read_dir(here.join("runs")).expect("a directory").count(), 3);
 }
 
@@ -199,7 +199,7 @@ fn processes_on_one_folder_share_the_runs() {
             assert_eq!(said.code, Some(0), "{said:?}");
             let json: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
             let runs = json["replications"].as_array().expect("a list");
-            // What a process does not tell of, another one was at.
+            // Runs that one process does not report belong to the other.
             let elsewhere = json["elsewhere"].as_array().map_or(0, Vec::len);
             assert_eq!(runs.len() + elsewhere, 6, "{said:?}");
             assert_eq!(said.err.contains("same command again"), elsewhere > 0, "{said:?}");
@@ -214,7 +214,7 @@ fn processes_on_one_folder_share_the_runs() {
             assert_eq!(sessions(&shared), 1, "seed {seed}");
         }
         assert_eq!(fs::read_dir(here.join(&root)).expect("a directory").count(), 6, "no draft is left");
-        // Once more, alone: all of them, and nothing to do.
+        // Again, alone: all of them, and nothing to do.
         let again = ok(own(), &here, &line);
         let json: serde_json::Value = serde_json::from_str(&again).expect("JSON");
         assert_eq!(json["replications"].as_array().map(Vec::len), Some(6), "{again}");

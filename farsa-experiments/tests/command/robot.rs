@@ -50,7 +50,7 @@ fn what_is_wrong_is_said_with_its_line() {
     assert!(told.contains("turns") && told.contains("without end"), "{told}");
 }
 
-/// The model that was written, as `farsa robot --json` tells it.
+/// The written model, as `farsa robot --json` prints it.
 fn told(here: &std::path::Path, file: &str) -> serde_json::Value {
     serde_json::from_str(&ok(farsa(), here, &format!("robot {file} --json"))).expect("JSON")
 }
@@ -88,7 +88,7 @@ fn robots_of_wheels_are_written_with_their_sensors() {
             assert_eq!(names, ["left wheel", "right wheel"], "{experiment} as {format}");
         }
     }
-    // As large as the settings say.
+    // As large as in the settings.
     let wide = "discrimination --condition e-puck --set robot.radius=0.035";
     ok(farsa(), &here, &format!("export robot {wide} --format urdf --out wide.urdf"));
     let ratio = mass(&told(&here, "wide.urdf")) / mass(&told(&here, "0.urdf"));

@@ -147,7 +147,7 @@ fn lanes() {
     assert!(!here.join("refused").exists());
 }
 
-/// Whether the processor has AVX2 and AVX-512.
+/// Support of AVX2 and of AVX-512 by the processor.
 fn wide() -> [bool; 2] {
     [Instructions::Avx2, Instructions::Avx512].map(|wide| Instructions::available().any(|one| one == wide))
 }
@@ -164,7 +164,7 @@ fn the_main_experiment() {
     let log = fs::read_to_string(here.join("one/fitness.csv")).expect("the log");
     let best = log.lines().last().and_then(|line| line.split(',').nth(1)).expect("the best");
     let said = say(farsa, &here, "replay one");
-    // Four digits of it are told.
+    // Four digits of it are printed.
     let told = said.err.trim_end().rsplit(' ').next().and_then(|word| word.parse::<f64>().ok()).expect("a fitness");
     let best: f64 = best.parse().expect("a number");
     assert!((told - best).abs() <= 5e-4 * best.abs() && said.err.contains("fitness"), "{best}: {}", said.err);

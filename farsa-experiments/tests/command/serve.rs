@@ -1,4 +1,4 @@
-//! The page of a run that goes on, as a browser asks for it.
+//! The page of a run in progress, as a browser requests it.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
@@ -118,7 +118,7 @@ fn a_page_is_served_while_its_run_goes_on() {
     let data: Value = serde_json::from_str(data.split_once("</script>").expect("their end").0).expect("JSON");
     assert_eq!(data["live"]["script"]["individuals"][0], best[0]);
     assert_eq!((&data["live"]["served"], &data["live"]["standing"]), (&true.into(), &Value::Null));
-    // Who lost the connection hears what came after.
+    // A client that lost the connection gets the later events.
     let mut stream = server.ask("GET /events?from=0", &[server.host(), "Last-Event-ID: 4\r\n".into()]);
     assert_eq!(event(&mut stream, "fitness")[0][0], 4);
 }
@@ -131,7 +131,7 @@ fn only_pages_of_this_address_are_answered() {
     let host = server.host();
     let own = format!("Origin: http://127.0.0.1:{}\r\n", server.port);
     let named = format!("Host: localhost:{}\r\n", server.port);
-    // What a browser says of the page that asks, and what for.
+    // The headers of a browser about the requesting page.
     let site = |of: &str, what: &str| format!("Sec-Fetch-Site: {of}\r\nSec-Fetch-Dest: {what}\r\n");
     for (first, lines, expected) in [
         ("GET /", vec![host.clone(), own], 200),

@@ -1,4 +1,4 @@
-//! Files of strangers: what they hold reaches no terminal as it is, and none of them takes all memory or all time.
+//! Untrusted files: their content reaches no terminal as it is, and none of them takes all memory or all time.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn plain(said: &Said) {
     assert!(!said.err.contains(bad) && !said.out.contains(bad), "{said:?}");
 }
 
-/// The program must refuse with a code, say the words on one line, and nothing that a terminal obeys.
+/// The program must refuse with a code and print the words on one line, without control characters.
 fn refused(here: &Path, arguments: &[&str], code: i32, words: &str) {
     let said = Said::from(command(farsa(), here, arguments).output().expect("the program"));
     assert!(said.code == Some(code) && said.out.is_empty(), "{arguments:?}: {said:?}");

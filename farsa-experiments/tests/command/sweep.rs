@@ -83,7 +83,7 @@ fn each_point_is_what_its_own_command_makes() {
         }
     }
 
-    // Again: nothing is evaluated or touched; the list has the same medians.
+    // Again: nothing is evaluated or touched, and the list has the same medians.
     let before = content(&here);
     assert_eq!(ok(own(), &here, "sweep friction.toml"), said.out);
     assert_eq!(ok(own(), &here, "sweep friction.toml --list"), said.out);
@@ -124,7 +124,7 @@ fn processes_share_the_points_and_a_killed_one_is_gone_on_with() {
         let said: Said = other.wait_with_output().expect("its end").into();
         assert_eq!(said.code, Some(0), "{said:?}");
     }
-    // What the killed process left, unless another has taken it by then.
+    // The files of the killed process, unless another has taken them by then.
     ok(own(), &here, "sweep friction.toml -q");
     for (name, _) in points() {
         let condition = if name.starts_with("condition=rough") { "rough" } else { "smooth" };
@@ -178,7 +178,7 @@ fn a_sweep_is_refused_before_it_begins() {
     refused(&good, "my.toml --point 0", &["0 is not in 1.."]);
     refused(&good, "my.toml --replication 2", &["--replication 2: there are 1"]);
     refused(&good, "my.toml --lanes 8", &["point 1 (friction=1.0): --lanes 8: cart has 1 only"]);
-    // What is in the way of one point is in the way of all.
+    // An obstacle for one point is one for all.
     fs::create_dir_all(here.join("runs/my/friction=2.0/cart-rough-1")).expect("a directory");
     fs::write(here.join("runs/my/friction=2.0/cart-rough-1/letter.txt"), "dear").expect("a file");
     refused(&good, "my.toml", &["runs/my/friction=2.0/cart-rough-1: already holds other files"]);
@@ -222,7 +222,7 @@ fn strategies_are_points_and_groups_of_a_report() {
     }
     let runs: Vec<String> =
         table.lines().skip(1).filter_map(|line| line.split(',').next().map(str::to_owned)).collect();
-    // A directory with a comma in its name stands in quotes; these have none.
+    // A directory with a comma in its name is in quotes. These have none.
     assert_eq!(runs.len(), 9);
     ok(own(), &here, &format!("report {} --success-fitness 2 --md which.md", runs.join(" ")));
     let md = fs::read_to_string(here.join("which.md")).expect("the page");

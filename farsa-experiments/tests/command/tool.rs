@@ -1,4 +1,4 @@
-//! What the tests share: the two programs, scratch directories, and what a program said.
+//! Common parts of the tests: the two programs, scratch directories, and the output of a program.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -11,7 +11,7 @@ pub(crate) fn farsa() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_farsa"))
 }
 
-/// The command over an experiment of a user's own, `tests/own-experiment`; `./ci guides` builds it outside the workspace.
+/// The command over a custom experiment, `tests/own-experiment`. `./ci guides` builds it outside the workspace.
 pub(crate) fn own() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
@@ -38,7 +38,7 @@ pub(crate) fn scratch(test: &str) -> PathBuf {
     path
 }
 
-/// What a program said.
+/// The output of a program.
 #[derive(Debug)]
 pub(crate) struct Said {
     pub(crate) code: Option<i32>,

@@ -1,4 +1,4 @@
-//! What tests of several experiments ask.
+//! Checks of several experiments.
 #![allow(clippy::unwrap_used)]
 
 use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Lanes, Outcome};
@@ -12,8 +12,8 @@ fn random(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
     evaluator.info().parameters.into_iter().map(|one| stream.range_f64(one.ends[0], one.ends[1]) as f32).collect()
 }
 
-/// Evaluates random individuals in so many plain trials and cases of all test protocols, alone and in every number of lanes at every
-/// instruction set of this machine; all outcomes are the same.
+/// Evaluates random individuals in the given number of plain trials and cases of all test protocols, alone and in lanes. All
+/// numbers of lanes and all instruction sets of this machine give the same outcomes.
 pub(crate) fn assert_lanes_are_alone(evaluator: &mut dyn Evaluator, count: usize, trials: u32) {
     let parameters: Vec<Vec<f32>> = (0..INDIVIDUALS as u32).map(|number| random(evaluator, number)).collect();
     let protocols = evaluator.info().protocols;

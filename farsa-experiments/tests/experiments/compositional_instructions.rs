@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use farsa_experiments::compositional_instructions::{
-    Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, Told, evaluator,
+    Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, TrialInstructions, evaluator,
 };
 use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Task as _, run_episode};
 use farsa_physics::articulated::{Model, World};
@@ -17,7 +17,7 @@ const CHAMPIONS: [(Condition, &str); 2] = [
 ];
 const CONDITIONS: [Condition; 2] = [Condition::WithIndicate, Condition::WithIgnore];
 
-/// Successes and mean fitness of a script over so many starts of each instruction.
+/// Successes and mean fitness of a script over the given number of starts of each instruction.
 fn tried(condition: Condition, deaf: Deaf, starts: u32) -> Vec<(Instruction, u32, f64)> {
     let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
     let mut world = World::<f32>::new(Model::new(&scene.robot, &scene.options()).unwrap());
@@ -25,7 +25,7 @@ fn tried(condition: Condition, deaf: Deaf, starts: u32) -> Vec<(Instruction, u32
     let mut episode = InstructionEpisode::new(Arc::clone(&scene), script).unwrap();
     let steps = scene.config.steps;
     let of = |first: Instruction| {
-        episode.tell(Told { first, change: None, steps, noise: 0.0 });
+        episode.instruct(TrialInstructions { first, change: None, steps, noise: 0.0 });
         let (mut successes, mut sum) = (0, 0.0);
         for trial in 0..starts {
             let fitness =
@@ -73,8 +73,8 @@ fn trials_and_cases_in_lanes_are_those_alone() {
     }
 }
 
-/// The champions of docs/results/compositional-instructions.md follow what they were trained for, and that of `with-indicate` moves
-/// red as well, which it was never told to.
+/// The champions of docs/results/compositional-instructions.md follow the trained instructions, and that of `with-indicate` moves
+/// red as well, which was held out.
 #[test]
 fn evolved_agents_follow_what_they_were_trained_for() {
     for (condition, name) in CHAMPIONS {
@@ -117,19 +117,19 @@ fn shorter_steps_come_to_the_same() {
             let mut world = World::<f32>::new(Model::new(&scene.robot, &scene.options()).unwrap());
             let script = Script::new(&scene.config, Deaf::To);
             let mut episode = InstructionEpisode::new(Arc::clone(&scene), script).unwrap();
-            episode.tell(Told { first: instruction, change: None, steps: 250, noise: 0.0 });
+            episode.instruct(TrialInstructions { first: instruction, change: None, steps: 250, noise: 0.0 });
             let of = |trial| EpisodeId { seed: 6, trial, ..EpisodeId::default() };
             [0, 1, 2].map(|trial| run_episode(&mut episode, &mut world, of(trial), None))
         });
         for (one, other) in fitness[0].iter().zip(fitness[1]) {
-            // Where a pushed ball comes to lie, and so for how long it is in the middle at the end, differs a little more.
+            // The final place of a pushed ball, and so its time in the middle at the end, differs a little more.
             let most = if instruction.action == Action::Move { 0.2 } else { 0.03 };
             assert!((one - other).abs() < most, "{instruction}: {fitness:?}");
         }
     }
 }
 
-/// Which colour stands where does not follow from the instruction, however few starts each has.
+/// The order of colors does not follow from the instruction, however few starts each has.
 #[test]
 fn every_instruction_meets_every_order_of_the_colours() {
     let scene = Scene::new(Config::for_condition(Condition::WithIgnore)).unwrap();

@@ -1,4 +1,4 @@
-//! `double-pole`: its equations of motion beside others, its constants, its trials.
+//! `double-pole`: its equations of motion compared with others, its constants, its trials.
 
 use farsa_experiments::DoublePole;
 use farsa_experiments::double_pole::{Cart, CartEpisode, CartState, Config, Pole, layout};
@@ -62,7 +62,7 @@ fn midpoint(cart: &Cart, row: [f64; 6], force: f64, time: f64) -> [f64; 6] {
     by(rates(by(rates(row), 0.5 * time)), time)
 }
 
-/// Kinetic and potential energy of cart and rods, from the velocities of their centres of mass [J].
+/// Kinetic and potential energy of cart and rods, from the velocities of their centers of mass [J].
 #[allow(clippy::disallowed_methods)]
 fn energy(cart: &Cart, state: &CartState) -> f64 {
     let mut energy = 0.5 * cart.mass * state.velocity * state.velocity;

@@ -29,7 +29,7 @@ const WITHOUT: [(&str, &str); 6] = [
 /// Steps that are compared.
 const STEPS: usize = 60;
 
-/// What was sensed and done in each step.
+/// Inputs and outputs of each step.
 #[derive(Default)]
 struct Steps {
     x: Vec<f32>,
@@ -51,7 +51,7 @@ impl Recorder for Steps {
     }
 }
 
-/// What was sensed in all steps of a trial.
+/// Inputs of all steps of a trial.
 #[derive(Default)]
 struct Trial {
     all: Vec<Vec<f32>>,
@@ -79,7 +79,7 @@ fn prepared() -> Vec<(&'static str, &'static str, Box<dyn Evaluator>)> {
 
 fn prepare(experiment: &dyn Experiment, condition: &str) -> Option<Box<dyn Evaluator>> {
     let mut settings = Settings::new(experiment.settings(condition)).expect("settings");
-    // Some have no such setting, or want more.
+    // Some have no such setting, or need more.
     let _ = settings.set("", "trial.steps", Value::Whole(60));
     match experiment.prepare(condition, &settings) {
         Err(_) if experiment.name() == "push-box" && !cfg!(feature = "rapier") => None,
@@ -97,7 +97,7 @@ fn random(evaluator: &dyn Evaluator, seed: u64) -> Vec<f32> {
     evaluator.info().parameters.into_iter().map(|parameter| parameter.ends).map(drawn).collect()
 }
 
-/// The network of bytes, by what the bytes alone say.
+/// The network of bytes, by the bytes alone.
 fn network(bytes: &[u8]) -> Box<dyn Controller> {
     let parameters = |copy: &dyn Fn(&mut [f32]), count: usize| {
         let mut parameters = vec![0.0; count];
@@ -182,7 +182,7 @@ fn every_channel_has_a_name_and_says_what_it_is() {
         let who = format!("{name} {condition}");
         let [inputs, outputs] = controller.network.shape();
         assert_eq!([controller.sensors.len(), controller.motors.len()], [inputs, outputs], "{who}");
-        // The names of a recording; those of the arm have units there.
+        // The names of a recording. Names of the arm have units there.
         let schema = evaluator.info().schema;
         let names = |channels: &[farsa_view::Channel]| channels.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
         let hash = channel_hash(names(&schema.sensors), names(&schema.outputs));
@@ -236,8 +236,8 @@ fn json_holds_the_parameters_of_every_kind() {
     }
 }
 
-/// What `firmware/e-puck` holds: the champion of its file's run, and what its sensors counted in a trial; new ones are put beside
-/// the tests' other files, for an intended change.
+/// The contents of `firmware/e-puck`: the champion of its file's run, and its counted sensor values in a trial. New ones are put
+/// next to the tests' other files, for an intended change.
 #[test]
 fn the_board_of_the_e_puck_has_what_this_program_makes() {
     const RECORDED: usize = 300;
@@ -274,7 +274,7 @@ fn the_board_of_the_e_puck_has_what_this_program_makes() {
     let recorded = steps.all.iter().take(RECORDED);
     let readings: Vec<u8> = recorded.clone().flatten().map(count).flat_map(u16::to_le_bytes).collect();
     assert_eq!(readings.len(), 16 * RECORDED);
-    // What counting costs: motor values are as far from those here as the guide says.
+    // The cost of counting: motor values are as far from those here as the guide reports.
     let mut layer = Perceptron::new(8, 2, read.slope(), parameters).expect("a layer");
     let mut furthest = 0.0_f32;
     for x in recorded {

@@ -45,7 +45,7 @@ fn run<C: Grasper>(episode: &mut GraspEpisode<C>, world: &mut World<f32>, id: Ep
     }
 }
 
-/// In how many trials a script succeeds, so many in each cell of the area, and of how many.
+/// The numbers of trials and of successes of a script, with `trials` in each cell of the area.
 fn grasped(config: &Config, cells: [u32; 2], trials: u32) -> (u32, u32) {
     let scene = Arc::new(Scene::new(*config).unwrap());
     let mut world = world_of(&scene);
@@ -97,7 +97,7 @@ fn a_script_grasps_the_ball_nearly_everywhere() {
                     let own = episode.terms();
                     assert!(own.iter().all(|term| (0.0..=1.0).contains(term)));
                     terms = [0, 1, 2].map(|k| terms[k] + own[k]);
-                    // What is lifted was neither thrown nor pressed through.
+                    // A lifted ball was neither thrown nor pressed through.
                     assert!(episode.seen().height < 0.25, "{:?}", episode.seen());
                     assert!(episode.seen().opposition > 0.5, "{:?}", episode.seen());
                 }
@@ -124,8 +124,8 @@ impl Grasper for Turned {
     }
 }
 
-/// The head keeps the ball within two degrees of the middle of the left eye's image, wherever it lies and the trunk turns to, as far
-/// as the neck bends; and without the reflex it does not.
+/// The head keeps the ball within two degrees of the middle of the left eye's image, for all places of the ball and turns of the
+/// trunk, as far as the neck bends. Without the reflex it does not.
 #[test]
 fn the_head_follows_the_ball() {
     for tracking in [true, false] {
@@ -202,7 +202,7 @@ fn random_commands_stay_within_bounds() {
     assert!(fastest < 70.0 && deepest < 0.02 && ball < 10.0, "{fastest} rad/s, {deepest} m, {ball} m/s");
 }
 
-/// What is sensed is what can be computed by hand: offsets in the image, joints between limits, touch.
+/// The inputs can be computed by hand: offsets in the image, joints between limits, touch.
 #[test]
 fn senses_are_those_by_hand() {
     let scene = scene();
@@ -251,7 +251,7 @@ fn trials_and_cases_in_lanes_are_those_alone() {
     crate::common::assert_lanes_are_alone(&mut evaluator, 30, 12);
 }
 
-/// What other programs are told of the sensors is what the agent senses: offsets and touches as they are, angles by their limits.
+/// Exported descriptions of the sensors have the agent's values: offsets and touches as they are, angles by their limits.
 #[test]
 fn exported_sensors_mean_what_is_sensed() {
     let mut evaluator = evaluator(Config::default()).unwrap();

@@ -21,12 +21,12 @@ fn learner(trainee: &mut Trainee) -> &mut dyn Learner {
     trainee.learner().unwrap()
 }
 
-/// How genes stand for the parameters.
+/// The genotype of the parameters.
 fn genotype(trainee: &Trainee) -> Genotype {
     Genotype::new(&trainee.info().parameters, KinestheticGrasp.gene_bits())
 }
 
-/// What has been learned in a state, as genes.
+/// The learned parameters in a state, as genes.
 fn genes(trainee: &mut Trainee, state: &[f64]) -> Vec<u16> {
     let learned = learner(trainee).learned(state);
     genotype(trainee).encode(&learned).unwrap()
@@ -76,7 +76,7 @@ fn genes_are_the_parameters_to_half_a_unit() {
     let unit = 40.0 / 65535.0;
     for (index, (gene, word)) in genes.iter().zip(&state).enumerate() {
         let gene = f64::from(*gene);
-        // Weights of what is told in centimetres are learned in units of 10, those of labels in units of the label.
+        // Weights of inputs in centimeters are learned in units of 10, those of labels in units of the label.
         let (found, exact) = match index / layout.hidden() {
             0..23 => (gene * unit - 20.0, *word),
             23..26 => (gene * unit - 20.0, word / 10.0),
@@ -102,7 +102,7 @@ fn the_network_is_the_mean_over_the_steps() {
     assert_eq!(state[..count], others[..count]);
     let apart = latest.iter().zip(&mean).filter(|(latest, mean)| latest != mean).count();
     assert!(apart > count / 2, "{apart} of {count}");
-    // It is the one whose parameters stand last.
+    // It is the one with the last parameters.
     let tail = state.len() - count;
     state[tail..].copy_from_slice(&others[others.len() - count..]);
     assert_eq!(genes(&mut trainee(2, 0), &state), mean);

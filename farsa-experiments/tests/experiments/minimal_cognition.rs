@@ -1,4 +1,4 @@
-//! `minimal-cognition`: its trials, its symmetry, and the network beside one written out.
+//! `minimal-cognition`: its trials, its symmetry, and the network compared with one written out.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ fn genes(seed: u64) -> [u16; 47] {
     core::array::from_fn(|_| stream.below(65_536) as u16)
 }
 
-/// Networks that forget: with larger weights the sides may fall apart by themselves, and then the last bit of a sum, which
-/// differs between them, says to which side.
+/// Networks with short memory. With larger weights the sides may diverge by themselves, and then the last bit of a sum, which
+/// differs between them, decides to which side.
 fn calm() -> Config {
     Config { weight_range: 1.0, ..Config::default() }
 }
 
-/// The network's parameters that genes stand for.
+/// The network's parameters of these genes.
 fn decoded(config: &Config, genes: &[u16]) -> Vec<f32> {
     let wiring = Wiring::new(config).unwrap();
     let genotype = Genotype::new(wiring.parameters(), MinimalCognition.gene_bits());
@@ -39,7 +39,7 @@ fn evaluator() -> Box<dyn Evaluator> {
     MinimalCognition.prepare("", &settings).unwrap()
 }
 
-/// The parameters of an evaluation that genes stand for.
+/// The parameters of an evaluation of these genes.
 fn of_genes(evaluator: &dyn Evaluator, genes: &[u16]) -> Vec<f32> {
     Genotype::new(&evaluator.info().parameters, MinimalCognition.gene_bits()).decode(genes).unwrap()
 }
@@ -181,7 +181,7 @@ fn the_evolved_agent_tells_circles_from_diamonds() {
     assert!(all > 0.975 && circles > 0.985 && diamonds > 0.96, "{all} {circles} {diamonds}");
 }
 
-/// A network whose sides compete may earn what it earns by rounding, which says which of them wins: this one does not.
+/// A network whose sides compete may earn its fitness by rounding, which decides between them: this one does not.
 #[test]
 fn the_evolved_agent_does_the_same_in_double_precision() {
     let config = Config::default();

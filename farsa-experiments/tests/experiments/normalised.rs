@@ -18,11 +18,11 @@ fn random(experiment: &dyn Experiment, evaluator: &dyn Evaluator, number: u32) -
     genotype.decode(&genes).unwrap()
 }
 
-/// Checks an experiment under a condition, and says how many channels its controllers observe; none where there are several
+/// Checks an experiment under a condition, and returns the number of channels that its controllers observe. `None` for several
 /// populations.
 fn check(experiment: &dyn Experiment, condition: &str) -> Option<usize> {
     let mut settings = Settings::new(experiment.settings(condition)).unwrap();
-    // Some have no such setting, or want more.
+    // Some have no such setting, or need more.
     let _ = settings.set("", "trial.steps", Value::Whole(60));
     let mut evaluator = experiment.prepare(condition, &settings).unwrap();
     let channels = evaluator.info().observations;
@@ -41,12 +41,12 @@ fn check(experiment: &dyn Experiment, condition: &str) -> Option<usize> {
     for trial in 0..TRIALS {
         let plain = run(trial, None);
         assert!(plain.is_finite() && plain.observed.is_none(), "{name}: {plain:?}");
-        // Nothing is known yet: the same trial, but that it says what was observed.
+        // Nothing has been observed yet: the same trial, with the observations in its outcome.
         let mut first = run(trial, Some(&nothing));
         let observed = first.observed.take().unwrap();
         assert_eq!(first, plain, "{name}");
         let steps = u64::from(plain.steps);
-        // The step in which a pole falls is none in balance. Every robot of a team observes.
+        // The step in which a pole falls is not in balance. Every robot of a team observes.
         let made = if name == "double-pole" { steps + 1 } else { steps };
         assert!(made > 1 && observed.count() >= made && observed.count().is_multiple_of(made), "{name}");
         all.merge(&observed).unwrap();
@@ -56,7 +56,7 @@ fn check(experiment: &dyn Experiment, condition: &str) -> Option<usize> {
     assert!(!run(0, Some(&other)).is_finite(), "{name}: other channels");
     let normalised: Vec<Outcome> = (0..TRIALS).map(|trial| run(trial, Some(&all))).collect();
     assert!(normalised.iter().all(|outcome| outcome.is_finite() && outcome.observed.is_some()), "{name}");
-    // Who is given other numbers acts otherwise, and observes something else where that depends on what is done.
+    // An agent with other numbers acts otherwise, and observes something else where that depends on its actions.
     let mut again = nothing.clone();
     for outcome in &normalised {
         again.merge(outcome.observed.as_ref().unwrap()).unwrap();

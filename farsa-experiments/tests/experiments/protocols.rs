@@ -8,12 +8,12 @@ use farsa_lab::{
 };
 use farsa_num::{Domain, Instructions, Stream};
 
-/// What was recorded of an episode.
+/// The recording of an episode.
 #[derive(Default)]
 struct Seen {
     sensors: Vec<Vec<f32>>,
     scalars: Vec<Vec<f64>>,
-    /// Of the bodies, one of each at every step.
+    /// Poses of the bodies, one of each at every step.
     poses: Vec<(BodyId, Pose<f32>)>,
 }
 
@@ -80,7 +80,7 @@ fn the_protocols_of_all_experiments_can_be_run() {
     }
 }
 
-/// Every case of all protocols, twice, in lanes and alone; and a plain trial after each is what it is before any.
+/// Every case of all protocols, twice, in lanes and alone. A plain trial after each is the same as before any.
 fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>, most: usize) {
     let parameters = parameters(evaluator.as_ref());
     let plain = Evaluation::new(&parameters, id(1));
@@ -178,7 +178,7 @@ fn starts_are_paired_and_labels_removed_or_wrong() {
     let removed = at(evaluator.as_ref(), "removed");
     assert_ne!(seen(evaluator.as_mut(), removed, 1).0, plain);
 
-    // Posture 2 with place 2 is the plain trial 1; another place moves the sphere, and not the arm.
+    // Posture 2 with place 2 is the plain trial 1. Another place moves the sphere, and not the arm.
     let start = |evaluator: &dyn Evaluator, row: &str, column: &str| case(evaluator, "start-positions", row, column);
     let own = start(evaluator.as_ref(), "posture 2", "place 2");
     assert_eq!(seen(evaluator.as_mut(), own, 1).0, plain);

@@ -1,4 +1,4 @@
-//! What the robot senses and does, how trials start and end.
+//! Sensors and motors of the robot, starts and ends of trials.
 
 use std::sync::Arc;
 
@@ -139,7 +139,7 @@ fn each_patch_of_skin_feels_its_own_contacts() {
     }
 }
 
-/// Remembers what was commanded.
+/// Stores the commands.
 struct Board(Vec<(u16, [f32; 2])>);
 
 impl Handles for Board {
@@ -259,8 +259,8 @@ fn the_first_observation_is_that_of_the_geometry() {
     assert!(seen.reach_distance < 1e-3, "{}", seen.reach_distance);
     assert!((seen.palm_down - 1.0).abs() < 1e-6);
     assert_eq!(seen.openness, 1.0);
-    // By hand: tips at x = base + phalanges (thumb .028), y = base (thumb .020 + .010 + .0648), z 0 (thumb -.002) in the
-    // palm's frame; the sphere 5 cm under the palm's centre (.0625, 0, -.010).
+    // By hand, in the palm's frame: tips at x = base + phalanges (thumb .028), y = base (thumb .020 + .010 + .0648), z 0 (thumb
+    // -.002). The sphere is 5 cm under the palm's center (.0625, 0, -.010).
     let index = 0.080 + 0.0259 + 0.0220 + 0.0168;
     let middle = 0.080 + 0.0285 + 0.0240 + 0.0168;
     let little = 0.080 + 0.0219 + 0.0190 + 0.0168;
@@ -273,7 +273,7 @@ fn the_first_observation_is_that_of_the_geometry() {
 
 #[test]
 fn a_sphere_that_falls_ends_the_trial_and_what_was_earned_stays() {
-    // Half a metre beyond the table.
+    // Half a meter beyond the table.
     let scene = scene(Config { sphere_positions: [0.0, 90.0, 0.0, 90.0, 0.0, 90.0, 0.0, 90.0], ..Config::default() });
     let mut world = world(&scene);
     let mut judge = Judge::new(Arc::clone(&scene));
@@ -304,7 +304,7 @@ fn a_world_that_breaks_down_fails_the_trial() {
     assert!(judge.trial().rewards.total().is_nan());
 }
 
-/// Tells what it is told: the labels it read.
+/// Returns its inputs: the labels it read.
 struct Listener(Vec<[f32; 3]>);
 
 impl Controller for Listener {

@@ -157,7 +157,7 @@ fn light() -> Config {
     }
 }
 
-/// The whole table is made by `examples/walking.rs`; here one row, soft ground and few steps.
+/// `examples/walking.rs` makes the whole table. Here is one row, with soft ground and few steps.
 #[test]
 fn a_rigid_body_with_light_feet_walks_as_the_model() {
     let config = light();

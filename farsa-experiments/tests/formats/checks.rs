@@ -1,4 +1,4 @@
-//! What a run of another version must come to.
+//! The expected results of a run of another version.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,14 +9,14 @@ use crate::place::{Place, content, end, has};
 use crate::{Expected, GENERATIONS, TEST};
 
 impl Place {
-    /// Demands that reading commands find the fitness that was recorded, and the one that a replay of the last generation's best
-    /// earned then where that is known, and change nothing.
+    /// Checks that reading commands find the recorded fitness and the one that a replay of the last generation's best earned then,
+    /// and that they change nothing.
     pub(crate) fn is_read(&self, earned_then: Option<f64>) {
         let before = content(&self.0.join("run"));
         let last = self.recorded().map(|(generations, _)| format!("--generation {} ", generations - 1));
         let replayed = self.ok(&format!("replay run {}--out steps.csv --json", last.unwrap_or_default())).json();
         let lines = self.text("steps.csv").lines().count() as u64;
-        // The step in which a pole falls is none in balance.
+        // The step in which a pole falls is not in balance.
         assert!(
             replayed["steps"].as_u64().is_some_and(|steps| (steps..steps + 2).contains(&(lines - 1))),
             "{replayed}"
@@ -58,7 +58,7 @@ impl Place {
         assert_eq!(again["fitness"].as_f64().map(f64::to_bits), Some(earned.to_bits()), "{}", self.0.display());
     }
 
-    /// Demands that it is drawn, and that a page of it lives, or is refused where there is no world for it.
+    /// Checks that it is drawn, and that a page of it runs, or is refused where there is no world for it.
     pub(crate) fn is_shown(&self) {
         self.ok("draw run --size 120x90 --out end.svg");
         assert!(self.text("end.svg").starts_with("<svg"), "{}", self.0.display());
@@ -91,7 +91,7 @@ impl Place {
             assert!(said.code == Some(2) && said.err.contains("which no evolution has made"), "{said:?}");
             return;
         };
-        // What does not evolve has one generation.
+        // A run without evolution has one generation.
         let last = if generations == 1 { 1 } else { GENERATIONS };
         self.ok(&format!("run --resume run --generations {last} --quiet"));
         assert_eq!(self.recorded().map(|(generations, _)| generations), Some(last));

@@ -1,4 +1,4 @@
-//! What a later version may change, in copies whose numbers are changed: it is refused by name.
+//! Allowed changes of a later version, in copies with changed numbers: they are refused by name.
 
 use std::fs;
 use std::path::{Path, PathBuf};

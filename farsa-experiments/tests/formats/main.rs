@@ -1,5 +1,5 @@
-//! Run directories of this version and earlier ones are read, replayed, tested, drawn, lived and resumed to the same bits, or refused
-//! by name. `formats/make` makes those of this version; a later one adds its own beside them.
+//! Run directories of this version and earlier ones are read, replayed, tested, drawn, run in pages and resumed to the same bits,
+//! or refused by name. `formats/make` makes those of this version. A later one adds its directories next to them.
 
 mod checks;
 mod later;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use place::{Place, content, has, today};
 
-/// The list of directories of a version, each with a test of its own.
+/// The list of directories of a version, each with its test.
 macro_rules! directories {
     ($version:literal, $($test:ident: $name:literal),* $(,)?) => {
         pub(crate) const VERSION: &str = $version;
@@ -56,16 +56,16 @@ pub(crate) fn gallery() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/gallery/runs")
 }
 
-/// What a directory comes to.
+/// The expected results of a directory.
 #[derive(Default)]
 struct Expected {
-    /// What the champion earns when it is replayed.
+    /// The reward of the champion in a replay.
     replay: Option<f64>,
     /// The digest of each file.
     files: BTreeMap<String, u64>,
 }
 
-/// What each directory of a version comes to.
+/// The expected results of each directory of a version.
 fn expected(version: &str) -> BTreeMap<String, Expected> {
     let mut all: BTreeMap<String, Expected> = BTreeMap::new();
     for line in fs::read_to_string(formats().join(version).join("expected.txt")).expect("a list").lines() {
@@ -112,7 +112,7 @@ fn no_directory_is_passed_over() {
     }
 }
 
-/// Whether one of the files has these bytes somewhere.
+/// True if one of the files has these bytes somewhere.
 fn any_has<'f>(mut files: impl Iterator<Item = &'f Vec<u8>>, bytes: &[u8]) -> bool {
     files.any(|file| has(file, bytes))
 }
@@ -121,7 +121,7 @@ fn any_has<'f>(mut files: impl Iterator<Item = &'f Vec<u8>>, bytes: &[u8]) -> bo
 fn every_experiment_strategy_and_kind_of_file_of_this_version_has_a_directory() {
     let all = content(&formats().join(v0_1::VERSION));
     let with = |end: &'static str| all.iter().filter(move |(file, _)| file.ends_with(end)).map(|(_, bytes)| bytes);
-    // One that this program goes on with: a change of values wants new directories, as it wants new goldens.
+    // One that this program resumes: a change of values needs new directories, as it needs new goldens.
     let read: BTreeSet<String> = v0_1::NAMES
         .iter()
         .map(|name| Place::with(&format!("read-{name}"), &formats().join(v0_1::VERSION).join(name)))
@@ -161,7 +161,7 @@ fn the_runs_of_the_gallery_are_read() {
         let run = entry.expect("an entry").path();
         let name = run.file_name().and_then(|name| name.to_str()).expect("a name").to_owned();
         let place = Place::with(&format!("gallery-{name}"), &run);
-        // A gallery is made anew where values change.
+        // A gallery is made again where values change.
         assert!(place.refused().is_none(), "{name}");
         place.is_read(None);
         read += 1;

@@ -1,4 +1,4 @@
-//! A copy of a run, and the command beside it.
+//! A copy of a run, and the command next to it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-/// Every file below a directory with its content; locks are none.
+/// Every file below a directory with its content, without locks.
 pub(crate) fn content(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     let (mut files, mut open) = (BTreeMap::new(), vec![directory.to_path_buf()]);
     while let Some(folder) = open.pop() {
@@ -25,17 +25,17 @@ pub(crate) fn content(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// What a file's name ends with.
+/// The end of a file's name.
 pub(crate) fn end(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, end)| end)
 }
 
-/// Whether these bytes are in a file somewhere.
+/// True if these bytes are in a file somewhere.
 pub(crate) fn has(file: &[u8], bytes: &[u8]) -> bool {
     file.windows(bytes.len()).any(|window| window == bytes)
 }
 
-/// What the command said.
+/// The output of the command.
 #[derive(Debug)]
 pub(crate) struct Said {
     pub(crate) code: Option<i32>,
@@ -86,7 +86,7 @@ impl Place {
         serde_json::from_str(&self.text(&format!("{run}/manifest.json"))).expect("a manifest")
     }
 
-    /// The finished generations, and the best of the last in each population; none of imported genotypes.
+    /// The finished generations, and the best of the last in each population. `None` for imported genotypes.
     pub(crate) fn recorded(&self) -> Option<(usize, Vec<f64>)> {
         let log = fs::read_to_string(self.0.join("run/fitness.csv")).ok()?;
         let numbers = |column: usize| log.lines().last()?.split(',').nth(column)?.parse().ok();
@@ -107,7 +107,7 @@ impl Place {
 pub(crate) fn today() -> &'static Place {
     static TODAY: OnceLock<Place> = OnceLock::new();
     TODAY.get_or_init(|| {
-        // Where each test is a process of its own (cargo-nextest), each makes one.
+        // Where each test is a separate process (cargo-nextest), each makes one.
         let name = format!("formats-today-{}", std::process::id());
         let place = Place(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name));
         let _ = fs::remove_dir_all(&place.0);

@@ -1,4 +1,4 @@
-//! What another version has changed on purpose, and that it is refused in words that name it.
+//! Deliberate changes of another version, and refusals that name them.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use farsa_lab::VALUES_VERSION;
 use crate::TEST;
 use crate::place::{Place, content, end, today};
 
-/// What a later version has changed on purpose.
+/// A deliberate change of a later version.
 #[derive(Debug)]
 pub(crate) enum Change {
     Manifest,
@@ -30,7 +30,7 @@ pub(crate) fn format_number(path: &Path) -> u32 {
 }
 
 impl Place {
-    /// What this program must refuse of the copy, and in which words; nothing if it reads the same formats and has the same values.
+    /// The refusal of the copy by this program with its words, or nothing if it reads the same formats and has the same values.
     pub(crate) fn refused(&self) -> Option<Refusal> {
         let (then, now) = (self.manifest("run"), today().manifest("run"));
         if then["format"] != now["format"] {
@@ -79,7 +79,7 @@ impl Place {
         }
         match of {
             Change::Format => refuses(TEST),
-            // New trials are new in any case: what they are of is said.
+            // New trials are new in any case, and their version is printed.
             Change::Values => {
                 let warned = self.ok(&format!("{TEST} --json")).json();
                 assert!(warned["warning"].as_str().is_some_and(|text| text.contains(words)), "{warned}");

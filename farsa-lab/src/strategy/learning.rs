@@ -28,7 +28,7 @@ impl StrategyDefinition for Learning {
 
     fn settings(&self) -> Vec<Setting> {
         vec![Setting::whole(GENERATIONS, 300, 1..=i64::from(u32::MAX) - 1).doc(
-            "Iterations of training, each after an evaluation of what has been learned; the one thing that a resumed run may change.",
+            "Iterations of training, each after an evaluation of the network. A resumed run may change it, and nothing else.",
         )]
     }
 

@@ -34,7 +34,7 @@ impl StrategyDefinition for OnePlusOne {
         vec![
             Setting::whole(GENERATIONS, 500, 1..=i64::from(u32::MAX) - 1)
                 .given()
-                .doc("Generations of one parent and one mutant; the one thing that a resumed run may change."),
+                .doc("Generations of one parent and one mutant. A resumed run may change it, and nothing else."),
             Setting::word(MUTATION, "flip", &["flip", "resample"])
                 .given()
                 .doc("What happens to a bit that mutation hits: it flips, or it is drawn anew."),

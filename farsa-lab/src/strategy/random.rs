@@ -13,7 +13,7 @@ pub(super) static RANDOM: SimpleStrategy = SimpleStrategy {
     settings: || {
         vec![
             Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole(POPULATION, 100, 1..=1_000_000).doc("Individuals of a generation."),
         ]
     },

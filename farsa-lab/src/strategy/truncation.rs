@@ -31,13 +31,13 @@ impl StrategyDefinition for Truncation {
         vec![
             Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
                 .given()
-                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+                .doc("Generations that are evaluated. A resumed run may change it, and nothing else."),
             Setting::whole(POPULATION, 100, 1..=1_000_000).given().doc(
-                "Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated.",
+                "Individuals of a generation, a multiple of the parents. With no more than them nothing is ever mutated.",
             ),
             Setting::whole(PARENTS, 20, 1..=1_000_000)
                 .given()
-                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+                .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
             Setting::word(MUTATION, "resample", &["resample", "flip"])
                 .given()
                 .doc("What happens to a bit that mutation hits: it is drawn anew, or it flips."),

@@ -1,4 +1,4 @@
-//! An experiment of one's own: a cart learns to stop at the middle of its track.
+//! A custom experiment: a cart learns to stop at the middle of its track.
 
 use farsa_body::Recorder;
 use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};

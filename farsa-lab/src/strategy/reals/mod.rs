@@ -41,7 +41,7 @@ fn bounds(genes: usize) -> Vec<[f64; 2]> {
 /// Settings of the number of generations and of individuals.
 fn sizes(population: Setting) -> Vec<Setting> {
     let generations = Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1);
-    vec![generations.doc("Generations that are evaluated; the one thing that a resumed run may change."), population]
+    vec![generations.doc("Generations that are evaluated. A resumed run may change it, and nothing else."), population]
 }
 
 /// The individuals of a strategy whose source has a default that depends on the number of genes.

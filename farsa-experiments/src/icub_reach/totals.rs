@@ -1,15 +1,15 @@
-//! What a trial of `icub-reach` earns.
+//! The reward of a trial of `icub-reach`.
 
 /// The distances of a trial from its start, or from when the target jumped.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Ledger {
+pub struct RewardTotals {
     start: f64,
     last: f64,
     sum: f64,
     count: u32,
 }
 
-impl Ledger {
+impl RewardTotals {
     /// Begins at a distance between hand and target \[m\].
     pub fn new(start: f64) -> Self {
         Self { start, last: start, sum: 0.0, count: 0 }
@@ -39,7 +39,7 @@ impl Ledger {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }
     }
 
-    /// 1 less the mean distance in parts of the start distance, which counts as `least` \[m\] where it is less; 0..1, or NaN.
+    /// 1 less the mean distance in parts of the start distance, which counts as at least `least` \[m\]. 0..1, or NaN.
     pub fn fitness(&self, least: f64) -> f64 {
         1.0 - (self.mean() / self.start.max(least)).clamp(0.0, 1.0)
     }
@@ -53,20 +53,20 @@ mod tests {
 
     #[test]
     fn fitness_is_that_of_a_calculation_by_hand() {
-        let mut ledger = Ledger::new(0.2);
-        assert_eq!((ledger.mean(), ledger.fitness(0.05)), (0.2, 0.0));
-        ledger.add(0.9, false);
-        ledger.add(0.03, true);
-        ledger.add(0.05, true);
+        let mut totals = RewardTotals::new(0.2);
+        assert_eq!((totals.mean(), totals.fitness(0.05)), (0.2, 0.0));
+        totals.add(0.9, false);
+        totals.add(0.03, true);
+        totals.add(0.05, true);
         // (0.03 + 0.05) / 2 / 0.2 = 0.2.
-        assert!((ledger.mean() - 0.04).abs() < 1e-15 && (ledger.fitness(0.05) - 0.8).abs() < 1e-15);
-        assert_eq!((ledger.start(), ledger.last()), (0.2, 0.05));
-        // Of 0.4 m as the least it is a tenth.
-        assert!((ledger.fitness(0.4) - 0.9).abs() < 1e-15);
-        ledger.add(9.0, true);
-        assert_eq!(ledger.fitness(0.05), 0.0);
-        ledger.add(f64::NAN, true);
-        assert!(ledger.fitness(0.05).is_nan());
+        assert!((totals.mean() - 0.04).abs() < 1e-15 && (totals.fitness(0.05) - 0.8).abs() < 1e-15);
+        assert_eq!((totals.start(), totals.last()), (0.2, 0.05));
+        // With a least distance of 0.4 m it is a tenth.
+        assert!((totals.fitness(0.4) - 0.9).abs() < 1e-15);
+        totals.add(9.0, true);
+        assert_eq!(totals.fitness(0.05), 0.0);
+        totals.add(f64::NAN, true);
+        assert!(totals.fitness(0.05).is_nan());
     }
 
     proptest! {
@@ -76,11 +76,11 @@ mod tests {
             least in 0.001..1.0_f64,
             distances in prop::collection::vec((0.0..3.0_f64, any::<bool>()), 0..30),
         ) {
-            let mut ledger = Ledger::new(start);
+            let mut totals = RewardTotals::new(start);
             for (distance, counts) in distances {
-                ledger.add(distance, counts);
+                totals.add(distance, counts);
             }
-            prop_assert!((0.0..=1.0).contains(&ledger.fitness(least)));
+            prop_assert!((0.0..=1.0).contains(&totals.fitness(least)));
         }
     }
 }
