@@ -54,7 +54,10 @@ pub(crate) fn infrared_exports<'a>(
     let range = robot.infrared.range;
     names.into_iter().zip(angles).map(move |(name, angle)| {
         let quantity = format!("distance of a wall from the hull at {:+.1} degrees, left positive", angle.to_degrees());
-        SensorExport { name, reads: SensorReading::Quantity { quantity, unit: "m", zero: range, one: 0.0, linear: true } }
+        SensorExport {
+            name,
+            reads: SensorReading::Quantity { quantity, unit: "m", zero: range, one: 0.0, linear: true },
+        }
     })
 }
 

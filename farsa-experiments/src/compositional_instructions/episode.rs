@@ -7,7 +7,7 @@ use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 
-use crate::compositional_instructions::fitness::{RewardTotals, Observation, Parts};
+use crate::compositional_instructions::fitness::{Observation, Parts, RewardTotals};
 use crate::compositional_instructions::instruction::Instruction;
 use crate::compositional_instructions::network::{INPUTS, MOTORS};
 use crate::compositional_instructions::scene::Scene;
@@ -209,8 +209,10 @@ where
         let now = self.sense(world);
         let window = self.scene.config.window_steps();
         let withdrawn = self.instructions.change.is_some_and(|(at, _)| self.steps == at);
-        let end =
-            self.instructions.change.map_or(self.instructions.steps, |(at, _)| if self.steps <= at { at } else { self.instructions.steps });
+        let end = self
+            .instructions
+            .change
+            .map_or(self.instructions.steps, |(at, _)| if self.steps <= at { at } else { self.instructions.steps });
         self.totals.add(held, now, self.steps + window > end);
         if !now.ahead.iter().flatten().all(|x| x.is_finite()) {
             return Some(f64::NAN);

@@ -33,7 +33,7 @@ pub use agent::Agent;
 pub use config::{Arm, Camera, Config, Judging, Objects, Ranges, Start};
 pub use episode::{InstructionEpisode, TrialInstructions};
 pub use experiment::{CompositionalInstructions, evaluator};
-pub use fitness::{RewardTotals, Observation, Parts};
+pub use fitness::{Observation, Parts, RewardTotals};
 pub use instruction::{Action, Color, Condition, Instruction};
 pub use network::{INNER, INPUTS, KINDS, LAYOUT, MOTORS, NEURONS, Wiring};
 pub use scene::{Scene, StartPose};

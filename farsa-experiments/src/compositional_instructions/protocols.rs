@@ -162,12 +162,13 @@ impl Protocols {
         let instructions = config.condition.instructions();
         let rows = cuts.iter().map(|(name, _)| name.clone());
         let summary = "without each inner neuron and each group of links, every instruction";
-        let protocol = Protocol::from_table("lesions", summary, rows, instructions.map(|instruction| instruction.to_string()))
-            .with_axes("without", "instruction")
-            .with_held_out(|_, instruction| is_held_out(config, instruction));
-        let probes = cuts
-            .iter()
-            .flat_map(|(_, cut)| instructions.map(|first| Probe { instructions: plain(config, first), change: cut.clone() }));
+        let protocol =
+            Protocol::from_table("lesions", summary, rows, instructions.map(|instruction| instruction.to_string()))
+                .with_axes("without", "instruction")
+                .with_held_out(|_, instruction| is_held_out(config, instruction));
+        let probes = cuts.iter().flat_map(|(_, cut)| {
+            instructions.map(|first| Probe { instructions: plain(config, first), change: cut.clone() })
+        });
         let probes = probes.collect();
         self.add(protocol, probes);
     }
@@ -183,8 +184,9 @@ impl Protocols {
         )
         .with_axes("standard deviation", "instruction")
         .with_held_out(|_, instruction| is_held_out(config, instruction));
-        let probes =
-            NOISE.into_iter().flat_map(|noise| instructions.map(|first| whole(TrialInstructions { noise, ..plain(config, first) })));
+        let probes = NOISE
+            .into_iter()
+            .flat_map(|noise| instructions.map(|first| whole(TrialInstructions { noise, ..plain(config, first) })));
         let probes = probes.collect();
         self.add(protocol, probes);
     }
@@ -228,19 +230,26 @@ mod tests {
                         "action-transition" => {
                             let (at, then) = instructions.change.unwrap();
                             assert_eq!((at, instructions.steps), (150, 300));
-                            assert_eq!(format!("{} to {}", instructions.first.action.word(), then.action.word()), case.row);
+                            assert_eq!(
+                                format!("{} to {}", instructions.first.action.word(), then.action.word()),
+                                case.row
+                            );
                             assert!(words.ends_with(&case.column) && then.color == instructions.first.color);
                         }
                         "object-transition" => {
                             let (_, then) = instructions.change.unwrap();
-                            assert_eq!(format!("{} to {}", instructions.first.color.word(), then.color.word()), case.row);
+                            assert_eq!(
+                                format!("{} to {}", instructions.first.color.word(), then.color.word()),
+                                case.row
+                            );
                             assert!(words.starts_with(&case.column) && then.action == instructions.first.action);
                         }
                         _ => {
                             let (at, then) = instructions.change.unwrap();
                             assert_eq!(format!("{:.1} s", f64::from(at) * 0.1), case.row);
                             assert_eq!((instructions.steps, then.to_string().as_str()), (150, "TOUCH red"));
-                            let same = [then.action == instructions.first.action, then.color == instructions.first.color];
+                            let same =
+                                [then.action == instructions.first.action, then.color == instructions.first.color];
                             assert_eq!(same, [case.column.starts_with("object"), case.column.starts_with("action")]);
                         }
                     }

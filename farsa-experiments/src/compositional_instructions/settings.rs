@@ -53,7 +53,9 @@ impl Config {
             numbers("arm.lengths", &arm.lengths, 0.05, 10.0).unit("m").doc("Lengths of the two segments."),
             numbers("arm.masses", &arm.masses, 0.001, 1000.0).unit("kg").doc("Their masses."),
             number("arm.radius", arm.radius, 0.001, 1.0).unit("m").doc("Their radius. Both are capsules."),
-            numbers("arm.ranges", &arm.ranges, 1.0, 175.0).unit("deg").doc("Largest turn of each joint to either side."),
+            numbers("arm.ranges", &arm.ranges, 1.0, 175.0)
+                .unit("deg")
+                .doc("Largest turn of each joint to either side."),
             numbers("arm.speeds", &arm.speeds, 0.0, 10.0)
                 .unit("rad/s")
                 .doc("Speeds that are commanded by a difference of 1 between two motor neurons."),
@@ -97,9 +99,8 @@ impl Config {
             number("start.second", second, 0.0, 175.0)
                 .unit("deg")
                 .doc("The second joint starts so far to the left, or to a side that is drawn."),
-            Setting::flag("start.both_sides", both_sides).doc(
-                "That side is drawn. Half of the starts are then stretched by the speed that folds the others.",
-            ),
+            Setting::flag("start.both_sides", both_sides)
+                .doc("That side is drawn. Half of the starts are then stretched by the speed that folds the others."),
             number("start.second_spread", second_spread, 0.0, 90.0)
                 .unit("deg")
                 .doc("By how much that differs at most."),

@@ -6,8 +6,8 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId,
 use farsa_lab::{Episode, EpisodeId};
 
 use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
-use crate::icub_reach::totals::RewardTotals;
 use crate::icub_reach::scene::Scene;
+use crate::icub_reach::totals::RewardTotals;
 
 /// A controller of the hand.
 pub trait Reacher {

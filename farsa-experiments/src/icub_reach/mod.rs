@@ -6,8 +6,6 @@ mod config;
 mod episode;
 /// Its name, conditions and settings, and what runs its trials.
 mod experiment;
-/// The reward of a trial.
-mod totals;
 /// The network of an agent.
 mod network;
 /// Its test protocols.
@@ -22,13 +20,15 @@ mod script;
 mod settings;
 /// Its description, and episodes over parameters.
 mod task;
+/// The reward of a trial.
+mod totals;
 
 pub use config::{Condition, Config, Volume};
 pub use episode::{ReachEpisode, Reacher, Reaching, ReachingWorld};
 pub use experiment::{IcubReach, evaluator};
-pub use totals::RewardTotals;
 pub use network::{Agent, LAYOUT};
 pub use protocols::{GRID, grid, outside};
 pub use scene::{CONTROLLED, Scene};
 pub use script::Script;
 pub use task::ReachTask;
+pub use totals::RewardTotals;

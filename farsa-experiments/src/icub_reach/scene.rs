@@ -74,7 +74,8 @@ impl Scene {
             Ok(Driven { joint, actuator, start, range: joint_of.range })
         };
         let joints: Vec<Driven> = robot.joints().zip(icub.start()).map(driven).collect::<Result<_, _>>()?;
-        let is_controlled = |driven: &Driven| CONTROLLED.contains(&robot.segments[driven.joint.index()].joint.name.as_str());
+        let is_controlled =
+            |driven: &Driven| CONTROLLED.contains(&robot.segments[driven.joint.index()].joint.name.as_str());
         let (controlled, held): (Vec<Driven>, Vec<Driven>) = joints.into_iter().partition(is_controlled);
         let controlled = controlled
             .try_into()

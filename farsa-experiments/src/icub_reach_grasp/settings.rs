@@ -100,9 +100,9 @@ impl Config {
             number("fitness.height", self.height, 0.001, 1.0)
                 .unit("m")
                 .doc("Height of the ball above the table that earns all there is to earn and counts as lifted."),
-            number("success.hold", self.hold, 0.001, 1000.0)
-                .unit("s")
-                .doc("Time for which the ball must be up, touched by the hand alone, at the end of a successful trial."),
+            number("success.hold", self.hold, 0.001, 1000.0).unit("s").doc(
+                "Time for which the ball must be up, touched by the hand alone, at the end of a successful trial.",
+            ),
         ]
     }
 

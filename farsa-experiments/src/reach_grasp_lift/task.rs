@@ -66,7 +66,8 @@ impl ReachTask {
             let cases = ["as trained", "removed", "of the next phase"];
             let protocol = Protocol::from_list("labels", "the label of the phase is removed, or wrong", cases);
             let protocol = protocol.with_held_out(|row, _| row != cases[0]);
-            interventions = interventions.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
+            interventions =
+                interventions.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
         }
         interventions.with_lesions(input_ranges(&groups), hidden)
     }

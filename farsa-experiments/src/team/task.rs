@@ -138,7 +138,8 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         }
         let mut others = opponents.iter();
         (0..count).zip(networks).all(|(population, network)| {
-            let parameters = if population == trained { parameters } else { others.next().copied().unwrap_or(parameters) };
+            let parameters =
+                if population == trained { parameters } else { others.next().copied().unwrap_or(parameters) };
             network.copy_parameters(&change.edited(parameters)).is_ok()
         })
     }

@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use farsa_experiments::compositional_instructions::{
-    Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, TrialInstructions, evaluator,
+    Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, TrialInstructions,
+    evaluator,
 };
 use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Task as _, run_episode};
 use farsa_physics::articulated::{Model, World};
