@@ -90,7 +90,7 @@ fn files_without_an_end_end() {
         ("$F run --config /dev/zero", "/dev/zero: "),
         ("$F evaluate cart --genes-file /dev/zero", "/dev/zero: "),
         ("mkfifo fifo; yes > fifo & $F run --config fifo", "fifo: has more than 4000000 bytes"),
-        ("mkfifo robot; : > robot & $F robot robot", "robot: "),
+        ("mkfifo robot; : > robot & $F robot robot", "does not have a root node"),
         ("cp -r r a; rm a/checkpoint.bin; mkfifo a/checkpoint.bin; $F run --resume a", "a/checkpoint.bin: "),
         ("cp -r r b; rm b/config.toml; ln -s /dev/zero b/config.toml; $F replay b", "b: holds no run"),
         ("cp -r r c; rm c/record.bin; mkfifo c/record.bin; $F replay c", "c/record.bin: "),
