@@ -44,11 +44,11 @@ fn main() -> Result<(), EvoError> {
     }
     if wanted("cholesky-cma-es") {
         let config = CmaEsConfig::new(vec![0.0; covariance], 0.5);
-        time::<f64>("cholesky-cma-es", generations, &mut CholeskyCmaEs::new(config, 1)?)?;
+        time::<f64>("cholesky-cma-es", generations, &mut CholeskyCmaEs::with_covariance(config, 1)?)?;
     }
     if wanted("separable-cma-es") {
         let config = SeparableCmaEsConfig::new(vec![0.0; covariance], 0.5);
-        time::<f64>("separable-cma-es", generations, &mut SeparableCmaEs::new(config, 1)?)?;
+        time::<f64>("separable-cma-es", generations, &mut SeparableCmaEs::with_covariance(config, 1)?)?;
     }
     if wanted("open-ai-es") {
         let config = OpenAiEsConfig::new(vec![0.0; many], 100);

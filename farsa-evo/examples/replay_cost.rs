@@ -112,11 +112,11 @@ fn distributions(n: usize, generations: u32, wanted: &dyn Fn(&str) -> bool) -> R
         time::<f64, _>("cma-es", generations, || CmaEs::new(cma.clone(), 1))?;
     }
     if wanted("cholesky-cma-es") {
-        time::<f64, _>("cholesky-cma-es", generations, || CholeskyCmaEs::new(cma.clone(), 1))?;
+        time::<f64, _>("cholesky-cma-es", generations, || CholeskyCmaEs::with_covariance(cma.clone(), 1))?;
     }
     if wanted("separable-cma-es") {
         let config = SeparableCmaEsConfig { population: 100, ..SeparableCmaEsConfig::new(mean.clone(), 0.5) };
-        time::<f64, _>("separable-cma-es", generations, || SeparableCmaEs::new(config.clone(), 1))?;
+        time::<f64, _>("separable-cma-es", generations, || SeparableCmaEs::with_covariance(config.clone(), 1))?;
     }
     if wanted("xnes") {
         let config = XnesConfig { population: 100, ..XnesConfig::new(mean.clone(), 0.5) };

@@ -259,3 +259,28 @@ impl fmt::Display for EvoError {
 }
 
 impl core::error::Error for EvoError {}
+
+/// Returns an error for a number of a configuration unless it is `possible`.
+pub(crate) fn check_setting(
+    possible: bool,
+    name: &'static str,
+    value: f64,
+    allowed: &'static str,
+) -> Result<(), EvoError> {
+    if possible { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
+}
+
+/// Returns an error for a number outside of a range, both ends of which are allowed.
+pub(crate) fn check_range(
+    name: &'static str,
+    value: f64,
+    range: [f64; 2],
+    allowed: &'static str,
+) -> Result<(), EvoError> {
+    check_setting((range[0]..=range[1]).contains(&value), name, value, allowed)
+}
+
+/// Returns an error for a probability outside 0 to 1.
+pub(crate) fn check_rate(name: &'static str, rate: f64) -> Result<(), EvoError> {
+    check_range(name, rate, [0.0, 1.0], "0 to 1")
+}

@@ -1,6 +1,7 @@
 //! Fitness that can always be compared.
 
-use core::cmp::Ordering;
+use alloc::vec::Vec;
+use core::cmp::{Ordering, Reverse};
 
 use crate::error::EvoError;
 
@@ -35,6 +36,20 @@ impl Fitness {
     /// The value, minus infinity for a failed evaluation.
     pub const fn get(self) -> f64 {
         self.0
+    }
+
+    /// Returns the indices of individuals by fitness, best first, equals by index.
+    ///
+    /// ```
+    /// use farsa_evo::Fitness;
+    ///
+    /// let fitness = [1.0, 5.0, f64::NAN, 5.0].map(Fitness::nan_as_failed);
+    /// assert_eq!(Fitness::ranking(&fitness), [1, 3, 0, 2]);
+    /// ```
+    pub fn ranking(fitness: &[Self]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..fitness.len()).collect();
+        order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
+        order
     }
 
     /// Whether this is [`Fitness::WORST`].
@@ -115,6 +130,12 @@ mod tests {
             }
         }
         assert!(Fitness::WORST.is_failed() && !Fitness::nan_as_failed(f64::MIN).is_failed());
+    }
+
+    #[test]
+    fn equal_individuals_rank_by_index() {
+        let fitness = [1.0, 5.0, f64::NAN, 5.0, 1.0, f64::NAN].map(Fitness::nan_as_failed);
+        assert_eq!(Fitness::ranking(&fitness), [1, 3, 0, 4, 2, 5]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::slice::{ChunksExact, ChunksExactMut};
 
-use farsa_num::Digest;
+use farsa_num::{Digest, ln};
 
 use crate::error::{EvoError, MAX_GENES};
 use crate::gene::Gene;
@@ -20,6 +20,13 @@ impl Population {
     /// The most genes a population may have together, 2^28 (512 MiB of words, 2 GiB of reals), so that a damaged configuration
     /// is refused before it is allocated.
     pub const MAX_GENES: usize = MAX_GENES;
+
+    /// The default number of individuals for `genes` real genes, 4 + 3 ln n rounded down.
+    ///
+    /// Source: \[Hansen2016\] eq. 48, \[Wierstra2014\] table 1.
+    pub(crate) fn default_size(genes: usize) -> usize {
+        4 + (3.0 * ln(genes.max(1) as f64)) as usize
+    }
 
     /// Whether [`Population::new`] would accept these sizes.
     pub(crate) fn check(individuals: usize, genome_len: usize) -> Result<(), EvoError> {
@@ -129,6 +136,12 @@ mod tests {
         assert_eq!(population.as_slice(), [0, 0, 1, 1, 2, 2]);
         assert_eq!((population.len(), population.genome_len(), population.iter().len()), (3, 2, 3));
         assert_eq!((population.get(2), population.get(3)), (Some(&[2, 2][..]), None));
+    }
+
+    #[test]
+    fn default_sizes_are_those_of_the_table() {
+        let sizes = [0, 1, 2, 3, 10, 100, 792, 1000].map(Population::default_size);
+        assert_eq!(sizes, [4, 4, 6, 7, 10, 17, 24, 24]);
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub(crate) fn between_states(population: &Population<f64>) -> u32 {
 }
 
 /// Reads a state from its front, little-endian.
-pub(crate) struct StateReader<'s> {
+pub struct StateReader<'s> {
     rest: &'s [u8],
     total: usize,
 }

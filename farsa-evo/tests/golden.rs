@@ -1,7 +1,7 @@
 //! The bits themselves. A change here is a change of every recorded run: CHANGELOG.md lists it under *Values*.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_evo::coevolution::Coevolution;
+use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{
     GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa, decode,
 };
@@ -73,7 +73,7 @@ fn one_plus_one_keeps_its_bits() {
 #[test]
 fn coevolution_keeps_its_bits() {
     let narrow = GaConfig { gene_bits: 8, ..GaConfig::new(20) };
-    let (got, ..) = digests(|| Coevolution::new(&[GaConfig::new(33), narrow], 2010).unwrap());
+    let (got, ..) = digests(|| Populations::truncation(&[GaConfig::new(33), narrow], 2010).unwrap());
     assert_eq!(got, [0xe7ae_3b09_c1ca_3298, 0xaaaf_3e62_d775_210e, 0x5a48_e5e8_d5b3_4951], "{got:#018x?}");
 }
 

@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::archives::cells::Cells;
 use crate::archives::cvt_cells::CvtCells;
+use crate::archives::grid_cells::Cells;
 use crate::archives::grid_cells::GridCells;
 use crate::error::EvoError;
 use crate::population::Population;

@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::archives::cells::Cells;
+use crate::archives::grid_cells::Cells;
 use crate::archives::nearest::Nearest;
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::population::Population;
-use crate::real::bounds::{check_bounds, check_setting, draw_within};
+use crate::real::bounds::{check_bounds, draw_within};
 
 /// The most iterations of k-means.
 const ITERATIONS: usize = 50;

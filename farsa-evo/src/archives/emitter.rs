@@ -2,8 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::error::EvoError;
-use crate::real::bounds::check_setting;
+use crate::error::{EvoError, check_setting};
 
 /// An emitter of a [`MapElites`](crate::archives::MapElites): how it makes its part of each generation.
 ///

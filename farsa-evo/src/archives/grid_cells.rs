@@ -1,11 +1,22 @@
-//! A division into boxes.
+//! Divisions of the space of measures into cells, and the grid.
 
 use alloc::vec::Vec;
 
-use crate::archives::cells::Cells;
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::population::Population;
-use crate::real::bounds::{check_bounds, check_setting};
+use crate::real::bounds::check_bounds;
+
+/// A division of the space of measures into cells.
+pub trait Cells {
+    /// Number of cells.
+    fn cells(&self) -> usize;
+
+    /// Number of values d of a measures.
+    fn measures(&self) -> usize;
+
+    /// The number of the cell, from 0, of a finite measures \[d\].
+    fn cell(&self, measures: &[f64]) -> usize;
+}
 
 /// A grid: each measure has a range, which is divided into as many parts of the same width as is said.
 ///
@@ -100,9 +111,11 @@ impl TryFrom<RawGrid> for GridCells {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use alloc::vec;
+
     use proptest::prelude::*;
+
+    use super::*;
 
     proptest! {
         /// The cell that is found by walking along each axis.

@@ -7,7 +7,7 @@ use farsa_num::Stream;
 use crate::archives::archive::Addition;
 use crate::covariance::coefficients::Coefficients;
 use crate::covariance::distribution::Distribution;
-use crate::covariance::full::FullCovariance;
+use crate::covariance::full::Full;
 use crate::error::EvoError;
 use crate::snapshot::StateReader;
 
@@ -22,7 +22,7 @@ pub(super) struct Improvement {
     batch: usize,
     /// The step size at every start.
     sigma: f64,
-    distribution: Distribution<FullCovariance>,
+    distribution: Distribution<Full>,
 }
 
 /// The coefficients of so many parents, with positive weights alone.
@@ -30,7 +30,7 @@ fn coefficients(genes: usize, parents: usize) -> Coefficients {
     Coefficients::new(genes, 2 * parents, false, None, |one, mu| (one, mu))
 }
 
-fn start(mean: Vec<f64>, sigma: f64, batch: usize) -> Distribution<FullCovariance> {
+fn start(mean: Vec<f64>, sigma: f64, batch: usize) -> Distribution<Full> {
     let own = Coefficients::new(mean.len(), batch, false, None, |one, mu| (one, mu));
     Distribution::new(mean, sigma, own)
 }
@@ -78,7 +78,7 @@ impl Improvement {
     }
 
     pub(super) fn state_length(genes: usize) -> usize {
-        Distribution::<FullCovariance>::state_length(genes)
+        Distribution::<Full>::state_length(genes)
     }
 
     pub(super) fn save(&self, state: &mut Vec<u8>) {

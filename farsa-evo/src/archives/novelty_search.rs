@@ -3,19 +3,76 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Domain, Stream};
+use farsa_num::{Domain, Scalar, Stream};
 
-use crate::archives::behaviors::novelty;
-use crate::archives::novelty_config::{ArchiveRule, NoveltyConfig};
-use crate::error::EvoError;
+use crate::error::{EvoError, check_rate, check_setting};
 use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::population::Population;
-use crate::real::bounds::check_setting;
 use crate::score_shape::ScoreShape;
 use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_scored};
+
+/// What a [`NoveltySearch`](crate::archives::NoveltySearch) needs to know besides the strategy that it drives; a plain value that is
+/// checked where it is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NoveltyConfig {
+    /// Number of values d of a measures, 1 to 1000.
+    #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
+    pub measures: usize,
+    /// Number k of nearest behaviours whose mean distance is the novelty, 1 or more; 15 in the source.
+    pub neighbours: usize,
+    /// Which behaviours enter the archive.
+    pub archive: ArchiveRule,
+}
+
+/// Which behaviours enter the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ArchiveRule {
+    /// Each with this probability, 0 to 1, whatever its novelty.
+    Random {
+        /// The probability.
+        rate: f64,
+    },
+    /// Those whose novelty is above a threshold, in the unit of the measures, that follows how many there are: it is
+    /// multiplied by 1.2 after a generation that added more than `most`, and by 0.95 after `patience` generations that added
+    /// none. It stays between 1e-100 and 1e100.
+    Threshold {
+        /// The first threshold, 1e-100 to 1e100.
+        first: f64,
+        /// The most additions of a generation that do not raise it; 4 in the program of the source.
+        most: usize,
+        /// Generations without additions that lower it, 1 or more; 10 in the program of the source.
+        patience: u32,
+    },
+}
+
+impl NoveltyConfig {
+    /// 15 neighbours \[Lehman2011\], and each behaviour enters the archive with probability 0.02, which is ours.
+    pub const fn new(measures: usize) -> Self {
+        Self { measures, neighbours: 15, archive: ArchiveRule::Random { rate: 0.02 } }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        let (d, k) = (self.measures, self.neighbours);
+        check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
+        check_setting(k > 0, "the number of neighbours", k as f64, "1 or more")?;
+        match self.archive {
+            ArchiveRule::Random { rate } => check_rate("the rate of the archive", rate),
+            ArchiveRule::Threshold { first, patience, .. } => {
+                check_setting((1e-100..=1e100).contains(&first), "the first threshold", first, "1e-100 to 1e100")?;
+                check_setting(patience > 0, "the patience of the archive", f64::from(patience), "1 or more")
+            }
+        }
+    }
+}
 
 /// The limits of a threshold.
 const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
@@ -270,5 +327,79 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
         (self.idle, self.threshold, self.archive) = (idle, threshold, archive);
         self.novelty.clear();
         Ok(())
+    }
+}
+
+/// The mean distance of each behaviour of a generation to the k nearest of the others and of an archive, of as many as there
+/// are if they are fewer; 0 if there are none. Behaviours that are none, being of failed evaluations, have none and are
+/// nobody's neighbours. [rows x d]
+pub(super) fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<Option<f64>> {
+    let mut nearest: Vec<f64> = Vec::with_capacity(k.min(rows.len() + archive.len() / d.max(1)));
+    let mut of = |own: usize, behaviour: &[f64]| {
+        nearest.clear();
+        let others = rows.iter().enumerate().filter(|(other, _)| *other != own).filter_map(|(_, row)| *row);
+        for other in others.chain(archive.chunks_exact(d.max(1))) {
+            let square = other.iter().zip(behaviour).fold(0.0, |sum, (a, b)| sum + (a - b) * (a - b));
+            if nearest.len() == k && nearest.last().is_some_and(|farthest| square >= *farthest) {
+                continue;
+            }
+            nearest.truncate(k - 1);
+            let place = nearest.partition_point(|near| *near <= square);
+            nearest.insert(place, square);
+        }
+        let sum: f64 = nearest.iter().map(|square| Scalar::sqrt(*square)).sum();
+        if nearest.is_empty() { 0.0 } else { sum / nearest.len() as f64 }
+    };
+    rows.iter().enumerate().map(|(own, row)| row.map(|behaviour| of(own, behaviour))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// By the definition: all distances, sorted.
+    fn naive(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<Option<f64>> {
+        let of = |own: usize| {
+            let mut all: Vec<&[f64]> = archive.chunks(d).collect();
+            all.extend((0..rows.len()).filter(|other| *other != own).filter_map(|other| rows[other]));
+            let distance = |other: &&[f64]| {
+                other.iter().zip(rows[own].unwrap()).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+            };
+            let mut distances: Vec<f64> = all.iter().map(distance).collect();
+            distances.sort_by(f64::total_cmp);
+            distances.truncate(k);
+            distances.iter().sum::<f64>() / distances.len().max(1) as f64
+        };
+        (0..rows.len()).map(|own| rows[own].map(|_| of(own))).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn novelty_is_that_of_the_definition(
+            d in 1_usize..4,
+            k in 1_usize..20,
+            rows in proptest::collection::vec(-4_i8..5, 0..60),
+            failed in proptest::collection::vec(any::<bool>(), 60),
+            archive in proptest::collection::vec(-4_i8..5, 0..60),
+        ) {
+            let row = |values: &[i8]| values[..values.len() / d * d].iter().map(|x| f64::from(*x)).collect::<Vec<f64>>();
+            let (all, archive) = (row(&rows), row(&archive));
+            let rows: Vec<Option<&[f64]>> = all.chunks(d).zip(&failed).map(|(row, failed)| (!failed).then_some(row)).collect();
+            prop_assert_eq!(novelty(&rows, &archive, d, k), naive(&rows, &archive, d, k));
+        }
+    }
+
+    #[test]
+    fn distances_by_hand() {
+        let rows: Vec<Option<&[f64]>> = vec![Some(&[0.0, 0.0]), Some(&[3.0, 4.0]), None, Some(&[6.0, 8.0])];
+        assert_eq!(
+            novelty(&rows, &[0.0, 1.0], 2, 2),
+            [Some(3.0), Some(0.5 * (5.0 + 18.0_f64.sqrt())), None, Some(0.5 * (5.0 + 85.0_f64.sqrt()))]
+        );
+        assert_eq!(novelty(&rows[..1], &[], 2, 5), [Some(0.0)]);
     }
 }

@@ -1,8 +1,7 @@
 //! What competitive co-evolution with generalist selection needs to know.
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::population::Population;
-use crate::real::bounds::check_setting;
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits};
 
 /// What a [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution) needs to know; a plain value that is checked where it is used.

@@ -2,8 +2,6 @@
 
 /// Cooperative Synapse Neuroevolution.
 mod cosyne;
-mod cosyne_config;
-mod ga_populations;
 /// Two populations with generalist selection.
 mod generalist;
 mod generalist_config;
@@ -12,9 +10,7 @@ mod outcomes;
 /// Several searches of one kind, one for each population.
 mod populations;
 
-pub use cosyne::Cosyne;
-pub use cosyne_config::{CosyneConfig, Permutation};
-pub use ga_populations::Coevolution;
+pub use cosyne::{Cosyne, CosyneConfig, Permutation};
 pub use generalist::GeneralistCoevolution;
 pub use generalist_config::GeneralistConfig;
 pub use outcomes::{Outcomes, Replacement};

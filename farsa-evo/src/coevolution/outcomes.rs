@@ -2,14 +2,12 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 
 use farsa_num::Stream;
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::real::bounds::check_setting;
 
 /// A newcomer that takes the place of a member of a population, [`Outcomes::replacements`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,8 +124,7 @@ impl Outcomes {
         check_setting(newcomers < all, "the number of newcomers", newcomers as f64, "0 to all individuals but one")?;
         let members = all - newcomers;
         let fitness = self.fitness();
-        let mut order: Vec<usize> = (0..all).collect();
-        order.sort_by_key(|&individual| Reverse(fitness[individual]));
+        let order = Fitness::ranking(&fitness);
         let (stay, go) = order.split_at(members);
         let leaving = go.iter().rev().filter(|&&individual| individual < members);
         let coming = stay.iter().rev().filter(|&&individual| individual >= members);

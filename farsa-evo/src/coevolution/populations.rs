@@ -1,4 +1,4 @@
-//! Several searches of one kind beside each other, a population each.
+//! Several searches of one kind, one for each population.
 
 use alloc::vec::Vec;
 
@@ -8,17 +8,20 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::SavedStrategy;
 use crate::score_shape::ScoreShape;
 use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader};
-use crate::strategy::{Collection, Member};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::strategy::{Collection, Genealogy, Member, RecordKind, Strategy, next_generation};
+use crate::words::{GaConfig, TruncationGa};
 
-/// Two or more searches of the same kind and size, each told the fitness, or the scores, of its own individuals.
+/// Two or more searches of the same kind and number of individuals. Each receives the fitness, or the scores, of its own
+/// individuals.
 ///
-/// The individuals of all stand in one [`Population`], one search after the other: individual `i` of population `p` is number
-/// `p * size + i`. Who meets whom is the caller's business. For bit strings of unequal lengths there is
-/// [`Coevolution`](crate::coevolution::Coevolution).
+/// All individuals are in one [`Population`], one search after the other: individual `i` of population `p` is number
+/// `p * size + i`. Genomes are as long as the longest, and shorter ones end in zeros. The caller chooses who is evaluated
+/// against whom.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -39,15 +42,81 @@ use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<Vec<GaConfig>>"))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "Self: TryFrom<SavedStrategy<Vec<GaConfig>>, Error = EvoError>"))
+)]
 pub struct Populations<S, G = f64> {
-    /// At least two, of the same number of individuals and of genes.
+    /// At least two, of the same number of individuals.
     members: Vec<S>,
+    kind: RecordKind,
     population: Population<G>,
 }
 
+impl Populations<TruncationGa, u16> {
+    /// Starts populations of integer genes with these configurations \[populations\], which may differ in all but the number
+    /// of individuals.
+    ///
+    /// All have the same seed. Population `p` draws from the streams of a [`TruncationGa`] with trial `p` instead of 0.
+    ///
+    /// ```
+    /// use farsa_evo::Strategy;
+    /// use farsa_evo::coevolution::Populations;
+    /// use farsa_evo::words::GaConfig;
+    ///
+    /// // Predators of five genes and prey of three, each evaluated against the first of the others.
+    /// let config = |genes| GaConfig { population: 20, parents: 4, ..GaConfig::new(genes) };
+    /// let mut search = Populations::truncation(&[config(5), config(3)], 11)?;
+    /// for _ in 0..10 {
+    ///     let (population, size) = (search.ask(), search.size());
+    ///     let [predator, prey] = [0, size].map(|first| population.get(first).expect("an individual")[0]);
+    ///     let catch = |genes: &[u16]| -f64::from(genes[0].abs_diff(prey));
+    ///     let flee = |genes: &[u16]| f64::from(genes[0].abs_diff(predator));
+    ///     let values: Vec<f64> =
+    ///         population.iter().enumerate().map(|(i, genes)| if i < size { catch(genes) } else { flee(genes) }).collect();
+    ///     search.tell_values(&values)?;
+    /// }
+    /// assert_eq!((search.generation(), search.populations(), search.ask().genome_len()), (10, 2, 5));
+    /// # Ok::<(), farsa_evo::EvoError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EvoError::FewPopulations`], [`EvoError::UnequalPopulations`], [`EvoError::TooLarge`] and those of
+    /// [`GaConfig::validate`].
+    pub fn truncation(configs: &[GaConfig], seed: u64) -> Result<Self, EvoError> {
+        let [GaConfig { population: first, .. }, _, ..] = *configs else {
+            return Err(EvoError::FewPopulations { populations: configs.len() });
+        };
+        configs.iter().try_for_each(GaConfig::validate)?;
+        if let Some(population) = configs.iter().position(|config| config.population != first) {
+            return Err(EvoError::UnequalPopulations {
+                first,
+                population,
+                individuals: configs[population].population,
+            });
+        }
+        let longest = configs.iter().map(|config| config.genes).max().unwrap_or(0);
+        Population::check(first.saturating_mul(configs.len()), longest)?;
+        let members = configs.iter().zip(0..).map(|(config, number)| TruncationGa::numbered(*config, seed, number));
+        Self::gathered(members.collect::<Result<_, _>>()?, RecordKind::Order)
+    }
+
+    /// The configuration of each population.
+    pub fn configs(&self) -> impl Iterator<Item = &GaConfig> {
+        self.members.iter().map(TruncationGa::config)
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.members.first().map_or(0, TruncationGa::seed)
+    }
+}
+
 impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
-    /// So many searches of those that `search` makes, each of a seed of its own. The first has `seed`; the seed of number
-    /// `p` is drawn from the stream (`seed`, [`Domain::General`], trial 0, `p`, generation 0).
+    /// Starts the given number of searches that `search` makes of their seeds. The first has `seed`. The seed of number `p` is
+    /// drawn from the stream (`seed`, [`Domain::General`], trial 0, `p`, generation 0).
     ///
     /// # Errors
     /// [`EvoError::FewPopulations`] for fewer than two, [`EvoError::UnequalPopulations`] and [`EvoError::Lengths`] for searches
@@ -63,20 +132,30 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
         members.push(first);
         for number in 1..populations {
             let mut stream = Stream::new(seed, Domain::General, 0, number as u32, 0);
-            let own = u64::from(stream.next_u32()) | u64::from(stream.next_u32()) << 32;
-            let member = search(own)?;
-            let (individuals, found) = (member.ask().len(), member.ask().genome_len());
+            let member = search(u64::from(stream.next_u32()) | u64::from(stream.next_u32()) << 32)?;
+            let (individuals, length) = (member.ask().len(), member.ask().genome_len());
             if individuals != size {
                 return Err(EvoError::UnequalPopulations { first: size, population: number, individuals });
             }
-            if found != genes {
-                return Err(EvoError::Lengths { genes: found, ranges: genes, out: genes });
+            if length != genes {
+                return Err(EvoError::Lengths { genes: length, ranges: genes, out: genes });
             }
             members.push(member);
         }
-        let mut all = Self { members, population: Population::new(size * populations, genes)? };
-        all.gather();
-        Ok(all)
+        // Values even where a search depends on their order alone. Records of this kind have always contained them.
+        let kind = match members.first().map(Strategy::record_kind) {
+            Some(RecordKind::Genomes) => RecordKind::Genomes,
+            _ => RecordKind::Values,
+        };
+        Self::gathered(members, kind)
+    }
+
+    fn gathered(members: Vec<S>, kind: RecordKind) -> Result<Self, EvoError> {
+        let individuals = members.iter().map(|member| member.ask().len()).sum();
+        let longest = members.iter().map(|member| member.ask().genome_len()).max().unwrap_or(0);
+        let mut populations = Self { members, kind, population: Population::new(individuals, longest)? };
+        populations.gather();
+        Ok(populations)
     }
 
     /// The searches, one for each population.
@@ -89,10 +168,12 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
         self.population.len() / self.members.len()
     }
 
-    /// Copies the genomes of all searches.
+    /// Copies the genomes of all searches. Zeros after a shorter genome stay.
     fn gather(&mut self) {
-        let own = self.members.iter().flat_map(|member| member.ask().as_slice());
-        self.population.as_mut_slice().iter_mut().zip(own).for_each(|(gene, own)| *gene = *own);
+        let genomes = self.members.iter().flat_map(|member| member.ask().iter());
+        for (copy, genome) in self.population.iter_mut().zip(genomes) {
+            copy.iter_mut().zip(genome).for_each(|(copy, gene)| *copy = *gene);
+        }
     }
 }
 
@@ -106,7 +187,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for Populations<S, G> {
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        // Checked for all before any is told: none of them can refuse afterwards.
+        // Checked for all first, so that no search can return an error after another has changed.
         self.score_shape().check(ScoreShape::FITNESS)?;
         next_generation(self.generation(), self.population.len(), fitness)?;
         let size = self.size();
@@ -136,12 +217,8 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for Populations<S, G> {
         self.members.len()
     }
 
-    /// That of the searches; but values where only their order counts, because an order of all says nothing of each.
     fn record_kind(&self) -> RecordKind {
-        match self.members.first().map(Strategy::record_kind) {
-            Some(RecordKind::Genomes) => RecordKind::Genomes,
-            _ => RecordKind::Values,
-        }
+        self.kind
     }
 
     fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
@@ -170,12 +247,12 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for Populations<S, G> {
         self.members.first()?.collection().map(|_| self as &dyn Collection)
     }
 
-    /// Never: populations may meet, and what an individual earns depends on whom it met.
+    /// Never, because fitness may depend on the opponents of an individual.
     fn champion_is_best_ever(&self) -> bool {
         false
     }
 
-    /// Those of one search after the other.
+    /// The numbers of one search after the other.
     fn diagnostics(&self) -> Vec<f64> {
         self.members.iter().flat_map(Strategy::diagnostics).collect()
     }
@@ -206,7 +283,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Snapshot for Populations<S, G> {
         self.members.iter().map(Snapshot::snapshot_interval).min().unwrap_or(u32::MAX)
     }
 
-    /// The states of the searches, each with its length in front.
+    /// Returns the state of each search after its length, a `u64`.
     fn save(&self) -> Vec<u8> {
         let mut all = Vec::new();
         for state in self.members.iter().map(Snapshot::save) {
@@ -217,7 +294,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Snapshot for Populations<S, G> {
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        // Taken back where a later one is refused.
+        // Earlier searches return to their states when a later state is invalid.
         let before: Vec<Vec<u8>> = self.members.iter().map(Snapshot::save).collect();
         let restored = self.restore_members(state);
         if restored.is_err() {
@@ -255,14 +332,39 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
     }
 }
 
+#[cfg(feature = "serde")]
+impl serde::Serialize for Populations<TruncationGa, u16> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if self.kind != RecordKind::Order {
+            return Err(serde::ser::Error::custom("populations with seeds of their own cannot be serialized"));
+        }
+        let configs: Vec<GaConfig> = self.configs().copied().collect();
+        SavedStrategy::new(configs, self.seed(), self).serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<SavedStrategy<Vec<GaConfig>>> for Populations<TruncationGa, u16> {
+    type Error = EvoError;
+
+    fn try_from(saved: SavedStrategy<Vec<GaConfig>>) -> Result<Self, EvoError> {
+        let product = |config: &GaConfig| config.population.saturating_mul(config.genes);
+        saved.holds(saved.config.iter().map(product).fold(0, usize::saturating_add), 1)?;
+        let mut strategy = Self::truncation(&saved.config, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+
     use super::*;
     use crate::conformance::check_strategy;
     use crate::covariance::{CmaEs, CmaEsConfig};
     use crate::real::{RealGa, RealGaConfig};
     use crate::words::{GaConfig, TruncationGa};
-    use alloc::vec;
 
     fn searches() -> Populations<CmaEs> {
         Populations::new(3, 5, |seed| CmaEs::new(CmaEsConfig::new(vec![0.0; 4], 0.5), seed)).unwrap()
@@ -360,5 +462,50 @@ mod tests {
         }
         all.restore(&fresh).unwrap();
         assert_eq!(all, searches());
+    }
+
+    fn configs() -> [GaConfig; 3] {
+        let small = GaConfig { population: 6, parents: 3, mutation_rate: 0.1, ..GaConfig::new(4) };
+        [small, GaConfig { genes: 7, parents: 2, ..small }, GaConfig { gene_bits: 8, ..small }]
+    }
+
+    #[test]
+    fn population_0_is_a_lone_truncation_ga_and_no_other_is() {
+        let mut all = Populations::truncation(&configs(), 5).unwrap();
+        let mut record = crate::Record::new(&mut all).unwrap();
+        let mut alone = configs().map(|config| TruncationGa::new(config, 5).unwrap());
+        assert_eq!((all.ask().len(), all.ask().genome_len(), all.size(), all.populations()), (18, 7, 6, 3));
+        for generation in 0..12 {
+            for (individual, genome) in all.ask().iter().enumerate() {
+                let own = alone[individual / 6].ask().get(individual % 6).unwrap();
+                assert_eq!(&genome[..own.len()] == own, individual < 6, "{individual} of {generation}");
+                assert!(genome[configs()[individual / 6].genes..].iter().all(|&gene| gene == 0));
+            }
+            let fitness = told(generation, 18);
+            record.tell(&mut all, &fitness).unwrap();
+            alone.iter_mut().zip(fitness.chunks(6)).for_each(|(ga, fitness)| ga.tell(fitness).unwrap());
+            assert_eq!(all.generation(), generation + 1);
+            for (population, ga) in alone.iter().enumerate() {
+                let first = ga.selected()[0] as usize;
+                assert_eq!(record.champion(population, generation), Some(6 * population + first));
+                assert_eq!(all.parents_of(6 * population + 4), [6 * population + ga.parents_of(4)[0]]);
+            }
+        }
+        assert_eq!(record.champion(3, 0), None);
+        assert!(all.parents_of(18).is_empty());
+    }
+
+    #[test]
+    fn truncation_populations_of_unequal_sizes_are_refused() {
+        let [a, b, c] = configs();
+        assert_eq!(Populations::truncation(&[a], 1), Err(EvoError::FewPopulations { populations: 1 }));
+        let other = GaConfig { population: 9, ..c };
+        let unequal = EvoError::UnequalPopulations { first: 6, population: 2, individuals: 9 };
+        assert_eq!(Populations::truncation(&[a, b, other], 1), Err(unequal));
+        assert_eq!(Populations::truncation(&[a, GaConfig { genes: 0, ..b }], 1), Err(EvoError::NoGenes));
+        let mut all = Populations::truncation(&[a, b], 1).unwrap();
+        let before = all.clone();
+        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::FitnessCount { expected: 12, found: 6 }));
+        assert_eq!(all, before);
     }
 }

@@ -7,8 +7,8 @@ use farsa_num::fearless_simd::{Simd, dispatch};
 use farsa_num::{Instructions, Scalar};
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Covariance, bounded};
-use crate::covariance::full::add_squares;
+use crate::covariance::distribution::{Matrix, bounded};
+use crate::covariance::full::{add_squares, interval_of_cubes, symmetric};
 use crate::covariance::linear::{dot_in_vectors, dots_in_vectors};
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
@@ -23,7 +23,7 @@ const DIAGONAL: [f64; 2] = [1e-40, 1e40];
 
 /// A covariance matrix C = A A^T and its lower triangular factor A, which is computed only now and then.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct CholeskyCovariance {
+pub struct Cholesky {
     n: usize,
     /// The matrix C [n x n], of which the lower triangle counts.
     matrix: Vec<f64>,
@@ -35,13 +35,7 @@ pub(crate) struct CholeskyCovariance {
     interval: f64,
 }
 
-impl CholeskyCovariance {
-    /// The matrix [n x n].
-    pub(crate) fn matrix(&self) -> Vec<f64> {
-        let element = |i: usize, j: usize| self.matrix[i.max(j) * self.n + i.min(j)];
-        (0..self.n).flat_map(|i| (0..self.n).map(move |j| element(i, j))).collect()
-    }
-
+impl Cholesky {
     fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
         self.factor.iter().step_by(self.n + 1).copied()
     }
@@ -101,7 +95,7 @@ fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     factor.iter().all(|x| x.is_finite()).then_some(factor)
 }
 
-impl Covariance for CholeskyCovariance {
+impl Matrix for Cholesky {
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
@@ -161,6 +155,14 @@ impl Covariance for CholeskyCovariance {
         self.factor.iter_mut().for_each(|x| *x *= root);
     }
 
+    fn matrix(&self) -> Vec<f64> {
+        symmetric(&self.matrix, self.n)
+    }
+
+    fn snapshot_interval(genes: usize) -> u32 {
+        interval_of_cubes(genes, 100_000_000_000)
+    }
+
     fn state_length(n: usize) -> usize {
         4 + 8 * n * (n + 1)
     }
@@ -207,8 +209,8 @@ mod tests {
         a
     }
 
-    fn of(matrix: Vec<f64>, n: usize) -> CholeskyCovariance {
-        let mut covariance = CholeskyCovariance { n, factor: vec![0.0; n * n], matrix, age: 5, interval: 1.0 };
+    fn of(matrix: Vec<f64>, n: usize) -> Cholesky {
+        let mut covariance = Cholesky { n, factor: vec![0.0; n * n], matrix, age: 5, interval: 1.0 };
         covariance.factorize();
         covariance
     }

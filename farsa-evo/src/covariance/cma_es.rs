@@ -3,104 +3,95 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::covariance::coefficients::{Coefficients, check, default_population, ranked};
-use crate::covariance::distribution::{Distribution, MEANS, STEP_SIZES};
-use crate::covariance::full::FullCovariance;
-use crate::covariance::search::search;
+use crate::covariance::cholesky::Cholesky;
+use crate::covariance::config::{CmaEsConfig, SeparableCmaEsConfig, Start};
+use crate::covariance::diagonal::Diagonal;
+use crate::covariance::distribution::{Distribution, Matrix};
+use crate::covariance::full::Full;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 
-/// What a [`CmaEs`] needs to know; a plain value that is checked where it is used.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct CmaEsConfig {
-    /// The initial mean m, a number for each gene, of magnitude up to 10^100.
-    pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes: about a third of how far the optimum may lie
-    /// from the mean in each gene.
-    pub sigma: f64,
-    /// Number of individuals lambda, at least 2. \[Hansen2016\] eq. 48.
-    pub population: usize,
-    /// Whether the worse half has negative weights. \[Hansen2016\] eq. 53.
-    pub active: bool,
-    /// The rate of the rank-one update `c_1`, 0 to 1, if not that of \[Hansen2016\] eq. 57.
-    pub rank_one_rate: Option<f64>,
-    /// The rate of the rank-mu update `c_mu`, 0 to 1 - `c_1`, if not that of \[Hansen2016\] eq. 58.
-    pub rank_mu_rate: Option<f64>,
-    /// The damping of the step size `d_sigma`, 0.001 to 1000, if not that of \[Hansen2016\] eq. 55.
-    pub damping: Option<f64>,
+/// A kind of covariance matrix that [`CmaEs`] adapts: [`Full`], [`Cholesky`] or [`Diagonal`].
+pub trait Covariance: Matrix {
+    /// The configuration of a search with this kind of matrix.
+    type Config: Start;
 }
 
-impl CmaEsConfig {
-    /// The defaults of \[Hansen2016\] table 1 for n genes: 4 + 3 ln n individuals, rounded down, and negative weights.
-    pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
-        let population = default_population(mean.len());
-        Self { mean, sigma, population, active: true, rank_one_rate: None, rank_mu_rate: None, damping: None }
-    }
-
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`], [`EvoError::TooLarge`] for more genes of a population, or elements of
-    /// the covariance matrix, than [`Population::MAX_GENES`]; [`EvoError::Setting`].
-    pub fn validate(&self) -> Result<(), EvoError> {
-        let genes = self.mean.len();
-        check_start(&self.mean, self.sigma, self.population)?;
-        Population::check(genes, genes)?;
-        let rank_one = self.rank_one_rate.unwrap_or(0.0);
-        check("rank_one_rate", rank_one, [0.0, 1.0], "0 to 1")?;
-        let rank_one =
-            self.rank_one_rate.unwrap_or(Coefficients::new(genes, self.population, false, None, same).rank_one);
-        check("rank_mu_rate", self.rank_mu_rate.unwrap_or(0.0), [0.0, 1.0 - rank_one], "0 to 1 - rank_one_rate")?;
-        check("damping", self.damping.unwrap_or(1.0), [0.001, 1000.0], "0.001 to 1000")
-    }
-
-    pub(super) fn coefficients(&self) -> Coefficients {
-        self.coefficients_of(self.population)
-    }
-
-    /// The coefficients of another number of individuals.
-    pub(super) fn coefficients_of(&self, population: usize) -> Coefficients {
-        let rates = |one: f64, mu: f64| {
-            let one = self.rank_one_rate.unwrap_or(one);
-            (one, self.rank_mu_rate.unwrap_or(mu).min(1.0 - one))
-        };
-        Coefficients::new(self.mean.len(), population, self.active, self.damping, rates)
-    }
+impl Covariance for Full {
+    type Config = CmaEsConfig;
 }
 
-fn same(rank_one: f64, rank_mu: f64) -> (f64, f64) {
-    (rank_one, rank_mu)
+impl Covariance for Cholesky {
+    type Config = CmaEsConfig;
 }
 
-/// Checks what all searches of a normal distribution start from.
-pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result<(), EvoError> {
-    Population::check(population, mean.len())?;
-    check("population", population as f64, [2.0, f64::INFINITY], "at least 2")?;
-    check("sigma", sigma, STEP_SIZES, "1e-100 to 1e100")?;
-    mean.iter().try_for_each(|&x| check("mean", x, MEANS, "-1e100 to 1e100"))
+impl Covariance for Diagonal {
+    type Config = SeparableCmaEsConfig;
 }
 
-/// Covariance matrix adaptation: individuals are drawn from a normal distribution, whose mean, step size and covariance
-/// follow the better ones. Genes are unbounded reals.
+/// Covariance matrix adaptation with a Cholesky factor. A generation of many genes takes a fraction of the time of
+/// [`CmaEs<Full>`](CmaEs), which spends most of it on the axes.
 ///
-/// It asks for nothing but the order of the individuals, searches alike however the axes of the genes are turned, and learns
-/// how genes are scaled and which depend on each other. An update takes n^2 operations an individual, and the axes of the
-/// distribution, computed every 1 / (10 n (`c_1` + `c_mu`)) generations, n^3: it is for up to about a thousand genes.
+/// It differs from [`CmaEs<Full>`](CmaEs) in one thing. The path of the step size turns steps by A^-1 of C = A A^T instead of
+/// C^-1/2, so the two paths differ once C is no multiple of the identity. It learns as well.
 ///
-/// Equals rank by index; failed evaluations rank last. A generation of which all evaluations failed leaves the distribution
-/// as it is, and the next one draws from it again. This is why values are recorded and not the order alone, in which such a
-/// generation looks like any other.
+/// Source: \[Krause2016\], which updates the factor in every generation. Here it is computed from C every
+/// 1 / (10 n (`c_1` + `c_mu`)) generations. Deviations: those of `CmaEs`, and squares on the factor's diagonal are at least
+/// 10^-16 of the largest.
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{CholeskyCmaEs, CmaEsConfig};
+///
+/// let mut search = CholeskyCmaEs::with_covariance(CmaEsConfig::new(vec![0.0; 3], 0.5), 1)?;
+/// let goal = [1.0, -2.0, 0.5];
+/// let champion = search.maximize(120, |x| -x.iter().zip(goal).map(|(x, goal)| (x - goal) * (x - goal)).sum::<f64>())?;
+/// assert!(champion.fitness.get() > -1e-10);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+pub type CholeskyCmaEs = CmaEs<Cholesky>;
+
+/// Covariance matrix adaptation with a diagonal matrix. Each gene has its own variance and genes stay independent.
+///
+/// The time of a generation rises with the number of genes instead of its square, and the search learns (n + 2) / 3 times as
+/// fast as [`CmaEs<Full>`](CmaEs). It is for many genes, or for genes that matter one by one.
+///
+/// Source: \[Ros2008\], with the weights and rates of \[Hansen2016\] table 1. The rates of the covariance are multiplied by
+/// (n + 2) / 3 and sum to at most 1. Deviations: larger fitness is better, and variances are at least 10^-30 of the largest. No
+/// weight is negative, as in the source.
+///
+/// ```
+/// use farsa_evo::Strategy;
+/// use farsa_evo::covariance::{SeparableCmaEs, SeparableCmaEsConfig};
+///
+/// let mut search = SeparableCmaEs::with_covariance(SeparableCmaEsConfig::new(vec![1.0; 20], 0.5), 1)?;
+/// let champion = search.maximize(400, |x| -x.iter().map(|x| x * x).sum::<f64>())?;
+/// assert!(champion.fitness.get() > -1e-10);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+pub type SeparableCmaEs = CmaEs<Diagonal>;
+
+/// Covariance matrix adaptation. Individuals are drawn from a normal distribution, whose mean, step size and covariance follow
+/// the better ones. Genes are unbounded reals.
+///
+/// The search depends on the order of the individuals only. It is invariant to rotations of the genes, and learns their scales
+/// and correlations. An update takes n^2 operations an individual. The axes of the distribution take n^3, once every
+/// 1 / (10 n (`c_1` + `c_mu`)) generations. It is for up to about a thousand genes.
+///
+/// Equal individuals rank by index, failed evaluations last. A generation of which all evaluations failed leaves the
+/// distribution unchanged, and the next one is drawn from it again. Records therefore contain values: an order does not show
+/// that a generation failed.
 ///
 /// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0,
 /// `i`, `g`), in generation 0 from [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome).
+/// [`diagnostics`](Strategy::diagnostics) are the step size and the axis ratio.
 ///
 /// Source: \[Hansen2016\] appendix A. Deviations: larger fitness is better. Variances along axes are at least 10^-16 of the
-/// largest, the step size stays within 10^-100 and 10^100, and where the largest variance leaves 10^-30 to 10^30 the step size
-/// takes its place.
+/// largest. The step size stays within 10^-100 and 10^100. Where the largest variance leaves 10^-30 to 10^30, the excess moves
+/// into the step size.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -114,29 +105,40 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct CmaEs {
-    config: CmaEsConfig,
+pub struct CmaEs<C: Covariance = Full> {
+    config: C::Config,
     seed: u64,
     generation: u32,
-    distribution: Distribution<FullCovariance>,
+    distribution: Distribution<C>,
     population: Population<f64>,
 }
 
 impl CmaEs {
-    /// A search at its first generation.
+    /// Starts a search with a full covariance matrix.
     ///
     /// # Errors
     /// Those of [`CmaEsConfig::validate`].
     pub fn new(config: CmaEsConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let mut population = Population::new(config.population, config.mean.len())?;
-        let mut distribution = Distribution::new(config.mean.clone(), config.sigma, config.coefficients());
+        Self::with_covariance(config, seed)
+    }
+}
+
+impl<C: Covariance> CmaEs<C> {
+    /// Starts a search with the covariance matrix of the type.
+    ///
+    /// # Errors
+    /// Those of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`].
+    pub fn with_covariance(config: C::Config, seed: u64) -> Result<Self, EvoError> {
+        config.check()?;
+        let (mean, sigma, population) = config.start();
+        let mut population = Population::new(population, mean.len())?;
+        let mut distribution = Distribution::new(mean.to_vec(), sigma, config.coefficients());
         distribution.sample(seed, 0, &mut population);
         Ok(Self { config, seed, generation: 0, distribution, population })
     }
 
     /// The configuration.
-    pub fn config(&self) -> &CmaEsConfig {
+    pub fn config(&self) -> &C::Config {
         &self.config
     }
 
@@ -145,7 +147,7 @@ impl CmaEs {
         self.seed
     }
 
-    /// The mean m \[genes\] of the current generation's distribution: the best guess where fitness is noisy.
+    /// The mean m \[genes\] of the current generation's distribution, the best estimate where fitness is noisy.
     pub fn mean(&self) -> &[f64] {
         &self.distribution.mean
     }
@@ -155,22 +157,71 @@ impl CmaEs {
         self.distribution.sigma
     }
 
-    /// The covariance matrix C [genes x genes], as of the latest update; individuals are drawn with sigma^2 times it.
+    /// The covariance matrix C [genes x genes] after the latest update. Individuals are drawn with sigma^2 C.
     pub fn covariance(&self) -> Vec<f64> {
         self.distribution.covariance.matrix()
     }
 
-    /// The ratio of the longest to the shortest axis of the distribution.
+    /// The ratio of the longest to the shortest axis of the distribution. For [`Cholesky`] it is the ratio of the largest to the
+    /// smallest number on the factor's diagonal, a lower bound of the ratio of the axes.
     pub fn axis_ratio(&self) -> f64 {
         self.distribution.axis_ratio()
     }
 }
 
-/// How many generations are told again in some seconds: a generation takes time in proportion to the cube of its genes, 0.1 s
-/// for 792.
-pub(super) fn between_states(genes: usize) -> u32 {
-    let cube = (genes as u64).saturating_pow(3).max(1);
-    u32::try_from(20_000_000_000 / cube).unwrap_or(u32::MAX).max(1)
+impl SeparableCmaEs {
+    /// The variances \[genes\], the diagonal of C. Individuals are drawn with sigma^2 times them.
+    pub fn variances(&self) -> &[f64] {
+        &self.distribution.covariance.variances
+    }
 }
 
-search!(CmaEs, FullCovariance, between_states);
+impl<C: Covariance> Strategy<f64> for CmaEs<C> {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.generation = next_generation(self.generation, self.population.len(), fitness)?;
+        if fitness.iter().any(|fitness| !fitness.is_failed()) {
+            self.distribution.update(&Fitness::ranking(fitness));
+        }
+        self.distribution.sample(self.seed, self.generation, &mut self.population);
+        Ok(())
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn diagnostics(&self) -> Vec<f64> {
+        vec![self.sigma(), self.axis_ratio()]
+    }
+}
+
+impl<C: Covariance> Snapshot for CmaEs<C> {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(4 + Distribution::<C>::state_length(self.mean().len()));
+        state.extend(self.generation.to_le_bytes());
+        self.distribution.save(&mut state);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let mut reader = StateReader::new(state, 4 + Distribution::<C>::state_length(self.mean().len()))?;
+        let generation = reader.u32()?;
+        let mut distribution = self.distribution.clone();
+        distribution.restore(&mut reader)?;
+        (self.generation, self.distribution) = (generation, distribution);
+        self.distribution.sample(self.seed, generation, &mut self.population);
+        Ok(())
+    }
+
+    fn snapshot_interval(&self) -> u32 {
+        C::snapshot_interval(self.mean().len())
+    }
+}

@@ -1,16 +1,12 @@
 //! Weights and learning rates of covariance matrix adaptation.
 
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 
 use farsa_num::{Scalar, exp, ln};
 
-use crate::error::EvoError;
-use crate::fitness::Fitness;
-
 /// Weights and learning rates: functions of the number of genes and individuals.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Coefficients {
+pub struct Coefficients {
     /// Weights w of the ranks, best first; those of the mean's parents are positive with sum 1, others zero or negative.
     pub(crate) weights: Vec<f64>,
     /// Number of parents, mu.
@@ -90,23 +86,6 @@ fn effective(weights: &[f64]) -> f64 {
     sum * sum / weights.iter().map(|w| w * w).sum::<f64>()
 }
 
-/// The default number of individuals, 4 + 3 ln n rounded down.
-pub(crate) fn default_population(genes: usize) -> usize {
-    4 + (3.0 * ln(genes.max(1) as f64)) as usize
-}
-
-/// Refuses a number that is not within these limits.
-pub(crate) fn check(name: &'static str, value: f64, range: [f64; 2], allowed: &'static str) -> Result<(), EvoError> {
-    if (range[0]..=range[1]).contains(&value) { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
-}
-
-/// The individuals, best first, equals by index.
-pub(crate) fn ranked(fitness: &[Fitness]) -> Vec<usize> {
-    let mut ranked: Vec<usize> = (0..fitness.len()).collect();
-    ranked.sort_by_key(|&individual| Reverse(fitness[individual]));
-    ranked
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,7 +96,6 @@ mod tests {
 
     #[test]
     fn defaults_are_those_of_the_table() {
-        assert_eq!([1, 2, 3, 10, 100, 792].map(default_population), [4, 6, 7, 10, 17, 24]);
         // By hand from table 1 for n = 10: ln 5.5 - ln i, normalized.
         let coefficients = Coefficients::new(10, 10, true, None, |one, mu| (one, mu));
         let Coefficients { weights, parents, effective, .. } = &coefficients;
@@ -147,11 +125,5 @@ mod tests {
             let possible = rank_mu > 0.0 && rank_one + rank_mu < 1.0;
             assert_eq!(negative > 1e-9, possible, "{genes} genes, {population} individuals");
         }
-    }
-
-    #[test]
-    fn equals_rank_by_index() {
-        let fitness = [1.0, 5.0, f64::NAN, 5.0, 1.0, f64::NAN].map(Fitness::nan_as_failed);
-        assert_eq!(ranked(&fitness), [1, 3, 0, 4, 2, 5]);
     }
 }

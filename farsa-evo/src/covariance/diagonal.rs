@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Covariance, bounded};
+use crate::covariance::distribution::{Matrix, bounded};
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
 
@@ -17,12 +17,12 @@ const VARIANCES: [f64; 2] = [1e-80, 1e80];
 
 /// The variance of each gene.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct DiagonalCovariance {
+pub struct Diagonal {
     /// The variances \[n\].
     pub(super) variances: Vec<f64>,
 }
 
-impl Covariance for DiagonalCovariance {
+impl Matrix for Diagonal {
     fn identity(n: usize, _: &Coefficients) -> Self {
         Self { variances: vec![1.0; n] }
     }
@@ -58,6 +58,17 @@ impl Covariance for DiagonalCovariance {
         self.variances.iter_mut().for_each(|variance| *variance *= factor);
     }
 
+    fn matrix(&self) -> Vec<f64> {
+        let n = self.variances.len();
+        let mut matrix = vec![0.0; n * n];
+        matrix.iter_mut().step_by(n + 1).zip(&self.variances).for_each(|(x, variance)| *x = *variance);
+        matrix
+    }
+
+    fn snapshot_interval(_: usize) -> u32 {
+        u32::MAX
+    }
+
     fn state_length(n: usize) -> usize {
         8 * n
     }
@@ -74,12 +85,12 @@ impl Covariance for DiagonalCovariance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::covariance::cma_es::CmaEsConfig;
+    use crate::covariance::config::CmaEsConfig;
 
     #[test]
     fn scaling_multiplies_variances() {
         let coefficients = CmaEsConfig::new(vec![0.0; 3], 1.0).coefficients_of(8);
-        let mut covariance = DiagonalCovariance::identity(3, &coefficients);
+        let mut covariance = Diagonal::identity(3, &coefficients);
         covariance.variances = vec![0.5, 2.0, 8.0];
         covariance.scale(0.25);
         assert_eq!((&covariance.variances[..], covariance.extremes()), (&[0.125, 0.5, 2.0][..], [0.125, 2.0]));

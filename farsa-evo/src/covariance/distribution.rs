@@ -23,7 +23,7 @@ const TRIES: usize = 100;
 const STATE: f64 = 1e140;
 
 /// A covariance matrix that is adapted.
-pub(crate) trait Covariance: Sized {
+pub trait Matrix: Clone + core::fmt::Debug + PartialEq {
     /// The identity of so many genes, which learns at these rates.
     fn identity(genes: usize, coefficients: &Coefficients) -> Self;
 
@@ -41,6 +41,12 @@ pub(crate) trait Covariance: Sized {
 
     /// Multiplies all variances.
     fn scale(&mut self, factor: f64);
+
+    /// The matrix [genes x genes].
+    fn matrix(&self) -> Vec<f64>;
+
+    /// The number of generations between two saved states.
+    fn snapshot_interval(genes: usize) -> u32;
 
     /// Bytes of a saved state.
     fn state_length(genes: usize) -> usize;
@@ -74,7 +80,7 @@ pub(crate) struct Distribution<C> {
     steps: Vec<f64>,
 }
 
-impl<C: Covariance> Distribution<C> {
+impl<C: Matrix> Distribution<C> {
     pub(crate) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
         let n = mean.len();
         let covariance = C::identity(n, &coefficients);

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Covariance, bounded, multiply};
+use crate::covariance::distribution::{Matrix, bounded, multiply};
 use crate::covariance::eigen::SymmetricEigen;
 use crate::covariance::linear::add_rows;
 use crate::error::EvoError;
@@ -22,7 +22,7 @@ const DEVIATIONS: [f64; 2] = [1e-40, 1e40];
 
 /// A covariance matrix and its eigenvectors, which are computed only now and then.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FullCovariance {
+pub struct Full {
     n: usize,
     /// The matrix C [n x n], of which the lower triangle counts.
     matrix: Vec<f64>,
@@ -36,13 +36,7 @@ pub(crate) struct FullCovariance {
     interval: f64,
 }
 
-impl FullCovariance {
-    /// The matrix [n x n].
-    pub(crate) fn matrix(&self) -> Vec<f64> {
-        let element = |i: usize, j: usize| self.matrix[i.max(j) * self.n + i.min(j)];
-        (0..self.n).flat_map(|i| (0..self.n).map(move |j| element(i, j))).collect()
-    }
-
+impl Full {
     /// The standard deviations \[n\] of the genes.
     pub(crate) fn gene_deviations(&self) -> impl Iterator<Item = f64> + '_ {
         self.matrix.iter().step_by(self.n + 1).map(|variance| Scalar::sqrt(variance.max(0.0)))
@@ -66,6 +60,18 @@ impl FullCovariance {
     }
 }
 
+/// The symmetric matrix [n x n] of a lower triangle.
+pub(super) fn symmetric(lower: &[f64], n: usize) -> Vec<f64> {
+    let element = |i: usize, j: usize| lower[i.max(j) * n + i.min(j)];
+    (0..n).flat_map(|i| (0..n).map(move |j| element(i, j))).collect()
+}
+
+/// The number of generations that take some seconds, where one takes `genes`^3 of `cubes` steps.
+pub(super) fn interval_of_cubes(genes: usize, cubes: u64) -> u32 {
+    let cube = (genes as u64).saturating_pow(3).max(1);
+    u32::try_from(cubes / cube).unwrap_or(u32::MAX).max(1)
+}
+
 /// Keeps so much of the lower triangle of a matrix [n x n] and adds the squares of rows [factors x n], each times its factor.
 #[inline(always)]
 pub(super) fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f64], rows: &[f64]) {
@@ -81,7 +87,7 @@ pub(super) fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f6
     }
 }
 
-impl Covariance for FullCovariance {
+impl Matrix for Full {
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
@@ -130,6 +136,14 @@ impl Covariance for FullCovariance {
         self.deviations.iter_mut().for_each(|d| *d *= root);
     }
 
+    fn matrix(&self) -> Vec<f64> {
+        symmetric(&self.matrix, self.n)
+    }
+
+    fn snapshot_interval(genes: usize) -> u32 {
+        interval_of_cubes(genes, 20_000_000_000)
+    }
+
     fn state_length(n: usize) -> usize {
         4 + 8 * (n * (n + 1) / 2 + n + n * n)
     }
@@ -157,11 +171,11 @@ impl Covariance for FullCovariance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::covariance::cma_es::CmaEsConfig;
+    use crate::covariance::config::CmaEsConfig;
 
-    fn adapted() -> FullCovariance {
+    fn adapted() -> Full {
         let coefficients = CmaEsConfig::new(vec![0.0; 3], 1.0).coefficients_of(8);
-        let mut covariance = FullCovariance::identity(3, &coefficients);
+        let mut covariance = Full::identity(3, &coefficients);
         add_squares(&mut covariance.matrix, 3, 1.0, &[0.5, 2.0], &[1.0, 2.0, 0.0, 0.0, 1.0, -1.0]);
         covariance.decompose();
         covariance

@@ -1,32 +1,33 @@
 //! Evolution strategies that adapt the covariance matrix of a normal distribution.
 //!
-//! - `cma_es`: [`CmaEs`], with a full matrix.
-//! - `cholesky_cma_es`: [`CholeskyCmaEs`], with a full matrix and its triangular factor.
-//! - `separable_cma_es`: [`SeparableCmaEs`], with a diagonal one.
-//! - `restarts`: [`CmaEsRestarts`], runs of `cma_es` one after the other.
-//! - `search`: what they do alike.
-//! - `termination`: when such a run ends.
-//! - `distribution`: the distribution that is drawn from and adapted, whatever its covariance.
-//! - `full`, `cholesky`, `diagonal`: the kinds of covariance.
-//! - `coefficients`: weights and learning rates.
-//! - `eigen`: eigenvalues and eigenvectors of a symmetric matrix.
-//! - `linear`: sums over rows of numbers.
+//! [`CmaEs`] searches with a full matrix, [`CholeskyCmaEs`] with its triangular factor, [`SeparableCmaEs`] with its diagonal.
+//! [`CmaEsRestarts`] runs [`CmaEs`] several times with growing populations.
 
+/// The triangular factor.
 mod cholesky;
-mod cholesky_cma_es;
+/// The searches.
 mod cma_es;
+/// Weights and learning rates.
 pub(crate) mod coefficients;
+mod config;
+/// One variance for each gene.
 mod diagonal;
+/// The normal distribution.
 pub(crate) mod distribution;
+/// Eigenvalues and eigenvectors.
 mod eigen;
+/// The full matrix.
 pub(crate) mod full;
+/// Sums over rows.
 mod linear;
+/// Runs with growing populations.
 mod restarts;
-mod search;
-mod separable_cma_es;
+/// Termination criteria of a run.
 mod termination;
 
-pub use cholesky_cma_es::CholeskyCmaEs;
-pub use cma_es::{CmaEs, CmaEsConfig};
+pub use cholesky::Cholesky;
+pub use cma_es::{CholeskyCmaEs, CmaEs, Covariance, SeparableCmaEs};
+pub use config::{CmaEsConfig, SeparableCmaEsConfig};
+pub use diagonal::Diagonal;
+pub use full::Full;
 pub use restarts::{CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
-pub use separable_cma_es::{SeparableCmaEs, SeparableCmaEsConfig};

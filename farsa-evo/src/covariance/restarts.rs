@@ -1,16 +1,15 @@
-//! Covariance matrix adaptation that begins anew where it has come to an end.
+//! Matrix matrix adaptation that begins anew where it has come to an end.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream, exp, ln};
 
-use crate::covariance::cma_es::{CmaEsConfig, between_states};
-use crate::covariance::coefficients::{check, ranked};
-use crate::covariance::distribution::{Distribution, STEP_SIZES, stream};
-use crate::covariance::full::FullCovariance;
+use crate::covariance::config::CmaEsConfig;
+use crate::covariance::distribution::{Distribution, Matrix, STEP_SIZES, stream};
+use crate::covariance::full::Full;
 use crate::covariance::termination::{LONGEST, Progress};
-use crate::error::EvoError;
+use crate::error::{EvoError, check_range};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
@@ -58,7 +57,7 @@ impl CmaEsRestartsConfig {
         self.first.validate()?;
         let most = self.first.population.saturating_mul(MOST_BLOCKS as usize);
         Population::check(most, self.first.mean.len())?;
-        check("spread", self.spread, [0.0, 1e100], "0 to 1e100")
+        check_range("spread", self.spread, [0.0, 1e100], "0 to 1e100")
     }
 }
 
@@ -80,7 +79,7 @@ struct Run {
     progress: Progress,
 }
 
-/// Covariance matrix adaptation in runs: where one has come to an end, the next begins elsewhere, with more individuals or
+/// Matrix matrix adaptation in runs: where one has come to an end, the next begins elsewhere, with more individuals or
 /// with few.
 ///
 /// It is for fitness with many optima, which few individuals overlook.
@@ -118,7 +117,7 @@ pub struct CmaEsRestarts {
     /// Blocks evaluated by the latest large run.
     latest: u64,
     run: Run,
-    distribution: Distribution<FullCovariance>,
+    distribution: Distribution<Full>,
     /// The fitness of the blocks of the run's generation that were told.
     told: Vec<Fitness>,
     /// The individuals of the run's generation.
@@ -234,7 +233,7 @@ impl CmaEsRestarts {
     /// Takes all blocks of a run's generation.
     fn adapt(&mut self) -> Result<(), EvoError> {
         let fitness = core::mem::take(&mut self.told);
-        let ranked = ranked(&fitness);
+        let ranked = Fitness::ranking(&fitness);
         if fitness.iter().any(|fitness| !fitness.is_failed()) {
             self.distribution.update(&ranked);
         }
@@ -284,7 +283,7 @@ const FRONT: (usize, usize) = (8, 6);
 
 impl Snapshot for CmaEsRestarts {
     fn snapshot_interval(&self) -> u32 {
-        between_states(self.config.first.mean.len())
+        <Full as Matrix>::snapshot_interval(self.config.first.mean.len())
     }
 
     fn save(&self) -> Vec<u8> {
@@ -328,7 +327,7 @@ impl Snapshot for CmaEsRestarts {
         }
         let (told, remembered) = (block as usize * self.population.len(), remembered as usize);
         let values = told + 2 * remembered;
-        let rest = Distribution::<FullCovariance>::state_length(self.config.first.mean.len());
+        let rest = Distribution::<Full>::state_length(self.config.first.mean.len());
         let mut reader = StateReader::new(state, 4 * FRONT.0 + 8 * (FRONT.1 + values) + rest)?;
         for _ in 0..FRONT.0 {
             reader.u32()?;

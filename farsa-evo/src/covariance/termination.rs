@@ -4,8 +4,8 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::covariance::distribution::{Covariance, Distribution};
-use crate::covariance::full::FullCovariance;
+use crate::covariance::distribution::{Distribution, Matrix};
+use crate::covariance::full::Full;
 use crate::fitness::Fitness;
 
 /// The most generations of which best and median are remembered.
@@ -58,7 +58,7 @@ impl Progress {
     }
 
     /// Why the run ends, if it does, given the step size that it began with.
-    pub(super) fn ends(&self, distribution: &Distribution<FullCovariance>, start: f64) -> Option<Termination> {
+    pub(super) fn ends(&self, distribution: &Distribution<Full>, start: f64) -> Option<Termination> {
         let (n, population) = (distribution.mean.len(), distribution.coefficients.population());
         let (sigma, covariance) = (distribution.sigma, &distribution.covariance);
         let [_, longest] = covariance.extremes();
@@ -111,10 +111,9 @@ mod tests {
     use alloc::vec;
 
     use super::*;
-    use crate::covariance::cma_es::CmaEsConfig;
-    use crate::covariance::coefficients::ranked;
+    use crate::covariance::config::CmaEsConfig;
 
-    fn distribution(mean: f64, sigma: f64) -> Distribution<FullCovariance> {
+    fn distribution(mean: f64, sigma: f64) -> Distribution<Full> {
         let config = CmaEsConfig::new(vec![mean; 4], sigma);
         Distribution::new(config.mean.clone(), sigma, config.coefficients_of(8))
     }
@@ -124,7 +123,7 @@ mod tests {
         let mut progress = Progress::default();
         for value in values {
             let fitness: Vec<Fitness> = (0..8).map(|k| Fitness::nan_as_failed(value - f64::from(k))).collect();
-            progress.push(&fitness, &ranked(&fitness));
+            progress.push(&fitness, &Fitness::ranking(&fitness));
         }
         progress
     }
@@ -177,7 +176,7 @@ mod tests {
             let fitness: Vec<Fitness> = (0..8)
                 .map(|i| Fitness::nan_as_failed(if i == 0 { 1000.0 + f64::from(k % 2) } else { f64::from(k) }))
                 .collect();
-            rising.push(&fitness, &ranked(&fitness));
+            rising.push(&fitness, &Fitness::ranking(&fitness));
         }
         assert_eq!(rising.ends(&distribution(1.0, 1.0), 1.0), None);
     }

@@ -5,14 +5,13 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::clip_up::norm;
-use super::noise::{Directions, Noise, Spread};
-use super::rewards::{rewards, scaled};
-use super::settings::{at_least, bounded, point, positive, read_length, read_point};
+use super::mirrored::Mirrored;
+use super::settings::{at_least, point, positive};
+use super::utilities::{rewards, scaled};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 
 /// What an [`Ars`] needs to know; a plain value that is checked where it is used.
@@ -85,14 +84,7 @@ impl ArsConfig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ars {
     config: ArsConfig,
-    seed: u64,
-    generation: u32,
-    mean: Vec<f64>,
-    /// Length of the latest step.
-    step: f64,
-    /// Those of this generation.
-    directions: Directions,
-    population: Population<f64>,
+    samples: Mirrored,
 }
 
 impl Ars {
@@ -102,12 +94,8 @@ impl Ars {
     /// Those of [`ArsConfig::validate`].
     pub fn new(config: ArsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
-        let population = Population::new(2 * config.directions, config.mean.len())?;
-        let mean = config.mean.clone();
-        let directions = Directions::new(config.directions, mean.len());
-        let mut strategy = Self { config, seed, generation: 0, mean, step: 0.0, directions, population };
-        strategy.sample();
-        Ok(strategy)
+        let samples = Mirrored::new(config.mean.clone(), config.directions, config.noise, seed)?;
+        Ok(Self { config, samples })
     }
 
     /// The configuration.
@@ -117,27 +105,18 @@ impl Ars {
 
     /// The seed.
     pub fn seed(&self) -> u64 {
-        self.seed
+        self.samples.seed
     }
 
     /// The point \[genes\] around which the individuals lie.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
-    }
-
-    fn noise(&self) -> Noise {
-        Noise { seed: self.seed, generation: self.generation }
-    }
-
-    fn sample(&mut self) {
-        let noise = self.noise();
-        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Same(self.config.noise));
+        &self.samples.mean
     }
 
     /// The top directions by the fitness of the better of their two individuals, equals by index; in order of index.
     fn top(&self, fitness: &[Fitness]) -> Vec<usize> {
         let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
-        let mut top = super::utilities::ranking(&better);
+        let mut top = Fitness::ranking(&better);
         top.truncate(self.config.top_directions);
         top.sort_unstable();
         top
@@ -149,41 +128,39 @@ impl Ars {
         let mean = rewards.iter().sum::<f64>() / count;
         let variance = rewards.iter().map(|reward| (reward - mean) * (reward - mean)).sum::<f64>() / count;
         let deviation = Scalar::sqrt(variance);
-        self.step = 0.0;
+        self.samples.step = 0.0;
         if deviation > 0.0 {
-            let mut step = vec![0.0; self.mean.len()];
+            let mut step = vec![0.0; self.samples.mean.len()];
             for (row, pair) in top.iter().zip(rewards.chunks_exact(2)) {
-                self.directions.add(*row, (pair[0] - pair[1]) / deviation, &mut step);
+                self.samples.directions.add(*row, (pair[0] - pair[1]) / deviation, &mut step);
             }
             let scale = self.config.step_size / top.len() as f64;
-            for (mean, step) in self.mean.iter_mut().zip(&mut step) {
-                *step *= scale;
-                *mean = bounded(*mean + *step);
+            for x in &mut step {
+                *x *= scale;
             }
-            self.step = norm(&step);
+            self.samples.advance(&step);
         }
     }
 }
 
 impl Strategy<f64> for Ars {
     fn generation(&self) -> u32 {
-        self.generation
+        self.samples.generation
     }
 
     fn ask(&self) -> &Population<f64> {
-        &self.population
+        &self.samples.population
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation, self.population.len(), fitness)?;
-        self.step = 0.0;
+        let next = next_generation(self.samples.generation, self.samples.population.len(), fitness)?;
+        self.samples.step = 0.0;
         if let Some(rewards) = rewards(fitness) {
             let top = self.top(fitness);
             let used = top.iter().filter_map(|row| rewards.get(2 * row..2 * row + 2)).flatten().copied().collect();
             self.update(&top, &scaled(used));
         }
-        self.generation = next;
-        self.sample();
+        self.samples.begin(next);
         Ok(())
     }
 
@@ -192,26 +169,19 @@ impl Strategy<f64> for Ars {
     }
 
     fn diagnostics(&self) -> Vec<f64> {
-        vec![self.step, norm(&self.mean)]
+        self.samples.diagnostics()
     }
 }
 
 impl Snapshot for Ars {
     fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &[self.step]);
-        push_reals(&mut state, &self.mean);
-        state
+        self.samples.save()
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let genes = self.mean.len();
-        let mut reader = StateReader::new(state, 12 + 8 * genes)?;
-        let (generation, step) = (reader.u32()?, read_length(&mut reader)?);
-        let mean = read_point(&mut reader, genes)?;
-        (self.generation, self.step, self.mean) = (generation, step, mean);
-        self.sample();
+        let mut reader = StateReader::new(state, Mirrored::bytes(self.samples.mean.len()))?;
+        let samples = self.samples.read(&mut reader)?;
+        self.samples.restore(samples);
         Ok(())
     }
 }

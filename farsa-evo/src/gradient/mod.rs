@@ -1,28 +1,28 @@
 //! Strategies that follow an estimated gradient of the expected fitness in the space of real genes.
-//!
-//! - `snes`, `xnes`: natural evolution strategies, separable and with a full covariance.
-//! - `open_ai_es`, `pgpe`, `ars`: mirrored sampling around one point, for genomes of many genes.
-//! - `utilities`, `centred_ranks`, `rewards`: what stands in for the values of fitness.
-//! - `optimizer`, `adam`, `clip_up`: how a gradient becomes a step.
-//! - `noise`: the random numbers, and genomes made of them.
-//! - `matrix_exponential`: of a symmetric matrix.
-//! - `settings`: what the numbers of a configuration and of a state may be.
-//! - `observation_statistics`: running mean and variance of what networks sense.
 
-mod adam;
+/// Augmented random search.
 mod ars;
-mod centred_ranks;
-mod clip_up;
+/// The exponential of a symmetric matrix.
 mod matrix_exponential;
+/// Mirrored samples around a point.
+mod mirrored;
+/// Random numbers of a generation.
 mod noise;
+/// Running mean and variance of observations.
 pub(crate) mod observation_statistics;
+/// The evolution strategy of OpenAI.
 mod open_ai_es;
+/// Steps from gradients.
 mod optimizer;
+/// Policy gradients with parameter-based exploration.
 mod pgpe;
-mod rewards;
+/// Ranges of configurations and states.
 mod settings;
+/// The separable natural evolution strategy.
 mod snes;
+/// Replacements for the values of fitness.
 mod utilities;
+/// The exponential natural evolution strategy.
 mod xnes;
 
 pub use ars::{Ars, ArsConfig};

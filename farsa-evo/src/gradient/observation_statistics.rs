@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::settings::{LARGEST, point, within};
-use crate::error::EvoError;
+use super::settings::{LARGEST, point};
+use crate::error::{EvoError, check_range};
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 
@@ -129,7 +129,7 @@ impl ObservationStatistics {
             }
         }
         point("mean", mean)?;
-        squares.iter().try_for_each(|x| within("squares", *x, [0.0, LARGEST_SQUARES], "0 to 1e250"))?;
+        squares.iter().try_for_each(|x| check_range("squares", *x, [0.0, LARGEST_SQUARES], "0 to 1e250"))?;
         let (before, added) = (self.count as f64, count as f64);
         let too_many = EvoError::Setting { name: "count", value: before + added, allowed: "up to 2^64 - 1" };
         let total = self.count.checked_add(count).ok_or(too_many)?;

@@ -3,15 +3,14 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::centred_ranks::centred_ranks;
-use super::clip_up::norm;
-use super::noise::{Directions, Noise, Spread};
+use super::mirrored::Mirrored;
 use super::optimizer::{Memory, Optimizer};
-use super::settings::{bounded, point, positive, read_length, read_point, within};
-use crate::error::EvoError;
+use super::settings::{point, positive};
+use super::utilities::centred_ranks;
+use crate::error::{EvoError, check_range};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{RecordKind, Strategy, next_generation};
 
 /// What an [`OpenAiEs`] needs to know; a plain value that is checked where it is used.
@@ -50,7 +49,7 @@ impl OpenAiEsConfig {
         point("mean", &self.mean)?;
         positive("sigma", self.sigma)?;
         positive("learning_rate", self.learning_rate)?;
-        within("weight_decay", self.weight_decay, [0.0, 1e9], "0 to 1e9")?;
+        check_range("weight_decay", self.weight_decay, [0.0, 1e9], "0 to 1e9")?;
         self.optimizer.validate()
     }
 }
@@ -84,15 +83,8 @@ impl OpenAiEsConfig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenAiEs {
     config: OpenAiEsConfig,
-    seed: u64,
-    generation: u32,
-    mean: Vec<f64>,
     memory: Memory,
-    /// Length of the latest step.
-    step: f64,
-    /// Those of this generation.
-    directions: Directions,
-    population: Population<f64>,
+    samples: Mirrored,
 }
 
 impl OpenAiEs {
@@ -102,12 +94,9 @@ impl OpenAiEs {
     /// Those of [`OpenAiEsConfig::validate`].
     pub fn new(config: OpenAiEsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
-        let population = Population::new(2 * config.pairs, config.mean.len())?;
-        let (mean, memory) = (config.mean.clone(), Memory::new(config.optimizer, config.mean.len()));
-        let directions = Directions::new(config.pairs, mean.len());
-        let mut strategy = Self { config, seed, generation: 0, mean, memory, step: 0.0, directions, population };
-        strategy.sample();
-        Ok(strategy)
+        let memory = Memory::new(config.optimizer, config.mean.len());
+        let samples = Mirrored::new(config.mean.clone(), config.pairs, config.sigma, seed)?;
+        Ok(Self { config, memory, samples })
     }
 
     /// The configuration.
@@ -117,48 +106,39 @@ impl OpenAiEs {
 
     /// The seed.
     pub fn seed(&self) -> u64 {
-        self.seed
+        self.samples.seed
     }
 
     /// The point \[genes\] around which the individuals lie.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
-    }
-
-    fn noise(&self) -> Noise {
-        Noise { seed: self.seed, generation: self.generation }
-    }
-
-    fn sample(&mut self) {
-        let noise = self.noise();
-        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Same(self.config.sigma));
+        &self.samples.mean
     }
 }
 
 impl Strategy<f64> for OpenAiEs {
     fn generation(&self) -> u32 {
-        self.generation
+        self.samples.generation
     }
 
     fn ask(&self) -> &Population<f64> {
-        &self.population
+        &self.samples.population
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation, self.population.len(), fitness)?;
+        let next = next_generation(self.samples.generation, self.samples.population.len(), fitness)?;
         let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = self.config;
-        let mut gradient = vec![0.0; self.mean.len()];
+        let mut gradient = vec![0.0; self.samples.mean.len()];
         for (row, pair) in centred_ranks(fitness).chunks_exact(2).enumerate() {
-            self.directions.add(row, pair[0] - pair[1], &mut gradient);
+            self.samples.directions.add(row, pair[0] - pair[1], &mut gradient);
         }
         let scale = 1.0 / (fitness.len() as f64 * sigma);
-        for (g, mean) in gradient.iter_mut().zip(&self.mean) {
+        for (g, mean) in gradient.iter_mut().zip(&self.samples.mean) {
             *g = scale * *g - weight_decay * mean;
         }
         self.memory.step(optimizer, learning_rate, &mut gradient);
-        self.mean.iter_mut().zip(&gradient).for_each(|(mean, step)| *mean = bounded(*mean + step));
-        (self.generation, self.step) = (next, norm(&gradient).min(f64::MAX));
-        self.sample();
+        self.samples.advance(&gradient);
+        self.samples.step = self.samples.step.min(f64::MAX);
+        self.samples.begin(next);
         Ok(())
     }
 
@@ -171,27 +151,23 @@ impl Strategy<f64> for OpenAiEs {
     }
 
     fn diagnostics(&self) -> Vec<f64> {
-        vec![self.step, norm(&self.mean)]
+        self.samples.diagnostics()
     }
 }
 
 impl Snapshot for OpenAiEs {
     fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &[self.step]);
-        push_reals(&mut state, &self.mean);
+        let mut state = self.samples.save();
         self.memory.push(&mut state);
         state
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let (genes, optimizer) = (self.mean.len(), self.config.optimizer);
-        let mut reader = StateReader::new(state, 12 + 8 * genes + Memory::bytes(optimizer, genes))?;
-        let (generation, step) = (reader.u32()?, read_length(&mut reader)?);
-        let (mean, memory) = (read_point(&mut reader, genes)?, Memory::read(optimizer, &mut reader, genes)?);
-        (self.generation, self.step, self.mean, self.memory) = (generation, step, mean, memory);
-        self.sample();
+        let (genes, optimizer) = (self.samples.mean.len(), self.config.optimizer);
+        let mut reader = StateReader::new(state, Mirrored::bytes(genes) + Memory::bytes(optimizer, genes))?;
+        let samples = self.samples.read(&mut reader)?;
+        self.memory = Memory::read(optimizer, &mut reader, genes)?;
+        self.samples.restore(samples);
         Ok(())
     }
 }

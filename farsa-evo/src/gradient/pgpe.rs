@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::centred_ranks::centred_ranks;
-use super::clip_up::ClipUp;
 use super::noise::{Directions, Noise, Spread};
-use super::rewards::rewards;
+use super::optimizer::ClipUp;
 use super::settings::{bounded, bounded_size, decay, learning_rate, point, positive, read_point, read_sizes};
+use super::utilities::centred_ranks;
+use super::utilities::rewards;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;

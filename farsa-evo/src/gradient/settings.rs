@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_range, check_setting};
 use crate::snapshot::StateReader;
 
 /// The largest magnitude of a gene's mean and of a step size: products of two of them with noise stay finite.
@@ -12,39 +12,29 @@ pub(super) const LARGEST: f64 = 1e100;
 /// The smallest step size.
 pub(super) const SMALLEST: f64 = 1e-100;
 
-/// Whether a number is in a range, both ends included.
-pub(super) fn within(name: &'static str, value: f64, range: [f64; 2], allowed: &'static str) -> Result<(), EvoError> {
-    let [low, high] = range;
-    if value >= low && value <= high { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
-}
-
 /// Whether a number can be a step size, a speed and the like.
 pub(super) fn positive(name: &'static str, value: f64) -> Result<(), EvoError> {
-    within(name, value, [SMALLEST, LARGEST], "1e-100 to 1e100")
+    check_range(name, value, [SMALLEST, LARGEST], "1e-100 to 1e100")
 }
 
 /// Whether a number can be the learning rate of a distribution.
 pub(super) fn learning_rate(name: &'static str, value: f64) -> Result<(), EvoError> {
-    within(name, value, [0.0, 10.0], "0 to 10")
+    check_range(name, value, [0.0, 10.0], "0 to 10")
 }
 
 /// Whether a number can be the share of the past in a mean that decays.
 pub(super) fn decay(name: &'static str, value: f64) -> Result<(), EvoError> {
-    if (0.0..1.0).contains(&value) {
-        Ok(())
-    } else {
-        Err(EvoError::Setting { name, value, allowed: "0 to less than 1" })
-    }
+    check_setting((0.0..1.0).contains(&value), name, value, "0 to less than 1")
 }
 
 /// Whether a count is as large as the least that makes sense.
 pub(super) fn at_least(name: &'static str, value: usize, least: usize, allowed: &'static str) -> Result<(), EvoError> {
-    if value >= least { Ok(()) } else { Err(EvoError::Setting { name, value: value as f64, allowed }) }
+    check_setting(value >= least, name, value as f64, allowed)
 }
 
 /// Whether these can be the coordinates of a search point.
 pub(super) fn point(name: &'static str, point: &[f64]) -> Result<(), EvoError> {
-    point.iter().try_for_each(|x| within(name, *x, [-LARGEST, LARGEST], "-1e100 to 1e100"))
+    point.iter().try_for_each(|x| check_range(name, *x, [-LARGEST, LARGEST], "-1e100 to 1e100"))
 }
 
 /// A coordinate that stays where it is representable.

@@ -7,7 +7,7 @@ use farsa_num::{Scalar, exp, ln};
 
 use super::noise::Noise;
 use super::settings::{at_least, bounded, bounded_size, learning_rate, point, positive, read_point, read_sizes};
-use super::utilities::{default_population, utilities, weights};
+use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
@@ -36,7 +36,7 @@ impl SnesConfig {
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let d = mean.len() as f64;
         Self {
-            population: default_population(mean.len()),
+            population: Population::default_size(mean.len()),
             mean_learning_rate: 1.0,
             sigma_learning_rate: (3.0 + ln(d)) / (5.0 * Scalar::sqrt(d)),
             mean,

@@ -1,19 +1,12 @@
-//! Utilities: weights of individuals that depend on their rank alone.
+//! Utilities, centered ranks and rewards, which replace the values of fitness.
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 
 use farsa_num::ln;
 
+use super::settings::bounded;
 use crate::fitness::Fitness;
-
-/// The individuals, best first, equals by index.
-pub(super) fn ranking(fitness: &[Fitness]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..fitness.len()).collect();
-    order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
-    order
-}
 
 /// The utility of the individual of each rank, the best first; they sum to 0.
 ///
@@ -28,7 +21,7 @@ pub(super) fn utilities(population: usize) -> Vec<f64> {
 /// The utility of each individual.
 pub(super) fn weights(fitness: &[Fitness], utilities: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; fitness.len()];
-    for (individual, utility) in ranking(fitness).into_iter().zip(utilities) {
+    for (individual, utility) in Fitness::ranking(fitness).into_iter().zip(utilities) {
         if let Some(weight) = weights.get_mut(individual) {
             *weight = *utility;
         }
@@ -36,9 +29,38 @@ pub(super) fn weights(fitness: &[Fitness], utilities: &[f64]) -> Vec<f64> {
     weights
 }
 
-/// The population of natural evolution strategies over so many genes, 4 + floor(3 ln d).
-pub(super) fn default_population(genes: usize) -> usize {
-    4 + (3.0 * ln(genes as f64)) as usize
+/// The rank of each individual, spaced evenly from 1/2 for the best to -1/2 for the worst; equals by index.
+///
+/// Source: \[Salimans2017\] section 2 names them; the spacing is that of its authors' program.
+pub(super) fn centred_ranks(fitness: &[Fitness]) -> Vec<f64> {
+    let last = fitness.len().saturating_sub(1).max(1) as f64;
+    let mut ranks = vec![0.0; fitness.len()];
+    for (place, individual) in Fitness::ranking(fitness).into_iter().enumerate() {
+        if let Some(rank) = ranks.get_mut(individual) {
+            *rank = 0.5 - place as f64 / last;
+        }
+    }
+    ranks
+}
+
+/// The values of fitness, where a failed evaluation counts as the worst finite value and an infinite one as the best;
+/// within 1e100 of zero. None if no value is finite.
+pub(super) fn rewards(fitness: &[Fitness]) -> Option<Vec<f64>> {
+    let finite = || fitness.iter().map(|fitness| fitness.get()).filter(|value| value.is_finite());
+    let worst = finite().reduce(f64::min)?;
+    let best = finite().reduce(f64::max)?;
+    Some(fitness.iter().map(|fitness| bounded(fitness.get().clamp(worst, best))).collect())
+}
+
+/// The values divided by the largest magnitude of them, so that squares neither overflow nor vanish.
+pub(super) fn scaled(mut rewards: Vec<f64>) -> Vec<f64> {
+    let largest = rewards.iter().fold(0.0, |largest: f64, reward| largest.max(reward.abs()));
+    if largest > 0.0 {
+        for reward in &mut rewards {
+            *reward /= largest;
+        }
+    }
+    rewards
 }
 
 #[cfg(test)]
@@ -54,6 +76,23 @@ mod tests {
         assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-15), "{got:?}");
         let told = [1.0, f64::NAN, 3.0, 3.0].map(Fitness::nan_as_failed);
         assert_eq!(weights(&told, &got), [got[2], got[3], got[0], got[1]]);
-        assert_eq!([1, 2, 10, 1000].map(default_population), [4, 6, 10, 24]);
+    }
+
+    #[test]
+    fn ranks_are_spaced_evenly() {
+        let told = [2.0, f64::NAN, 7.0, 2.0, 1.0].map(Fitness::nan_as_failed);
+        assert_eq!(centred_ranks(&told), [0.25, -0.5, 0.5, 0.0, -0.25]);
+        assert_eq!(centred_ranks(&told[..1]), [0.5]);
+    }
+
+    #[test]
+    fn rewards_are_finite() {
+        let told = [3.0, f64::NAN, f64::INFINITY, -2.0].map(Fitness::nan_as_failed);
+        assert_eq!(rewards(&told).unwrap(), [3.0, -2.0, 3.0, -2.0]);
+        let told = [1e300, f64::NAN].map(Fitness::nan_as_failed);
+        assert_eq!(rewards(&told).unwrap(), [1e100, 1e100]);
+        assert_eq!(rewards(&[Fitness::WORST; 3]), None);
+        assert_eq!(scaled(alloc::vec![0.0, -4.0, 2.0]), [0.0, -1.0, 0.5]);
+        assert_eq!(scaled(alloc::vec![0.0, 0.0]), [0.0, 0.0]);
     }
 }

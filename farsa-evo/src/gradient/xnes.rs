@@ -10,7 +10,7 @@ use super::noise::Noise;
 use super::settings::{
     LARGEST, at_least, bounded, bounded_size, learning_rate, point, positive, read, read_point, read_sizes,
 };
-use super::utilities::{default_population, utilities, weights};
+use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
@@ -45,7 +45,7 @@ impl XnesConfig {
         let d = mean.len() as f64;
         let rate = (9.0 + 3.0 * ln(d)) / (5.0 * d * Scalar::sqrt(d));
         Self {
-            population: default_population(mean.len()),
+            population: Population::default_size(mean.len()),
             mean_learning_rate: 1.0,
             sigma_learning_rate: rate,
             shape_learning_rate: rate,

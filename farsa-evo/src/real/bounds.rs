@@ -2,26 +2,11 @@
 
 use farsa_num::Stream;
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::population::Population;
 
 /// The largest size of a bound, so that sums and differences of genes stay finite.
 const LARGEST: f64 = 1e100;
-
-/// Refuses a number of a configuration that cannot be.
-pub(crate) fn check_setting(
-    possible: bool,
-    name: &'static str,
-    value: f64,
-    allowed: &'static str,
-) -> Result<(), EvoError> {
-    if possible { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
-}
-
-/// Refuses a probability outside 0 to 1.
-pub(crate) fn check_rate(name: &'static str, rate: f64) -> Result<(), EvoError> {
-    check_setting((0.0..=1.0).contains(&rate), name, rate, "0 to 1")
-}
 
 /// Refuses sizes of no population, and bounds that are not low to high.
 pub(crate) fn check_bounds(population: usize, bounds: &[[f64; 2]]) -> Result<(), EvoError> {

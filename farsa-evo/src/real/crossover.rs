@@ -2,8 +2,8 @@
 
 use farsa_num::{Stream, exp, ln};
 
-use crate::error::EvoError;
-use crate::real::bounds::{check_rate, check_setting, reflect};
+use crate::error::{EvoError, check_rate, check_setting};
+use crate::real::bounds::reflect;
 
 /// How the genes of a child come from its two parents; each child is drawn by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]

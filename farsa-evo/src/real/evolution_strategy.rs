@@ -9,7 +9,6 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::real::evolution_strategy_config::{EvolutionStrategyConfig, LARGEST, Recombination, StepSizes, Survival};
-use crate::real::ranking::ranking;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
@@ -130,7 +129,7 @@ impl EvolutionStrategy {
             Some(parent) => Individual { origin: None, ..parent.clone() },
             None => asked(index - kept.len()),
         };
-        ranking(&all).into_iter().take(self.config.parents).map(individual).collect()
+        Fitness::ranking(&all).into_iter().take(self.config.parents).map(individual).collect()
     }
 
     /// The parents of a child, as indices of the parents.

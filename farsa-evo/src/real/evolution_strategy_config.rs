@@ -4,9 +4,8 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::population::Population;
-use crate::real::bounds::check_setting;
 
 /// The largest size of a gene or a step size of a configuration; genes grow no further than by steps of this.
 pub(crate) const LARGEST: f64 = 1e100;

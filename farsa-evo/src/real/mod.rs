@@ -1,33 +1,25 @@
 //! Searches over real genes within bounds or around a mean, by selection and mutation.
-//!
-//! - `bounds`: the range of each gene, and how what leaves it comes back.
-//! - `ranking`: who comes before whom.
-//! - `selection`: how parents are chosen.
-//! - `crossover`: how the genes of two parents are mixed.
-//! - `mutation`: how genes change from parent to child.
-//! - `polynomial_mutation`: the same, as NSGA-II does it.
-//! - `real_ga_config`, `real_ga`: the generational genetic algorithm.
-//! - `evolution_strategy_config`, `evolution_strategy`: (mu + lambda) and (mu, lambda) with step sizes that adapt
-//!   themselves.
-//! - `steady_state`: parents and one child each, of which the better half stays.
 
+/// Ranges of genes.
 pub(crate) mod bounds;
+/// Recombination of two parents.
 pub(crate) mod crossover;
+/// Evolution strategies with self-adaptation.
 mod evolution_strategy;
 mod evolution_strategy_config;
-mod mutation;
-pub(crate) mod polynomial_mutation;
-pub(crate) mod ranking;
+/// Mutation of genes.
+pub(crate) mod mutation;
+/// The generational genetic algorithm.
 mod real_ga;
-mod real_ga_config;
+/// Selection of parents.
 mod selection;
+/// The steady state strategy.
 mod steady_state;
 
 pub use crossover::Crossover;
 pub use evolution_strategy::EvolutionStrategy;
 pub use evolution_strategy_config::{EvolutionStrategyConfig, Recombination, StepSizes, Survival};
 pub use mutation::RealMutation;
-pub use real_ga::RealGa;
-pub use real_ga_config::RealGaConfig;
+pub use real_ga::{RealGa, RealGaConfig};
 pub use selection::Selection;
 pub use steady_state::{SteadyState, SteadyStateConfig};

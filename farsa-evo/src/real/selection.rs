@@ -4,8 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Stream;
 
-use crate::error::EvoError;
-use crate::real::bounds::check_setting;
+use crate::error::{EvoError, check_setting};
 
 /// How the parents of a child are chosen; each is chosen anew, so that an individual may be chosen again.
 #[derive(Clone, Copy, Debug, PartialEq)]

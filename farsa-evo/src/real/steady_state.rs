@@ -4,12 +4,11 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_rate, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::real::bounds::{check_bounds, check_rate, check_setting, check_within, draw_within};
+use crate::real::bounds::{check_bounds, check_within, draw_within};
 use crate::real::mutation::RealMutation;
-use crate::real::ranking::ranking;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
@@ -139,7 +138,8 @@ impl Strategy<f64> for SteadyState {
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         let generation = next_generation(self.generation, self.population.len(), fitness)?;
-        let order = if self.config.noise > 0.0 { ranking(&self.noisy(fitness)) } else { ranking(fitness) };
+        let order =
+            if self.config.noise > 0.0 { Fitness::ranking(&self.noisy(fitness)) } else { Fitness::ranking(fitness) };
         let (better, worse) = order.split_at(order.len() / 2);
         let mut parents: Vec<u32> = (0..order.len() as u32).collect();
         for (&parent, &place) in better.iter().zip(worse) {

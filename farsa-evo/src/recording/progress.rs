@@ -1,7 +1,6 @@
 //! How far a record has come, and what it takes of the next generation.
 
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -113,7 +112,7 @@ impl Progress {
             shape.push_index(&mut frame, champion);
         }
         match shape.recorded {
-            Kept::Order => order(fitness).into_iter().for_each(|index| shape.push_index(&mut frame, index)),
+            Kept::Order => Fitness::ranking(fitness).into_iter().for_each(|index| shape.push_index(&mut frame, index)),
             Kept::Values | Kept::Scores(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
             Kept::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
         }
@@ -148,13 +147,6 @@ pub(crate) fn next<G: Gene, S: Strategy<G> + ?Sized>(
     told(strategy)?;
     let found = strategy.generation();
     if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
-}
-
-/// The individuals, best first, equals by index.
-pub(crate) fn order(fitness: &[Fitness]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..fitness.len()).collect();
-    order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
-    order
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::population::Population;
-use crate::recording::progress::{Progress, Taken, next, order};
+use crate::recording::progress::{Progress, Taken, next};
 use crate::recording::shape::{Kept, Shape};
 use crate::recording::writer::{RecordEntry, RecordWriter};
 use crate::score_shape::ScoreShape;
@@ -185,7 +185,7 @@ impl Record {
     pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
         match self.shape.recorded {
             Kept::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
-            Kept::Values | Kept::Scores(_) => Some(order(&self.told(generation)?.fitness())),
+            Kept::Values | Kept::Scores(_) => Some(Fitness::ranking(&self.told(generation)?.fitness())),
             Kept::Genomes => None,
         }
     }

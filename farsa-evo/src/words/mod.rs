@@ -3,7 +3,6 @@
 //! [`decode`] and [`WordMap`] turn genes into parameters. [`TruncationGa`] and [`OnePlusOne`] search, and
 //! [`RandomSearch`] is their baseline.
 
-mod config;
 /// Linear decoding of genes.
 mod decode;
 /// Mutation of bits.
@@ -17,10 +16,9 @@ mod truncation;
 /// Encoding and decoding with bits, range and code of each parameter.
 mod word_map;
 
-pub use config::{GaConfig, OnePlusOneConfig};
 pub use decode::{GeneRange, decode};
 pub use mutation::{BitMutation, Mutation, randomize};
-pub use one_plus_one::OnePlusOne;
+pub use one_plus_one::{OnePlusOne, OnePlusOneConfig};
 pub use random_search::{BestIndividual, RandomSearch};
-pub use truncation::TruncationGa;
+pub use truncation::{GaConfig, TruncationGa};
 pub use word_map::{WordCode, WordGene, WordMap};

@@ -12,8 +12,63 @@ use crate::population::Population;
 use crate::saved::SavedStrategy;
 use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
 use crate::strategy::{Genealogy, Strategy, next_generation};
-use crate::words::config::{OnePlusOneConfig, PARENT_AND_MUTANT};
-use crate::words::mutation::randomize_bits;
+use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_bits};
+
+/// Number of individuals of a search of one parent and one mutant.
+pub(crate) const PARENT_AND_MUTANT: usize = 2;
+
+/// What a [`OnePlusOne`](crate::words::OnePlusOne) needs to know; a plain value that is checked where it is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OnePlusOneConfig {
+    /// Number of genes of a genome.
+    pub genes: usize,
+    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    pub gene_bits: u32,
+    /// Probability, 0 to 1, that mutation hits a bit of the mutant of generation 0.
+    pub first_rate: f64,
+    /// What the probability falls by from generation to generation, 0 to 1.
+    pub rate_step: f64,
+    /// The probability below which it does not fall, 0 to the first.
+    pub last_rate: f64,
+    /// What happens to a bit that is hit.
+    pub mutation: Mutation,
+}
+
+impl OnePlusOneConfig {
+    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits: half of all
+    /// bits flip at first, 1 % fewer every generation, down to 2 %.
+    pub const fn new(genes: usize) -> Self {
+        Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::GeneBits`], [`EvoError::Rate`] or
+    /// [`EvoError::RisingRate`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        let Self { genes, gene_bits, first_rate, rate_step, last_rate, .. } = *self;
+        Population::check(PARENT_AND_MUTANT, genes)?;
+        check_gene_bits(gene_bits)?;
+        for rate in [first_rate, rate_step, last_rate] {
+            BitMutation::new(self.mutation, rate)?;
+        }
+        if last_rate > first_rate {
+            return Err(EvoError::RisingRate { first: first_rate, last: last_rate });
+        }
+        Ok(())
+    }
+
+    /// The probability, 0 to 1, that mutation hits a bit of the mutant of a generation.
+    pub fn rate(&self, generation: u32) -> f64 {
+        (self.first_rate - self.rate_step * f64::from(generation)).max(self.last_rate)
+    }
+
+    pub(crate) fn bit_mutation(&self, generation: u32) -> Result<BitMutation, EvoError> {
+        BitMutation::new(self.mutation, self.rate(generation))?.with_gene_bits(self.gene_bits)
+    }
+}
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
 ///

@@ -8,11 +8,100 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 #[cfg(feature = "serde")]
-use crate::saved::SavedStrategy;
+use crate::saved::{SavedMutation, SavedStrategy};
 use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
-use crate::words::config::GaConfig;
-use crate::words::mutation::{BitMutation, randomize_bits};
+use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_bits};
+
+/// What a [`TruncationGa`](crate::words::TruncationGa) needs to know; a plain value that is checked where it is used.
+///
+/// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the word for the
+/// mutation: what was saved before there was a choice is still read, and written as before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "SavedConfig", into = "SavedConfig"))]
+pub struct GaConfig {
+    /// Number of genes of a genome.
+    pub genes: usize,
+    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    pub gene_bits: u32,
+    /// Number of individuals of a generation.
+    pub population: usize,
+    /// Number of individuals that are selected; each makes population / parents copies.
+    pub parents: usize,
+    /// Probability, 0 to 1, that mutation hits a bit.
+    pub mutation_rate: f64,
+    /// What happens to a bit that is hit.
+    pub mutation: Mutation,
+}
+
+impl GaConfig {
+    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits: the best 20 of 100 make five copies each, one
+    /// unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
+    pub const fn new(genes: usize) -> Self {
+        let (gene_bits, mutation) = (u16::BITS, Mutation::Resample);
+        Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::NoParents`],
+    /// [`EvoError::TooManyParents`], [`EvoError::UnevenCopies`], [`EvoError::Rate`] or [`EvoError::GeneBits`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        let Self { genes, population, parents, .. } = *self;
+        Population::check(population, genes)?;
+        if parents == 0 {
+            return Err(EvoError::NoParents);
+        }
+        if parents > population {
+            return Err(EvoError::TooManyParents { population, parents });
+        }
+        if !population.is_multiple_of(parents) {
+            return Err(EvoError::UnevenCopies { population, parents });
+        }
+        check_gene_bits(self.gene_bits)?;
+        self.bit_mutation().map(|_| ())
+    }
+
+    /// Copies that each parent makes; of a valid configuration only.
+    pub(crate) fn copies(&self) -> usize {
+        self.population / self.parents
+    }
+
+    pub(crate) fn bit_mutation(&self) -> Result<BitMutation, EvoError> {
+        BitMutation::new(self.mutation, self.mutation_rate)?.with_gene_bits(self.gene_bits)
+    }
+}
+
+/// A [`GaConfig`] as it is saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "GaConfig")]
+struct SavedConfig {
+    genes: usize,
+    population: usize,
+    parents: usize,
+    mutation_rate: f64,
+    mutation: SavedMutation,
+}
+
+#[cfg(feature = "serde")]
+impl From<SavedConfig> for GaConfig {
+    fn from(saved: SavedConfig) -> Self {
+        let SavedConfig { genes, population, parents, mutation_rate, mutation } = saved;
+        let (mutation, gene_bits) = mutation.into();
+        Self { genes, gene_bits, population, parents, mutation_rate, mutation }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<GaConfig> for SavedConfig {
+    fn from(config: GaConfig) -> Self {
+        let GaConfig { genes, gene_bits, population, parents, mutation_rate, mutation } = config;
+        Self { genes, population, parents, mutation_rate, mutation: (mutation, gene_bits).into() }
+    }
+}
 
 /// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
 /// multiple of its parents.
@@ -113,7 +202,8 @@ impl Strategy for TruncationGa {
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         let config = self.config;
         let generation = next_generation(self.generation, config.population, fitness)?;
-        let selected = best(fitness, config.parents);
+        let ranking = Fitness::ranking(fitness);
+        let selected: Vec<u32> = ranking.iter().take(config.parents).map(|&parent| parent as u32).collect();
         let mut children = Population::new(config.population, config.genes)?;
         let parents = selected.iter().filter_map(|&parent| self.population.get(parent as usize));
         let heirs = parents.flat_map(|parent| core::iter::repeat_n(parent, config.copies()));
@@ -201,13 +291,6 @@ impl TryFrom<SavedStrategy<GaConfig>> for TruncationGa {
     }
 }
 
-/// The indices of the `count` best, best first, equals by index.
-fn best(fitness: &[Fitness], count: usize) -> Vec<u32> {
-    let mut ranked: Vec<(Fitness, u32)> = fitness.iter().copied().zip(0..).collect();
-    ranked.sort_unstable_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
-    ranked.into_iter().take(count).map(|(_, index)| index).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,13 +311,6 @@ mod tests {
         assert_eq!(refused(|c| c.mutation_rate = 1.5), EvoError::Rate { rate: 1.5 });
         assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Rate { .. }));
         assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::TooLarge { population: 100, genes: usize::MAX });
-    }
-
-    #[test]
-    fn ties_go_to_the_lower_index() {
-        let fitness = [1.0, 5.0, f64::NAN, 5.0, 1.0, f64::NAN].map(Fitness::nan_as_failed);
-        assert_eq!(best(&fitness, 6), [1, 3, 0, 4, 2, 5]);
-        assert_eq!(best(&fitness, 3), [1, 3, 0]);
     }
 
     #[test]

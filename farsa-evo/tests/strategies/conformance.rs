@@ -153,9 +153,9 @@ fn states_are_kept_as_often_as_telling_takes_time() {
     assert_eq!(between(Box::new(strategy)), 80_000 / individuals);
     let config = || CmaEsConfig::new(vec![0.0; 100], 0.5);
     assert_eq!(between(Box::new(CmaEs::new(config(), 0).unwrap())), 20_000);
-    assert_eq!(between(Box::new(CholeskyCmaEs::new(config(), 0).unwrap())), 100_000);
+    assert_eq!(between(Box::new(CholeskyCmaEs::with_covariance(config(), 0).unwrap())), 100_000);
     assert_eq!(
-        between(Box::new(SeparableCmaEs::new(SeparableCmaEsConfig::new(vec![0.0; 100], 0.5), 0).unwrap())),
+        between(Box::new(SeparableCmaEs::with_covariance(SeparableCmaEsConfig::new(vec![0.0; 100], 0.5), 0).unwrap())),
         u32::MAX
     );
     let restarts = CmaEsRestartsConfig::new(config(), RestartSchedule::Ipop);

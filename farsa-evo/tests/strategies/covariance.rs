@@ -51,7 +51,8 @@ fn test_functions_are_solved_within_the_usual_evaluations() {
         (0..5).map(one).sum::<usize>() / 5
     };
     let triangular = |config: &CmaEsConfig, function: fn(&[f64]) -> f64| {
-        let one = |seed| evaluations(&mut CholeskyCmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
+        let one =
+            |seed| evaluations(&mut CholeskyCmaEs::with_covariance(config.clone(), seed).unwrap(), 50_000, function);
         (0..5).map(one).sum::<usize>() / 5
     };
     // The means of pycma 4.5.0.
@@ -74,12 +75,12 @@ fn test_functions_are_solved_within_the_usual_evaluations() {
 fn the_diagonal_learns_many_variances_sooner() {
     let full = evaluations(&mut CmaEs::new(cma(1.0, 30, 0.5), 1).unwrap(), 100_000, ellipsoid);
     let config = SeparableCmaEsConfig::new(vec![1.0; 30], 0.5);
-    let mut search = SeparableCmaEs::new(config, 1).unwrap();
+    let mut search = SeparableCmaEs::with_covariance(config, 1).unwrap();
     let separable = evaluations(&mut search, 100_000, ellipsoid);
     assert!(2 * separable < full, "{separable} and {full} evaluations");
     assert!((300.0..3000.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
     let config = SeparableCmaEsConfig::new(vec![1.0; 10], 0.5);
-    let sphere = evaluations(&mut SeparableCmaEs::new(config, 1).unwrap(), 3000, sphere);
+    let sphere = evaluations(&mut SeparableCmaEs::with_covariance(config, 1).unwrap(), 3000, sphere);
     assert!(sphere <= 1500, "{sphere} evaluations");
 }
 
@@ -91,15 +92,16 @@ fn strategies_keep_to_the_contract() {
             check_strategy(|| CmaEs::new(config.clone(), 3), 22).unwrap();
         }
         let config = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![-1.0; genes], 2.0) };
-        check_strategy(|| SeparableCmaEs::new(config.clone(), 3), 22).unwrap();
+        check_strategy(|| SeparableCmaEs::with_covariance(config.clone(), 3), 22).unwrap();
     }
     for (genes, population) in [(1, 2), (3, 7), (10, 11)] {
-        check_strategy(|| CholeskyCmaEs::new(CmaEsConfig { population, ..cma(0.3, genes, 0.7) }, 3), 22).unwrap();
+        check_strategy(|| CholeskyCmaEs::with_covariance(CmaEsConfig { population, ..cma(0.3, genes, 0.7) }, 3), 22)
+            .unwrap();
     }
     // The axes are computed anew in few generations only: c_1 + c_mu is small.
     let config = CmaEsConfig { rank_one_rate: Some(0.003), rank_mu_rate: Some(0.002), ..cma(0.0, 6, 1.0) };
     check_strategy(|| CmaEs::new(config.clone(), 4), 40).unwrap();
-    check_strategy(|| CholeskyCmaEs::new(config.clone(), 4), 40).unwrap();
+    check_strategy(|| CholeskyCmaEs::with_covariance(config.clone(), 4), 40).unwrap();
     let search = CmaEs::new(config, 4).unwrap();
     assert_eq!(search.record_kind(), RecordKind::Values);
 }
@@ -249,13 +251,13 @@ fn updates_are_those_of_the_equations() {
         Oracle::new(vec![0.2; genes], 0.3, false).follow(&mut search, |search| {
             (search.mean().to_vec(), search.sigma(), search.covariance().chunks(genes).map(<[f64]>::to_vec).collect())
         });
-        let mut search = CholeskyCmaEs::new(CmaEsConfig { population, ..cma(0.2, genes, 0.3) }, 5).unwrap();
+        let mut search = CholeskyCmaEs::with_covariance(CmaEsConfig { population, ..cma(0.2, genes, 0.3) }, 5).unwrap();
         let triangular = Oracle { triangular: true, ..Oracle::new(vec![0.2; genes], 0.3, false) };
         { triangular }.follow(&mut search, |search| {
             (search.mean().to_vec(), search.sigma(), search.covariance().chunks(genes).map(<[f64]>::to_vec).collect())
         });
         let config = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![0.2; genes], 0.3) };
-        let mut search = SeparableCmaEs::new(config, 5).unwrap();
+        let mut search = SeparableCmaEs::with_covariance(config, 5).unwrap();
         Oracle::new(vec![0.2; genes], 0.3, true).follow(&mut search, |search| {
             let row = |i: usize| (0..genes).map(|j| if i == j { search.variances()[i] } else { 0.0 }).collect();
             (search.mean().to_vec(), search.sigma(), (0..genes).map(row).collect())
@@ -292,7 +294,7 @@ fn the_axis_ratio_finds_that_of_the_function() {
     assert!((400.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
     assert_eq!(search.diagnostics(), [search.sigma(), search.axis_ratio()]);
     // Of a factor the ratio on its diagonal, whose squares lie between the eigenvalues.
-    let mut search = CholeskyCmaEs::new(cma(1.0, 6, 0.5), 2).unwrap();
+    let mut search = CholeskyCmaEs::with_covariance(cma(1.0, 6, 0.5), 2).unwrap();
     evaluations(&mut search, 20_000, ellipsoid);
     assert!((100.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
     assert_eq!(search.diagnostics(), [search.sigma(), search.axis_ratio()]);
@@ -325,7 +327,7 @@ fn impossible_configurations_are_refused() {
     assert_eq!(large, "20000 genomes of 20000 genes are more than 268435456 genes");
     let refused = |sigma, population| {
         let config = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![0.0; 3], sigma) };
-        SeparableCmaEs::new(config, 0).unwrap_err().to_string()
+        SeparableCmaEs::with_covariance(config, 0).unwrap_err().to_string()
     };
     assert_eq!(refused(-1.0, 4), "sigma is -1, where 1e-100 to 1e100 is possible");
     assert_eq!(refused(1.0, 1), "population is 1, where at least 2 is possible");
@@ -351,7 +353,7 @@ fn states_that_cannot_be_change_nothing() {
     search.restore(&state).unwrap();
     assert_eq!(search, before);
 
-    let mut search = CholeskyCmaEs::new(cma(0.0, 2, 1.0), 1).unwrap();
+    let mut search = CholeskyCmaEs::with_covariance(cma(0.0, 2, 1.0), 1).unwrap();
     search.tell_values(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
     let (before, state) = (search.clone(), search.save());
     // Generation, updates, sigma, mean, paths, age, half of C, half of A.
@@ -382,8 +384,8 @@ fn digest(mut search: impl Strategy<f64>) -> u64 {
 fn the_bits_stay_as_they_are() {
     let full = digest(CmaEs::new(cma(0.1, 11, 0.4), 2016).unwrap());
     let separable = SeparableCmaEsConfig::new(vec![0.1; 11], 0.4);
-    let separable = digest(SeparableCmaEs::new(separable, 2008).unwrap());
-    let triangular = digest(CholeskyCmaEs::new(cma(0.1, 11, 0.4), 2016).unwrap());
+    let separable = digest(SeparableCmaEs::with_covariance(separable, 2008).unwrap());
+    let triangular = digest(CholeskyCmaEs::with_covariance(cma(0.1, 11, 0.4), 2016).unwrap());
     let got = [full, separable, triangular];
     assert_eq!(got, [0x5025_a614_01ca_8e67, 0x7b63_61cc_b9e9_3acb, 0x5b5c_9f65_0a10_07be], "{got:#018x?}");
 }
@@ -418,7 +420,7 @@ proptest! {
         }
         let mut search = CmaEs::new(config, seed).unwrap();
         let separable = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![sigma; genes], sigma) };
-        let mut separable = SeparableCmaEs::new(separable, seed).unwrap();
+        let mut separable = SeparableCmaEs::with_covariance(separable, seed).unwrap();
         for told in told.chunks(population) {
             // What lies farther out is better, without end.
             let far = |x: &[f64]| x.iter().fold(0.0_f64, |far, x| far.max(x.abs()));

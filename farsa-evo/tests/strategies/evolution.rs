@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use farsa_evo::coevolution::Coevolution;
+use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
 use farsa_evo::{
     Champion, EvoError, Fitness, Genealogy as _, Population, Record, RecordKind, Snapshot, Statistics, Strategy,
@@ -93,7 +93,9 @@ fn every_generation_is_rebuilt_bit_for_bit() {
     rebuilds(|| RandomSearch::new(9, 30, 17).unwrap());
     rebuilds(|| TruncationGa::new(GaConfig { gene_bits: 5, ..GaConfig::new(9) }, 17).unwrap());
     rebuilds(|| OnePlusOne::new(OnePlusOneConfig::new(14), 17).unwrap());
-    rebuilds(|| Coevolution::new(&[GaConfig::new(9), GaConfig { gene_bits: 8, ..GaConfig::new(12) }], 17).unwrap());
+    rebuilds(|| {
+        Populations::truncation(&[GaConfig::new(9), GaConfig { gene_bits: 8, ..GaConfig::new(12) }], 17).unwrap()
+    });
 }
 
 /// Climbs by steps that it finds by trial, remembers nothing but them, and cannot save its state.
@@ -241,7 +243,7 @@ fn a_record_is_of_one_strategy() {
     assert_eq!(other(more), EvoError::OtherRecord { what: "individuals", recorded: 6 });
     let of_values = record.check(&RandomSearch::new(3, 6, 4).unwrap()).unwrap_err();
     assert!(matches!(of_values, EvoError::OtherRecord { what: "bytes of another kind", .. }), "{of_values}");
-    let halves = Coevolution::new(&[GaConfig { population: 3, parents: 1, ..config }; 2], 4).unwrap();
+    let halves = Populations::truncation(&[GaConfig { population: 3, parents: 1, ..config }; 2], 4).unwrap();
     assert_eq!(record.check(&halves), Err(EvoError::OtherRecord { what: "populations", recorded: 1 }));
 }
 
@@ -421,6 +423,6 @@ fn every_strategy_conforms() {
     let config = GaConfig { population: 12, parents: 4, ..GaConfig::new(5) };
     check_strategy(|| TruncationGa::new(config, 3), 30).unwrap();
     check_strategy(|| OnePlusOne::new(OnePlusOneConfig::new(5), 3), 30).unwrap();
-    check_strategy(|| Coevolution::new(&[config, config], 3), 30).unwrap();
+    check_strategy(|| Populations::truncation(&[config, config], 3), 30).unwrap();
     check_strategy(|| RandomSearch::new(5, 12, 3), 30).unwrap();
 }

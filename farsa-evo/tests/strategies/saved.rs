@@ -1,6 +1,6 @@
 //! Saving and reading: the same bits go on, and an altered state is refused.
 
-use farsa_evo::coevolution::Coevolution;
+use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
 use farsa_evo::{Champion, Fitness, Record, RecordEntry, RecordKind, Snapshot, Statistics, Strategy};
 use postcard::{from_bytes, to_allocvec};
@@ -34,7 +34,7 @@ fn interrupted_evolution_gives_the_same_bits() {
     interrupted_is_uninterrupted(|| OnePlusOne::new(OnePlusOneConfig::new(12), 6).unwrap());
     let narrow = GaConfig { gene_bits: 8, ..GaConfig::new(12) };
     interrupted_is_uninterrupted(|| TruncationGa::new(narrow, 6).unwrap());
-    interrupted_is_uninterrupted(|| Coevolution::new(&[GaConfig::new(12), narrow], 6).unwrap());
+    interrupted_is_uninterrupted(|| Populations::truncation(&[GaConfig::new(12), narrow], 6).unwrap());
 }
 
 /// A configuration as it was saved before genes had a number of bits.
@@ -123,7 +123,7 @@ fn a_forged_state_is_refused() {
     assert!(bent(&search, OnePlusOneConfig { last_rate: 0.9, ..config }, |_| ()).is_err());
 
     let configs = vec![GaConfig::new(4), GaConfig::new(5)];
-    let mut all = Coevolution::new(&configs, 6).unwrap();
+    let mut all = Populations::truncation(&configs, 6).unwrap();
     live(&mut all, 3);
     let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&all, configs.clone(), change);
     assert_eq!(read(&|_| ()).unwrap(), all);
@@ -149,9 +149,10 @@ fn a_forged_state_is_refused() {
 
 #[test]
 fn a_refused_state_changes_nothing() {
-    let mut all = Coevolution::new(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
+    let mut all = Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
     live(&mut all, 3);
-    let (before, state) = (all.clone(), Coevolution::new(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap().save());
+    let (before, state) =
+        (all.clone(), Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap().save());
     for len in (0..state.len()).step_by(7) {
         assert!(all.restore(&state[..len]).is_err());
         assert_eq!(all, before);
@@ -248,7 +249,7 @@ fn a_forged_size_takes_no_memory() {
         let forged = to_allocvec(&ForgedStrategy { config, seed: 1, state: state.clone() }).unwrap();
         assert!(forged.len() < 60 && from_bytes::<TruncationGa>(&forged).is_err());
         let forged = to_allocvec(&ForgedStrategy { config: vec![config; 2], seed: 1, state: state.clone() }).unwrap();
-        assert!(from_bytes::<Coevolution>(&forged).is_err());
+        assert!(from_bytes::<Populations<TruncationGa, u16>>(&forged).is_err());
         let config = OnePlusOneConfig::new(1 << 27);
         assert!(from_bytes::<OnePlusOne>(&to_allocvec(&ForgedStrategy { config, seed: 1, state }).unwrap()).is_err());
     }

@@ -2,7 +2,7 @@
 
 use farsa_evo::Strategy;
 use farsa_evo::archives::{GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch};
-use farsa_evo::coevolution::{Coevolution, Cosyne, CosyneConfig, GeneralistCoevolution, GeneralistConfig, Populations};
+use farsa_evo::coevolution::{Cosyne, CosyneConfig, GeneralistCoevolution, GeneralistConfig, Populations};
 use farsa_evo::covariance::{
     CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
     SeparableCmaEsConfig,
@@ -25,13 +25,13 @@ fn the_seed_is_the_one_that_was_given() {
         let told = [
             TruncationGa::new(GaConfig::new(3), seed).unwrap().seed(),
             OnePlusOne::new(OnePlusOneConfig::new(3), seed).unwrap().seed(),
-            Coevolution::new(&[GaConfig::new(3); 2], seed).unwrap().seed(),
+            Populations::truncation(&[GaConfig::new(3); 2], seed).unwrap().seed(),
             RealGa::new(RealGaConfig::new(bounds.clone()), seed).unwrap().seed(),
             SteadyState::new(SteadyStateConfig::new(bounds.clone()), seed).unwrap().seed(),
             EvolutionStrategy::new(EvolutionStrategyConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
             CmaEs::new(CmaEsConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
-            CholeskyCmaEs::new(CmaEsConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
-            SeparableCmaEs::new(SeparableCmaEsConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
+            CholeskyCmaEs::with_covariance(CmaEsConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
+            SeparableCmaEs::with_covariance(SeparableCmaEsConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
             Snes::new(SnesConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
             Xnes::new(XnesConfig::new(mean.clone(), 0.5), seed).unwrap().seed(),
             Pgpe::new(PgpeConfig::new(mean.clone(), 0.5, 4), seed).unwrap().seed(),
@@ -55,7 +55,8 @@ fn who_keeps_an_archive_or_only_guesses_keeps_its_champion() {
     let cells = GridCells::new(vec![[0.0, 1.0]], vec![4]).unwrap();
     let guesses = |seed| RandomSearch::new(3, 4, seed);
     let novel = NoveltyConfig::new(2);
-    let (alone, two) = (TruncationGa::new(GaConfig::new(3), 5).unwrap(), Coevolution::new(&[GaConfig::new(3); 2], 5));
+    let (alone, two) =
+        (TruncationGa::new(GaConfig::new(3), 5).unwrap(), Populations::truncation(&[GaConfig::new(3); 2], 5));
     let told = [
         TruncationGa::new(GaConfig::new(3), 5).unwrap().champion_is_best_ever(),
         CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 5).unwrap().champion_is_best_ever(),

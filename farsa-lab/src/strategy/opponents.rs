@@ -166,7 +166,7 @@ impl Hall {
 mod tests {
     use super::*;
     use crate::experiment::parameter::Parameter;
-    use farsa_evo::coevolution::Coevolution;
+    use farsa_evo::coevolution::Populations;
     use farsa_evo::words::GaConfig;
     use farsa_evo::{Fitness, Record, Strategy};
 
@@ -202,11 +202,11 @@ mod tests {
         const TRIALS: usize = 3;
         let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
         let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
-        let mut all = Coevolution::new(&[config; 3], 4).unwrap();
+        let mut all = Populations::truncation(&[config; 3], 4).unwrap();
         let mut record = Record::new(&mut all).unwrap();
         let mut hall = Hall::default();
         let history = |record: &Record| {
-            let fresh = move || Ok(Search::from_words(Coevolution::new(&[config; 3], 4).unwrap()));
+            let fresh = move || Ok(Search::from_words(Populations::truncation(&[config; 3], 4).unwrap()));
             History::new("record".into(), record.clone(), Box::new(fresh))
         };
         for generation in 0..7 {

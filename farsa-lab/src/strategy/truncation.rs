@@ -1,7 +1,7 @@
 //! The truncation algorithm, in one population or several.
 
 use farsa_evo::EvoError;
-use farsa_evo::coevolution::Coevolution;
+use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{GaConfig, TruncationGa};
 
 use crate::error::Error;
@@ -14,7 +14,7 @@ const PARENTS: &str = "evolution.parents";
 pub(super) const RATE: &str = "evolution.mutation_rate";
 
 /// The best of a generation produce mutated copies, [`farsa_evo::words::TruncationGa`]. Several populations evolve each
-/// by itself, [`farsa_evo::coevolution::Coevolution`]. Defaults of \[Ferrauto2010\].
+/// by itself, [`farsa_evo::coevolution::Populations`]. Defaults of \[Ferrauto2010\].
 #[derive(Debug, Clone, Copy)]
 pub struct Truncation;
 
@@ -51,7 +51,7 @@ impl StrategyDefinition for Truncation {
         Ok(if start.populations == 1 {
             Search::from_words(TruncationGa::new(config, start.seed).map_err(refused)?)
         } else {
-            Search::from_words(Coevolution::new(&vec![config; start.populations], start.seed).map_err(refused)?)
+            Search::from_words(Populations::truncation(&vec![config; start.populations], start.seed).map_err(refused)?)
         })
     }
 }

@@ -72,7 +72,7 @@ pub(in crate::strategy) static CHOLESKY_CMA_ES: SimpleStrategy = SimpleStrategy 
     },
     start: |start| {
         let config = config(start.settings, start.genes)?;
-        start.reals(|seed| CholeskyCmaEs::new(config.clone(), seed))
+        start.reals(|seed| CholeskyCmaEs::with_covariance(config.clone(), seed))
     },
     diagnostics: Some(Diagnostics {
         file: "strategy",
@@ -100,5 +100,5 @@ pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy
 fn separable(start: &StrategyStart<'_>) -> Result<Search, Error> {
     let plain = SeparableCmaEsConfig::new(vec![0.0; start.genes], start.settings.number(SIGMA)?);
     let population = count_or(start.settings, POPULATION, plain.population)?;
-    start.reals(|seed| SeparableCmaEs::new(SeparableCmaEsConfig { population, ..plain.clone() }, seed))
+    start.reals(|seed| SeparableCmaEs::with_covariance(SeparableCmaEsConfig { population, ..plain.clone() }, seed))
 }
