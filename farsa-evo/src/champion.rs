@@ -10,8 +10,8 @@ use crate::statistics::Statistics;
 
 /// The best individual of a search so far, with its genome.
 ///
-/// A strategy does not keep it, because fitness that is measured anew in every generation makes the best so far the
-/// luckiest as well; a search that wants it keeps it like this:
+/// A strategy does not keep it. Where fitness is noisy, the best individual so far is also the luckiest. A search that
+/// needs it keeps it like this:
 ///
 /// ```
 /// use farsa_evo::{Champion, Fitness, Strategy};
@@ -47,7 +47,7 @@ impl<G: Gene> Champion<G> {
     /// population. Among equals the earliest stays.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`]; the best so far is then unchanged.
+    /// [`EvoError::FitnessCount`]. The best individual so far is then unchanged.
     pub fn keep(
         best: &mut Option<Self>,
         generation: u32,

@@ -1,4 +1,4 @@
-//! What every strategy has to keep to, as a check for strategies of one's own.
+//! A check of the rules of a strategy, for your own strategies.
 
 use alloc::format;
 use alloc::string::String;
@@ -15,16 +15,24 @@ use crate::scores::Scores;
 use crate::strategy::Member;
 use crate::strategy::{RecordKind, Strategy};
 
-/// Checks that the strategy that `fresh` makes, always with the same configuration and seed, keeps to what [`Strategy`] says,
-/// over so many generations.
+/// Checks the rules of [`Strategy`] over the given number of generations. `fresh` must return the same strategy each time.
 ///
-/// Asked twice it answers the same. A fresh one that is told the same does the same and says the same of it
-/// ([`diagnostics`](Strategy::diagnostics), as many each time), through a [`Record`] and, interrupted after every generation, through
-/// saved states, which are the same bytes then. It refuses another number of values and is unchanged by that. It counts generations,
-/// and names a champion of each population. Where it says that only the order counts ([`RecordKind::Order`]), other values of the same order change nothing.
-/// Failed evaluations, all of them at once too, end nothing. Scores of another shape than it wants are refused. What it keeps,
-/// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told. Where it says
-/// whom individuals meet ([`Opponents`](crate::Opponents)), everyone meets as many, one of each other population.
+/// The check covers these rules:
+///
+/// - `ask` returns the same genomes twice. A second strategy with the same fitness returns the same genomes and
+/// [`diagnostics`](Strategy::diagnostics), also through a [`Record`] and through a saved state after every generation.
+///
+/// - A wrong number of values, or scores of another shape, is an error and changes nothing.
+///
+/// - Generations are counted, and each population has a champion.
+///
+/// - With [`RecordKind::Order`], other values of the same order change nothing.
+///
+/// - A generation in which some or all evaluations failed does not stop the search.
+///
+/// - The members of a [`Collection`](crate::Collection) are evaluated individuals with their scores.
+///
+/// - With [`Opponents`](crate::Opponents), all individuals have the same number of opponents, one of each other population.
 ///
 /// ```
 /// use farsa_evo::check_strategy;
@@ -36,7 +44,7 @@ use crate::strategy::{RecordKind, Strategy};
 /// ```
 ///
 /// # Errors
-/// What it does not keep to, and in which generation.
+/// A message with the broken rule and the generation.
 pub fn check_strategy<G, S>(fresh: impl Fn() -> Result<S, EvoError>, generations: u32) -> Result<(), String>
 where
     G: Gene,
@@ -115,7 +123,7 @@ where
     Ok(())
 }
 
-/// Whether everyone meets one of each other population as each opponent, nobody else does, and an objective is told of each.
+/// Checks that all individuals have the same number of opponents and an objective for each.
 fn opponents<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
     let Some(opponents) = strategy.opponents() else { return Ok(()) };
     let (count, all) = (opponents.count(), strategy.ask().len());
@@ -133,7 +141,7 @@ fn opponents<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
     if everyone && nobody { Ok(()) } else { Err("names opponents other than one of each other population".into()) }
 }
 
-/// Whether members of a collection are individuals of generations that were told, each with what was told of it, and none twice.
+/// Checks that members are distinct individuals of past generations, with the scores of their evaluations.
 fn kept(members: &[Member<'_>], history: &[Scores]) -> Result<(), String> {
     let mut origins = Vec::with_capacity(members.len());
     for &Member { objectives, measures, generation, individual, .. } in members {
@@ -149,7 +157,8 @@ fn kept(members: &[Member<'_>], history: &[Scores]) -> Result<(), String> {
     if origins.windows(2).any(|pair| pair[0] == pair[1]) { Err("keeps an individual twice".into()) } else { Ok(()) }
 }
 
-/// A fresh strategy with the state of another, which is that other and takes no part of a state; the other itself if it saves none.
+/// Returns a fresh strategy with the state of another, after checking that the two are equal and that a truncated state is
+/// an error. A strategy without saved states is returned itself.
 fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S, String> {
     let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(strategy) };
     if strategy.snapshot().is_some_and(|snapshot| snapshot.snapshot_interval() == 0) {
@@ -167,8 +176,7 @@ fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S,
     if same { Ok(fresh) } else { Err("is another after its state was restored".into()) }
 }
 
-/// Whether a strategy refuses too few scores, those of another shape, and fitness if it wants more, and is unchanged by
-/// that.
+/// Checks that too few scores, scores of another shape and fitness instead of scores are errors that change nothing.
 fn refuses<G: Gene, S: Strategy<G>>(strategy: &mut S, scores: &Scores) -> Result<(), String> {
     let (shape, digest) = (scores.shape(), strategy.ask().digest());
     let (generation, count) = (strategy.generation(), scores.len());

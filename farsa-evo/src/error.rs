@@ -1,4 +1,4 @@
-//! What can be wrong with a configuration, a recorded history or what a strategy is told.
+//! Errors of configurations, records, states and reported fitness.
 
 use core::fmt;
 
@@ -7,7 +7,7 @@ use crate::score_shape::ScoreShape;
 /// The most genes of a population, 2^28 (512 MiB).
 pub(crate) const MAX_GENES: usize = 1 << 28;
 
-/// Why a value of this crate was refused; the variants carry the numbers that were wrong.
+/// An error of this crate, with the wrong numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EvoError {
@@ -71,11 +71,11 @@ pub enum EvoError {
     },
     /// A number of a configuration that cannot be.
     Setting {
-        /// What it is called.
+        /// Its name.
         name: &'static str,
         /// The number asked for.
         value: f64,
-        /// What is possible.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A range of gene values that is not finite, or whose low end is above its high end.
@@ -94,11 +94,11 @@ pub enum EvoError {
         /// Room for decoded values.
         out: usize,
     },
-    /// The strategy was told more or fewer fitness values than it has individuals.
+    /// More or fewer fitness values than individuals.
     FitnessCount {
         /// Individuals of the generation.
         expected: usize,
-        /// Fitness values told.
+        /// Reported fitness values.
         found: usize,
     },
     /// A fitness that is NaN.
@@ -107,14 +107,14 @@ pub enum EvoError {
     ScoreCount {
         /// Numbers of each individual.
         width: usize,
-        /// Numbers told.
+        /// Reported numbers.
         found: usize,
     },
-    /// The strategy was told another number of objectives or measures than it takes.
+    /// Another number of objectives or measures than the strategy requires.
     ScoreShape {
-        /// What it takes.
+        /// The required shape.
         expected: ScoreShape,
-        /// What it was told.
+        /// The reported shape.
         found: ScoreShape,
     },
     /// The generation counter has reached its last value, 2^32 - 1.
@@ -138,7 +138,7 @@ pub enum EvoError {
         /// The parent named twice.
         individual: usize,
     },
-    /// No best individual: of no generations, or in a saved search that was told some.
+    /// No best individual, because no generation was evaluated, or because a saved search lacks it.
     NoBest {
         /// The generation that it waits for.
         generation: u32,
@@ -150,27 +150,27 @@ pub enum EvoError {
         /// Its individuals.
         individuals: usize,
     },
-    /// A record is begun with a strategy that has not been told anything.
+    /// A record of a strategy that is past generation 0.
     AlreadyTold {
         /// The generation that the strategy is at.
         generation: u32,
     },
-    /// A strategy that is not at the next generation after it was told one.
+    /// A strategy that is not at the next generation after its fitness was reported.
     Stuck {
-        /// The generation that it was told of.
+        /// The reported generation.
         generation: u32,
         /// The generation that it is at.
         found: u32,
     },
     /// A strategy of which genomes are recorded has to save its state.
     NoSnapshot,
-    /// A strategy cannot be told again what is not in its record: the genomes alone are.
+    /// A record of genomes, which cannot be replayed.
     GenomesOnly,
     /// A record of another strategy: of other sizes, or at another generation.
     OtherRecord {
-        /// What differs.
+        /// The difference.
         what: &'static str,
-        /// How many of it are in the record.
+        /// Their number in the record.
         recorded: usize,
     },
     /// A saved state, or a record, of the wrong number of bytes.
@@ -182,7 +182,7 @@ pub enum EvoError {
     },
     /// A saved state, or a record, with a number in it that cannot be.
     StateContent {
-        /// What the number stands for.
+        /// The meaning of the number.
         what: &'static str,
         /// The number.
         found: u64,

@@ -5,11 +5,11 @@ use core::cmp::{Ordering, Reverse};
 
 use crate::error::EvoError;
 
-/// How well an individual did, in the experiment's own unit; larger is better, and never NaN.
+/// The result of an evaluation, in the experiment's own unit. Larger is better, and it is never NaN.
 ///
-/// A total order, so that selection never meets a pair it cannot compare. Minus zero is stored as zero: equal values
-/// have equal bits. Under the feature `serde` it is an optional number, absent for a failed evaluation, because text formats
-/// such as JSON have no infinity.
+/// It is a total order, so all pairs can be compared. Minus zero is stored as zero, so equal values have equal bits. Under
+/// the feature `serde` it is an optional number, absent for a failed evaluation, because text formats such as JSON have no
+/// infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Option<f64>", into = "Option<f64>"))]
@@ -52,7 +52,7 @@ impl Fitness {
         order
     }
 
-    /// Whether this is [`Fitness::WORST`].
+    /// Returns true for [`Fitness::WORST`].
     pub const fn is_failed(self) -> bool {
         self.0 == f64::NEG_INFINITY
     }

@@ -1,9 +1,9 @@
-//! What genomes are made of.
+//! The elements of genomes.
 
 use alloc::vec::Vec;
 use core::fmt::Debug;
 
-/// A gene: a 16-bit word, which stands for a value of a range, or a real number, which is a value itself.
+/// A gene, either an integer of up to 16 bits, which encodes a value of a range, or a real number.
 pub trait Gene: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Bytes of a gene that is saved.
     const BYTES: usize;
@@ -11,7 +11,7 @@ pub trait Gene: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Appends the gene, little-endian.
     fn push_bytes(self, bytes: &mut Vec<u8>);
 
-    /// The gene of these bytes; none if they are not [`BYTES`](Self::BYTES), or no gene.
+    /// Returns the gene of these bytes, or `None` if they are not [`BYTES`](Self::BYTES) or not a gene.
     fn from_bytes(bytes: &[u8]) -> Option<Self>;
 }
 

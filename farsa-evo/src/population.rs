@@ -17,8 +17,8 @@ pub struct Population<G = u16> {
 }
 
 impl Population {
-    /// The most genes a population may have together, 2^28 (512 MiB of words, 2 GiB of reals), so that a damaged configuration
-    /// is refused before it is allocated.
+    /// The largest number of genes of a population, 2^28 (512 MiB of integer genes, 2 GiB of reals). A damaged
+    /// configuration is therefore an error before memory is allocated.
     pub const MAX_GENES: usize = MAX_GENES;
 
     /// The default number of individuals for `genes` real genes, 4 + 3 ln n rounded down.
@@ -28,7 +28,7 @@ impl Population {
         4 + (3.0 * ln(genes.max(1) as f64)) as usize
     }
 
-    /// Whether [`Population::new`] would accept these sizes.
+    /// Checks that [`Population::new`] accepts these sizes.
     pub(crate) fn check(individuals: usize, genome_len: usize) -> Result<(), EvoError> {
         if individuals == 0 {
             return Err(EvoError::NoIndividuals);
@@ -58,7 +58,7 @@ impl<G: Gene> Population<G> {
         self.genes.len() / self.genome_len
     }
 
-    /// Whether there are no individuals: never.
+    /// Returns false, because a population has individuals.
     pub fn is_empty(&self) -> bool {
         self.genes.is_empty()
     }

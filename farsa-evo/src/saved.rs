@@ -19,8 +19,8 @@ impl<C> SavedStrategy<C> {
         Self { config, seed, state: strategy.save() }
     }
 
-    /// Refuses a state that is too short for the genes of all `individuals`, before they take memory: a configuration that was
-    /// forged may ask for any number of them.
+    /// Returns an error for a state that is too short for the genes of all `individuals`, before memory is allocated. A
+    /// forged configuration may claim any number of them.
     ///
     /// # Errors
     /// [`EvoError::StateLength`].
@@ -30,7 +30,7 @@ impl<C> SavedStrategy<C> {
     }
 }
 
-/// A mutation and the bits of a gene that it knows of: 16 where it says none.
+/// A mutation and the bits of its genes, 16 unless given.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Mutation")]
 pub(crate) enum SavedMutation {

@@ -1,23 +1,23 @@
-//! How many numbers an evaluation gives.
+//! The number of values of an evaluation.
 
 use core::fmt;
 
-/// How many numbers an evaluation gives of each individual.
+/// The number of objectives and measures of each individual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ScoreShape {
-    /// Number of objectives m, at least 1; the first is the fitness that logs and champions go by.
+    /// Number of objectives m, at least 1. The first is the fitness of logs and champions.
     pub objectives: usize,
-    /// Number of values d that describe the behaviour.
+    /// Number of measures d of the behavior.
     #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
     pub measures: usize,
 }
 
 impl ScoreShape {
-    /// One objective and no measures: what [`Strategy::tell`](crate::Strategy::tell) takes.
+    /// One objective and no measures, for [`Strategy::tell`](crate::Strategy::tell).
     pub const FITNESS: Self = Self { objectives: 1, measures: 0 };
 
-    /// So many objectives and measures.
+    /// Returns the shape of the given numbers of objectives and measures.
     pub const fn new(objectives: usize, measures: usize) -> Self {
         Self { objectives, measures }
     }

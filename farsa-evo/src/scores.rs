@@ -1,4 +1,4 @@
-//! What an evaluation says of an individual where one number is not enough.
+//! Objectives and measures of evaluations.
 
 use alloc::vec::Vec;
 
@@ -49,8 +49,8 @@ pub struct Scores {
 }
 
 impl Scores {
-    /// Scores of this shape, given the objectives and then the measures of each individual [individuals x (m + d)];
-    /// a NaN, or an infinite measure, is a failed evaluation, as is an objective of minus infinity.
+    /// Builds scores of this shape from the objectives and then the measures of each individual [individuals x (m + d)]. A
+    /// NaN, an infinite measure or an objective of minus infinity is a failed evaluation.
     ///
     /// # Errors
     /// [`EvoError::Setting`] for a shape without objectives, [`EvoError::ScoreCount`] for a last row that is not whole.
@@ -98,7 +98,7 @@ impl Scores {
         Self { shape: ScoreShape::FITNESS, values: fitness.iter().map(|fitness| fitness.get()).collect() }
     }
 
-    /// How many numbers there are of each individual.
+    /// The number of objectives and measures of each individual.
     pub fn shape(&self) -> ScoreShape {
         self.shape
     }
@@ -108,7 +108,7 @@ impl Scores {
         self.values.len() / self.shape.width().max(1)
     }
 
-    /// Whether there are no individuals.
+    /// Returns true if there are no individuals.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -118,17 +118,17 @@ impl Scores {
         &self.values
     }
 
-    /// The objectives \[m\] of an individual, minus infinity where its evaluation failed; empty beyond the last.
+    /// The objectives \[m\] of an individual, minus infinity where its evaluation failed. Empty beyond the last individual.
     pub fn objectives(&self, individual: usize) -> &[f64] {
         self.row(individual).0
     }
 
-    /// The measures \[d\] of an individual, zero where its evaluation failed; empty beyond the last.
+    /// The measures \[d\] of an individual, zero where its evaluation failed. Empty beyond the last individual.
     pub fn measures(&self, individual: usize) -> &[f64] {
         self.row(individual).1
     }
 
-    /// Whether the evaluation of an individual failed; no for one that does not exist.
+    /// Returns true if the evaluation of an individual failed, and false for an index beyond the last.
     pub fn is_failed(&self, individual: usize) -> bool {
         self.objectives(individual).first() == Some(&f64::NEG_INFINITY)
     }
@@ -139,7 +139,7 @@ impl Scores {
         rows.map(|row| row.first().map_or(Fitness::WORST, |x| Fitness::nan_as_failed(*x))).collect()
     }
 
-    /// Refuses scores that are not of this shape and of so many individuals, as a strategy does that is told them.
+    /// Checks the shape of the scores and the number of individuals.
     ///
     /// # Errors
     /// [`EvoError::ScoreShape`], [`EvoError::FitnessCount`].
@@ -226,7 +226,7 @@ mod tests {
                 }
                 prop_assert_eq!(told.fitness()[individual].get(), objectives[0]);
             }
-            // What was made of it once stays as it is.
+            // Sanitized values stay the same.
             prop_assert_eq!(Scores::new(shape, told.values().to_vec()), Ok(told));
         }
     }

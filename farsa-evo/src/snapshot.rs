@@ -6,28 +6,27 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 
-/// The ability to go on from a saved state, without being told everything again.
+/// The ability to resume from a saved state without replaying earlier generations.
 pub trait Snapshot {
-    /// All that changes from generation to generation, as bytes; configuration and seed are not part of it.
+    /// Returns everything that changes from generation to generation, as bytes. Configuration and seed are not part of it.
     fn save(&self) -> Vec<u8>;
 
-    /// Takes the state that a strategy of the same configuration and seed has saved; [`save`](Self::save) gives the same bytes
-    /// then.
+    /// Restores a state that a strategy of the same configuration and seed has saved. [`save`](Self::save) then returns the
+    /// same bytes.
     ///
     /// # Errors
-    /// [`EvoError::StateLength`], [`EvoError::StateContent`]; the strategy is then unchanged.
+    /// [`EvoError::StateLength`] and [`EvoError::StateContent`]. The strategy is then unchanged.
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError>;
 
-    /// After how many generations a [`Record`](crate::Record) keeps the state at the latest, at least 1, because telling them
-    /// again takes long, and less often once its states take 256 MiB; by default it keeps states only as often as that at most
-    /// doubles it.
+    /// The largest number of generations between two states of a [`Record`](crate::Record), at least 1, for strategies that
+    /// are slow to replay. The interval doubles for every 256 MiB of states. By default a record stores states as often as
+    /// they at most double it.
     fn snapshot_interval(&self) -> u32 {
         u32::MAX
     }
 }
 
-/// How many generations of so many genes a strategy is told again in a second or so, where each gene of each individual costs random
-/// numbers and functions, 50 ns.
+/// The number of generations that are replayed in about a second, at 50 ns for each gene of each individual.
 pub(crate) fn between_states(population: &Population<f64>) -> u32 {
     let genes = (population.as_slice().len() as u64).max(1);
     u32::try_from(20_000_000 / genes).unwrap_or(u32::MAX).max(1)
@@ -40,7 +39,7 @@ pub struct StateReader<'s> {
 }
 
 impl<'s> StateReader<'s> {
-    /// The bytes of a state, which must be so many.
+    /// Starts to read a state, which must have the expected number of bytes.
     pub(crate) fn new(state: &'s [u8], expected: usize) -> Result<Self, EvoError> {
         let found = state.len();
         if found == expected {
@@ -105,7 +104,7 @@ pub(crate) fn push_reals(state: &mut Vec<u8>, row: &[f64]) {
     state.extend(row.iter().flat_map(|x| x.to_le_bytes()));
 }
 
-/// The largest gene of so many bits, 1 to 16.
+/// The largest gene of the given number of bits, 1 to 16.
 pub(crate) fn largest(gene_bits: u32) -> u16 {
     u16::MAX >> u16::BITS.saturating_sub(gene_bits)
 }

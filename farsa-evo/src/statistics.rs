@@ -1,10 +1,10 @@
-//! What a log says about a generation.
+//! The summary of a generation for a log.
 
 use crate::fitness::Fitness;
 
 /// The summary of one generation's fitness, in the experiment's own unit.
 ///
-/// Failed evaluations count in [`Statistics::failed`] only; when all failed, best, mean and worst are minus infinity.
+/// Failed evaluations count in [`Statistics::failed`] only. When all failed, best, mean and worst are minus infinity.
 ///
 /// ```
 /// use farsa_evo::{Fitness, Statistics};
@@ -29,7 +29,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Summarises `fitness` \[individuals\]; none when it is empty.
+    /// Summarizes `fitness` \[individuals\], or returns `None` when it is empty.
     pub fn from_fitness(fitness: &[Fitness]) -> Option<Self> {
         let mut best = *fitness.first()?;
         let mut worst = Fitness::WORST;

@@ -1,4 +1,4 @@
-//! What every search strategy over genes offers.
+//! The interface of all search strategies.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,7 +13,7 @@ use crate::scores::Scores;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
 
-/// What has to be recorded of a generation so that it can be rebuilt, [`Strategy::record_kind`].
+/// The content of a record that rebuilds a generation, see [`Strategy::record_kind`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -22,21 +22,20 @@ pub enum RecordKind {
     Order,
     /// The values of fitness, or all numbers of the scores.
     Values,
-    /// The genomes themselves: for strategies that take too long to be told again.
+    /// The genomes, for strategies that are too slow to replay.
     Genomes,
 }
 
-/// A search over genomes that is asked for a generation and told how well it did. Its genes are 16-bit words or reals.
+/// A search by ask and tell over genomes of integers (`u16`) or reals (`f64`).
 ///
-/// The caller evaluates [`ask`](Strategy::ask)'s genomes in any order and on any number of threads, then calls
-/// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and what it was told, so a
-/// [`Record`](crate::Record) of that rebuilds any past generation without evaluating anything. Implementations draw random
-/// numbers only from [`farsa_num::Stream`]s named by seed, individual and generation.
+/// The caller evaluates the genomes of [`ask`](Strategy::ask) in any order and on any number of threads, then calls
+/// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and the reported fitness. A
+/// [`Record`](crate::Record) of the fitness therefore rebuilds any past generation without evaluations. Implementations
+/// draw random numbers only from [`farsa_num::Stream`]s that seed, individual and generation name.
 ///
-/// Three methods are required; the others have defaults that fit a strategy of one population that depends on the values of
-/// fitness. A strategy that wants several objectives, or a measures, says so
-/// ([`score_shape`](Strategy::score_shape)) and takes [`Scores`] in the place of fitness
-/// ([`tell_scores`](Strategy::tell_scores)); its fitness, by which it is logged, is the first objective.
+/// Three methods are required. The defaults of the others fit a strategy with one population that depends on the values of
+/// fitness. A strategy with several objectives, or with measures, returns another [`score_shape`](Strategy::score_shape)
+/// and takes [`Scores`] in [`tell_scores`](Strategy::tell_scores). Its fitness in logs is the first objective.
 pub trait Strategy<G: Gene = u16> {
     /// The number of the generation that waits for its fitness, from 0.
     fn generation(&self) -> u32;
@@ -47,20 +46,21 @@ pub trait Strategy<G: Gene = u16> {
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`], or [`EvoError::ScoreShape`] by a strategy that wants more than
-    /// fitness; the strategy is then unchanged.
+    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`]. [`EvoError::ScoreShape`] from a strategy that requires
+    /// scores. The strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
-    /// How many objectives and measures it is told of each individual: one objective, if nothing else is said.
+    /// The number of objectives and measures that it requires of each individual, by default one objective.
     fn score_shape(&self) -> ScoreShape {
         ScoreShape::FITNESS
     }
 
-    /// Takes the scores of the current generation, of the shape that it is [`score_shape`](Strategy::score_shape), and makes the
-    /// next one; what has but one objective is told as fitness.
+    /// Takes the scores of the current generation, which have the shape [`score_shape`](Strategy::score_shape), and makes
+    /// the next one. Scores of one objective are passed on as fitness.
     ///
     /// # Errors
-    /// [`EvoError::ScoreShape`] for another shape, and those of [`tell`](Strategy::tell); the strategy is then unchanged.
+    /// [`EvoError::ScoreShape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
+    /// unchanged.
     fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
         ScoreShape::FITNESS.check(scores.shape())?;
         self.tell(&scores.fitness())
@@ -71,70 +71,69 @@ pub trait Strategy<G: Gene = u16> {
         1
     }
 
-    /// What has to be recorded of a generation so that it can be rebuilt.
+    /// The content of a record that rebuilds a generation.
     fn record_kind(&self) -> RecordKind {
         RecordKind::Values
     }
 
-    /// The fitness \[individuals\] that individuals are ranked by if this is what the evaluation gave; of several objectives the
-    /// first.
+    /// Returns the fitness \[individuals\] by which individuals are ranked, given the fitness of the evaluation or its
+    /// first objective.
     fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
         fitness.to_vec()
     }
 
-    /// The best individual of each population, counted through all of them, given the fitness that they are
-    /// [`ranked_by`](Strategy::ranked_by) \[individuals\]; among equals the lower index.
+    /// Returns the best individual of each population, counted through all populations, given the fitness of
+    /// [`ranked_by`](Strategy::ranked_by) \[individuals\]. The lower index wins among equals.
     fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
         let size = (ranked_by.len() / self.populations().max(1)).max(1);
         let best = |own| Statistics::from_fitness(own).map_or(0, |summary| summary.best_index);
         ranked_by.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
     }
 
-    /// How the state is saved and taken back, if it can be; else a strategy goes on by being told everything again.
+    /// The ability to save and restore the state. A strategy without it resumes by replaying its record.
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
         None
     }
 
-    /// Who descends from whom, where individuals have parents.
+    /// The parents of individuals, for strategies that have them.
     fn genealogy(&self) -> Option<&dyn Genealogy> {
         None
     }
 
-    /// Whom each individual meets, where the strategy says so; else that is the caller's choice.
+    /// The opponents of each individual, for strategies that choose them.
     fn opponents(&self) -> Option<&dyn Opponents<G>> {
         None
     }
 
-    /// What is kept beyond a generation, where the result of a search is more than its champion.
+    /// The individuals that are kept beyond a generation, for strategies whose result is more than a champion.
     fn collection(&self) -> Option<&dyn Collection> {
         None
     }
 
-    /// Whether the champion of a search is the best individual of all generations instead of the last one's, as of a strategy
-    /// whose generations are not meant to be better than those before: one that fills an archive, or only guesses.
+    /// Returns true if the champion of a search is the best individual of all generations instead of the last one. This
+    /// holds for strategies whose generations do not improve on earlier ones, such as an archive or random search.
     ///
     /// By default where something is [kept](Strategy::collection).
     fn champion_is_best_ever(&self) -> bool {
         self.collection().is_some()
     }
 
-    /// Numbers of its own about the latest generation that it was told, such as a step size: as many each time, empty if there
-    /// are none.
+    /// Numbers about the latest generation, such as a step size. Their count never changes, and they are empty by default.
     fn diagnostics(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Takes plain values \[individuals\]; a NaN is a failed evaluation.
+    /// Takes plain values \[individuals\]. A NaN is a failed evaluation.
     ///
     /// # Errors
-    /// Those of [`tell`](Strategy::tell).
+    /// The errors of [`tell`](Strategy::tell).
     fn tell_values(&mut self, values: &[f64]) -> Result<(), EvoError> {
         let fitness: Vec<Fitness> = values.iter().copied().map(Fitness::nan_as_failed).collect();
         self.tell(&fitness)
     }
 
-    /// Evaluates so many generations, where `judge` writes the objectives and then the measures of a genome \[genes\] into
-    /// a row [m + d] of zeros, and returns the best individual of them by the first objective; a NaN is a failed evaluation.
+    /// Evaluates the given number of generations and returns the best individual by the first objective. `judge` writes the
+    /// objectives and then the measures of a genome \[genes\] into a row [m + d] of zeros. A NaN is a failed evaluation.
     ///
     /// # Errors
     /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
@@ -153,8 +152,8 @@ pub trait Strategy<G: Gene = u16> {
         champion.ok_or(EvoError::NoBest { generation: self.generation() })
     }
 
-    /// Evaluates so many generations, where `evaluate` says how good a genome \[genes\] is, and returns the best individual
-    /// of them; a NaN is a failed evaluation.
+    /// Evaluates the given number of generations and returns the best individual. `evaluate` returns the fitness of a
+    /// genome \[genes\], and a NaN is a failed evaluation.
     ///
     /// ```
     /// use farsa_evo::Strategy;
@@ -184,26 +183,25 @@ pub trait Strategy<G: Gene = u16> {
     }
 }
 
-/// The ability to say whose children the individuals of a generation are.
+/// The ability to report the parents of individuals.
 pub trait Genealogy {
-    /// The parents of an individual of the generation that waits for its fitness, as indices in the generation before;
-    /// none in generation 0, for an individual without parents, and for one that does not exist.
+    /// Returns the parents of an individual of the current generation, as indices in the previous one. Empty in generation
+    /// 0, for an individual without parents and beyond the last individual.
     fn parents_of(&self, individual: usize) -> Vec<usize>;
 }
 
-/// The ability to say whom each individual of a generation meets, [`Strategy::meetings`](crate::Strategy::meetings): for
-/// strategies of several populations that are told what was earned against each opponent.
+/// The ability to choose the opponents of each individual, see [`Strategy::opponents`](crate::Strategy::opponents). It is
+/// for strategies of several populations that depend on the fitness against each opponent.
 ///
-/// Such a strategy is judged by 1 + m objectives for m opponents: the fitness of all trials, and then the fitness of the trials
-/// against each opponent, in their order. In trial `t` an individual meets the opponent of number `t` modulo m, so that there
-/// have to be m trials or more.
+/// The scores of such a strategy have 1 + m objectives for m opponents. The first is the fitness of all trials, the others
+/// are the fitness of the trials against each opponent. In trial `t` the opponent is number `t` modulo m, so at least m
+/// trials are required.
 pub trait Opponents<G: Gene = u16> {
-    /// Number of opponents m that each individual of a generation meets, at least 1.
+    /// Number of opponents m of each individual in a generation, at least 1.
     fn count(&self) -> usize;
 
-    /// The genomes that an individual of the generation that waits for its fitness meets in the trials of an opponent: one of each
-    /// other population, in the order of the populations. Individuals are counted through all populations, opponents from 0
-    /// to m - 1; nobody is met beyond the last of either.
+    /// Returns the genomes of an individual's opponent of the given number, one of each other population in their order.
+    /// Individuals are counted through all populations, opponents from 0 to m - 1. Empty beyond the last of either.
     fn opponents_of(&self, individual: usize, opponent: usize) -> Vec<&[G]>;
 }
 
@@ -226,7 +224,7 @@ pub struct Member<'a> {
 
 /// The ability to keep individuals beyond their generation: an archive of elites, or the front of several objectives.
 pub trait Collection {
-    /// All that are kept, in an order that says nothing.
+    /// All members, in arbitrary order.
     fn members(&self) -> Vec<Member<'_>>;
 }
 

@@ -5,8 +5,8 @@ use farsa_num::fearless_simd::{Simd, dispatch};
 
 /// Does work that is compiled once for each instruction set, with the best of this processor (feature `std`), else of the program.
 ///
-/// The compiler makes vectors of loops in `work` and in functions that are inlined there, for which both say
-/// `#[inline(always)]`. No operation is left out, fused or done in another order, so all instruction sets give the same bits.
+/// The compiler vectorizes loops in `work` and in functions that are inlined there, which need `#[inline(always)]`. No
+/// operation is left out, fused or reordered, so all instruction sets give the same bits.
 #[inline(always)]
 pub(crate) fn vectorized<T>(work: impl FnOnce() -> T) -> T {
     dispatch!(Instructions::detect().level(), simd => simd.vectorize(work))

@@ -51,7 +51,7 @@ pub struct Archive<C> {
     origins: Vec<[u32; 2]>,
 }
 
-/// What an individual was to an archive.
+/// The result of an addition to an archive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Addition {
     /// The first of its cell.
@@ -61,7 +61,7 @@ pub enum Addition {
         /// The difference of their objectives.
         by: f64,
     },
-    /// Not better; or its evaluation failed.
+    /// Not better, or a failed evaluation.
     None,
 }
 
@@ -76,14 +76,14 @@ pub struct Elite<'a> {
     pub objective: f64,
     /// Its measures \[d\].
     pub measures: &'a [f64],
-    /// Its generation; 0 for one that was added by hand.
+    /// Its generation, 0 if it was added by hand.
     pub generation: u32,
-    /// Its index in that generation; 0 for one that was added by hand.
+    /// Its index in that generation, 0 if it was added by hand.
     pub individual: usize,
 }
 
 impl<C: Cells> Archive<C> {
-    /// An empty archive of genomes of so many genes.
+    /// Builds an empty archive of genomes with the given number of genes.
     ///
     /// # Errors
     /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`] for no cells, [`EvoError::TooLarge`] for more genes or measures
@@ -106,7 +106,7 @@ impl<C: Cells> Archive<C> {
         self.filled.len()
     }
 
-    /// Whether there are no elites.
+    /// Returns true if there are no elites.
     pub fn is_empty(&self) -> bool {
         self.filled.is_empty()
     }
@@ -126,8 +126,8 @@ impl<C: Cells> Archive<C> {
         self.objectives.iter().sum()
     }
 
-    /// Adds an individual with these genes \[genes\] and this measures \[d\] if it is the first of its cell or better than its
-    /// elite; not if its objective is NaN or minus infinity, or its measures is not finite.
+    /// Adds an individual with these genes \[genes\] and measures \[d\] if it is the first of its cell or better than its
+    /// elite. An objective of NaN or minus infinity, or measures that are not finite, are not added.
     ///
     /// # Errors
     /// [`EvoError::Lengths`] for another number of genes or measures.
@@ -198,7 +198,7 @@ impl<C: Cells> Archive<C> {
         4 + 8 + 8 * (1 + self.genes + self.cells.measures())
     }
 
-    /// Bytes of a state with so many elites.
+    /// Bytes of a state with the given number of elites.
     pub(super) fn state_length(&self, elites: usize) -> usize {
         4 + elites.saturating_mul(self.elite_length())
     }

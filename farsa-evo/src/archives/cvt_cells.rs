@@ -16,15 +16,15 @@ const ITERATIONS: usize = 50;
 /// The largest size of a centroid's coordinate.
 const LARGEST: f64 = 1e100;
 
-/// A centroidal Voronoi tessellation: a measures belongs to the centroid that is nearest to it, and centroids are spread
-/// evenly over the ranges of measures, of any number of values.
+/// A centroidal Voronoi tessellation. Measures belong to the nearest centroid, and centroids are spread evenly over the
+/// ranges of any number of measures.
 ///
-/// Centroids are those of k-means \[Lloyd1982\] over points that are drawn uniformly within the ranges: it begins with the
-/// first of them, and ends when no point changes its centroid, or after 50 iterations. A centroid without points stays where
-/// it is. Point `i` is drawn from the stream (seed, [`Domain::General`], trial 0, `i`, 0). The nearest centroid is found with a
-/// k-d tree \[Bentley1975\], exactly; among equals it is the first.
+/// The centroids result from k-means \[Lloyd1982\] over points that are uniform within the ranges. It starts with the first
+/// points and ends when no point changes its centroid, or after 50 iterations. A centroid without points stays where it is.
+/// Point `i` is drawn from the stream (seed, [`Domain::General`], trial 0, `i`, 0). A k-d tree \[Bentley1975\] finds the
+/// nearest centroid exactly, the first among equals.
 ///
-/// Source: \[Vassiliades2018\]. How k-means begins and ends is ours.
+/// Source: \[Vassiliades2018\]. Start and end of k-means are ours.
 ///
 /// ```
 /// use farsa_evo::archives::{Cells, CvtCells};
@@ -45,8 +45,8 @@ pub struct CvtCells {
 }
 
 impl CvtCells {
-    /// So many cells over these ranges \[d\], low to high, of so many points, at least as many as cells; ten for each cell are
-    /// enough.
+    /// Builds the given number of cells over these ranges \[d\], low to high, from the given number of points. There must
+    /// be at least as many points as cells, and ten for each cell are enough.
     ///
     /// # Errors
     /// [`EvoError::NoGenes`] for no ranges, [`EvoError::NoIndividuals`] for no cells, [`EvoError::TooLarge`],
@@ -193,7 +193,7 @@ mod tests {
             let mut stream = Stream::from_seed(i);
             counts[cells.cell(&[stream.uniform_f64(), stream.uniform_f64()])] += 1;
         }
-        // 1000 each; as they are drawn, the cells of 50 points would have from 100 to 3000.
+        // 1000 each. Without k-means the cells of 50 points would have from 100 to 3000.
         assert!(counts.iter().all(|count| (400..1700).contains(count)), "{counts:?}");
     }
 

@@ -6,20 +6,20 @@ use crate::error::{EvoError, check_setting};
 
 /// An emitter of a [`MapElites`](crate::archives::MapElites): how it makes its part of each generation.
 ///
-/// The first two choose elites uniformly and reflect what leaves the bounds; while the archive is empty, their individuals are
-/// uniform within the bounds.
+/// The first two choose elites uniformly and reflect genes that leave the bounds. While the archive is empty, their
+/// individuals are uniform within the bounds.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Emitter {
-    /// An elite plus normal numbers: the random variation of \[Mouret2015\], which says nothing of its kind.
+    /// An elite plus normal numbers, the random variation of \[Mouret2015\]. The source does not give its kind.
     Gaussian {
         /// Individuals of a generation, at least 1.
         batch: usize,
         /// The standard deviation as a share of each gene's range, 0 to 1.
         sigma: f64,
     },
-    /// An elite, plus normal numbers, plus a normal number times the difference to another elite: the directional variation
-    /// of \[Mouret2018\], where the deviations are 0.01 and 0.2 and the range of genes is 1.
+    /// An elite plus normal numbers, plus a normal number times the difference to another elite. It is the directional
+    /// variation of \[Mouret2018\], where the deviations are 0.01 and 0.2 and the range of genes is 1.
     IsoLine {
         /// Individuals of a generation, at least 1.
         batch: usize,
@@ -28,10 +28,10 @@ pub enum Emitter {
         /// The standard deviation along the line between the elites `sigma_2`, 0 to 10.
         line_sigma: f64,
     },
-    /// The improvement emitter of \[Fontaine2020\]: CMA-ES whose parents are all that the archive took, the first of
-    /// their cells before those that are better than an elite, by objective and by the difference of objectives. When the
-    /// archive takes none it starts again from an elite. Deviations: individuals out of bounds are drawn again up to a
-    /// hundred times and then put at the bounds (the source has none); it also starts again where the distribution has
+    /// The improvement emitter of \[Fontaine2020\], a CMA-ES whose parents are all additions to the archive. The first of
+    /// their cells rank before those that are better than an elite, then by objective and by the difference of objectives.
+    /// Without additions it starts again from an elite. Deviations: individuals out of bounds are drawn again up to a
+    /// hundred times and then put at the bounds (the source has none). It also starts again where the distribution has
     /// collapsed.
     Improvement {
         /// Individuals of a generation, at least 2.

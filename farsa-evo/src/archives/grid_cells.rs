@@ -18,10 +18,10 @@ pub trait Cells {
     fn cell(&self, measures: &[f64]) -> usize;
 }
 
-/// A grid: each measure has a range, which is divided into as many parts of the same width as is said.
+/// A grid that divides the range of each measure into parts of the same width.
 ///
-/// What is out of a range belongs to its first or last part. The last value counts fastest in the numbers of cells. At most
-/// [`Population::MAX_GENES`] cells.
+/// Values out of a range belong to its first or last part. The last measure counts fastest in the numbers of cells. There
+/// are at most [`Population::MAX_GENES`] cells.
 ///
 /// Source: \[Mouret2015\].
 ///
@@ -43,7 +43,7 @@ pub struct GridCells {
 }
 
 impl GridCells {
-    /// A grid over these ranges \[d\], low to high, of so many parts each \[d\].
+    /// Builds a grid over these ranges \[d\], low to high, with the given number of parts of each \[d\].
     ///
     /// # Errors
     /// [`EvoError::NoGenes`] for no ranges, [`EvoError::Setting`], [`EvoError::TooLarge`].
@@ -84,7 +84,7 @@ impl Cells for GridCells {
     fn cell(&self, measures: &[f64]) -> usize {
         let ranges = measures.iter().zip(&self.bounds).zip(&self.parts);
         ranges.fold(0, |cell, ((x, [low, high]), parts)| {
-            // As a float it is at most so many parts; the conversion makes negative numbers 0.
+            // The float is at most the number of parts, and the conversion makes negative numbers 0.
             let part = ((x - low) / (high - low) * *parts as f64) as usize;
             cell * parts + part.min(parts - 1)
         })

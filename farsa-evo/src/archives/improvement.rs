@@ -25,7 +25,7 @@ pub(super) struct Improvement {
     distribution: Distribution<Full>,
 }
 
-/// The coefficients of so many parents, with positive weights alone.
+/// The coefficients for the given number of parents, with positive weights alone.
 fn coefficients(genes: usize, parents: usize) -> Coefficients {
     Coefficients::new(genes, 2 * parents, false, None, |one, mu| (one, mu))
 }
@@ -45,8 +45,8 @@ impl Improvement {
         self.distribution.sample_within(stream, points, bounds);
     }
 
-    /// Adapts the distribution, given the objectives of the individuals \[batch\] and what they were to the archive; whether it
-    /// has to start again.
+    /// Adapts the distribution, given the objectives of the individuals \[batch\] and the results of their additions.
+    /// Returns true if it has to start again.
     pub(super) fn tell(&mut self, objectives: &[f64], additions: &[Addition]) -> bool {
         let worth = |individual: usize| match additions.get(individual) {
             Some(Addition::New) => (2, objectives.get(individual).copied().unwrap_or_default()),
@@ -66,7 +66,7 @@ impl Improvement {
         !self.is_sound()
     }
 
-    /// Whether the distribution has not collapsed.
+    /// Returns true unless the distribution has collapsed.
     fn is_sound(&self) -> bool {
         let distribution = &self.distribution;
         distribution.axis_ratio() <= LARGEST_RATIO && distribution.longest_axis() >= SMALLEST * self.sigma
@@ -85,7 +85,7 @@ impl Improvement {
         self.distribution.save(state);
     }
 
-    /// Takes a state; on error half of it.
+    /// Restores a state. On error the state is incomplete.
     pub(super) fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
         self.distribution.restore(reader)
     }

@@ -18,14 +18,14 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Collection, Genealogy, Member, Strategy, next_scored};
 
-/// What a [`MapElites`](crate::archives::MapElites) needs to know besides its cells; a plain value that is checked where it is used.
+/// The configuration of [`MapElites`](crate::archives::MapElites) except its cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapElitesConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100; equal ends freeze a gene, but for the improvement
+    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene, except for the improvement
     /// emitter, which needs a range.
     pub bounds: Vec<[f64; 2]>,
-    /// Who makes the individuals of a generation, one emitter's after the other's.
+    /// The emitters, which make the individuals of a generation in this order.
     pub emitters: Vec<Emitter>,
 }
 
@@ -35,8 +35,8 @@ impl MapElitesConfig {
         Self { bounds, emitters: Vec::from([Emitter::IsoLine { batch: 100, iso_sigma: 0.01, line_sigma: 0.2 }]) }
     }
 
-    /// CMA-ME: so many improvement emitters of \[Fontaine2020\], all starting in the middle of the bounds, each with a batch of
-    /// individuals and a step size in the unit of the genes.
+    /// CMA-ME with the given number of improvement emitters of \[Fontaine2020\]. All start in the middle of the bounds,
+    /// each with a batch of individuals and a step size in the unit of the genes.
     pub fn cma_me(bounds: Vec<[f64; 2]>, emitters: usize, batch: usize, sigma: f64) -> Self {
         let mean: Vec<f64> = bounds.iter().map(|[low, high]| 0.5 * (low + high)).collect();
         let emitters = (0..emitters).map(|_| Emitter::Improvement { batch, mean: mean.clone(), sigma }).collect();
@@ -65,21 +65,21 @@ impl MapElitesConfig {
     }
 }
 
-/// MAP-Elites: an archive keeps the best individual of each cell of behaviours, and emitters make new ones of what it holds.
+/// MAP-Elites. An archive keeps the best individual of each cell of behaviors, and emitters make new individuals from it.
 /// With improvement emitters it is CMA-ME.
 ///
-/// It is judged by one objective and the measures of its cells. The individuals of a generation are added one after the
-/// other, by index; the elite of a cell gives way to what is better, not to what is as good. A failed evaluation is not added. No
-/// individual is evaluated again. Champions are the best of a generation by the objective; the archive has the rest.
+/// Scores are one objective and the measures of its cells. The individuals of a generation are added in the order of their
+/// index. A better individual replaces the elite of its cell, an equal one does not. A failed evaluation is not added, and
+/// no individual is evaluated again. Champions are the best of a generation by the objective.
 ///
-/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`): its elite, the second
-/// for the iso-line emitter, then a row of normal numbers for its genes, with one more in front for the line. It draws from
-/// (seed, [`Domain::InitialGenome`], trial 0, `i`, `g`) while the archive is empty. Emitter `e` chooses the elite that it starts
-/// again from with (seed, [`Domain::Mutation`], trial 1, `e`, `g`).
+/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The draws are
+/// its elite, the second elite for the iso-line emitter, one normal number for the line, then a row of normal numbers.
+/// While the archive is empty it draws from (seed, [`Domain::InitialGenome`], trial 0, `i`, `g`). Emitter `e` chooses the
+/// elite of a new start with (seed, [`Domain::Mutation`], trial 1, `e`, `g`).
 ///
-/// Sources: \[Mouret2015\], \[Vassiliades2018\], \[Mouret2018\], \[Fontaine2020\]. Deviations: by generations, where the
-/// sources add each individual before the next is made; every emitter works in every generation, where CMA-ME chooses the one
-/// that has made the fewest individuals; those of [`Emitter`].
+/// Sources: \[Mouret2015\], \[Vassiliades2018\], \[Mouret2018\], \[Fontaine2020\]. Deviations: whole generations are added,
+/// where the sources add each individual before the next is made. Every emitter works in every generation, where CMA-ME
+/// chooses the one with the fewest individuals. See also [`Emitter`].
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -101,7 +101,7 @@ pub struct MapElites<C> {
     archive: Archive<C>,
     /// The state of each emitter that has one.
     improvements: Vec<Option<Improvement>>,
-    /// The generation and the individual of each individual's elites; none of what has no elites.
+    /// The generation and the individual of each individual's elites, empty without elites.
     parents: Vec<[Option<[u32; 2]>; 2]>,
     population: Population<f64>,
 }
@@ -110,7 +110,7 @@ impl<C: Cells + Clone> MapElites<C> {
     /// A search with an empty archive of these cells, at its first generation.
     ///
     /// # Errors
-    /// Those of [`MapElitesConfig::validate`] and of [`Archive::new`].
+    /// The errors of [`MapElitesConfig::validate`] and of [`Archive::new`].
     pub fn new(config: MapElitesConfig, cells: C, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let archive = Archive::new(cells, config.bounds.len())?;
@@ -146,7 +146,7 @@ impl<C: Cells + Clone> MapElites<C> {
         self.state_length(self.archive.cells().cells())
     }
 
-    /// Bytes of a state with so many elites.
+    /// Bytes of a state with the given number of elites.
     fn state_length(&self, elites: usize) -> usize {
         let distributions = self.improvements.iter().flatten().count();
         let own = 4 + distributions * Improvement::state_length(self.config.bounds.len());
@@ -181,7 +181,7 @@ impl<C: Cells + Clone> MapElites<C> {
     }
 }
 
-/// Makes an individual of elites; answers with their generations and indices.
+/// Makes an individual from elites and returns their generations and indices.
 fn vary<C: Cells>(
     emitter: &Emitter,
     archive: &Archive<C>,
@@ -281,8 +281,7 @@ impl<C: Cells> Collection for MapElites<C> {
     }
 }
 
-/// Elites of earlier generations were not in the one before, and are not named; what is drawn from a distribution has no
-/// parents.
+/// Elites of earlier generations have no index in the previous one, and samples of a distribution have no parents.
 impl<C: Cells + Clone> Genealogy for MapElites<C> {
     fn parents_of(&self, individual: usize) -> Vec<usize> {
         let named = self.parents.get(individual).into_iter().flatten().flatten();
@@ -294,8 +293,8 @@ impl<C: Cells + Clone> Genealogy for MapElites<C> {
 }
 
 impl<C: Cells + Clone> Snapshot for MapElites<C> {
-    /// An improvement emitter may draw an individual that is out of bounds a hundred times, each time in n^2 operations; its state is
-    /// n^2 numbers too, and is not kept more often than every n generations.
+    /// An improvement emitter may draw an individual a hundred times, each time in n^2 operations. Its state has n^2
+    /// numbers too, so it is stored at most every n generations.
     fn snapshot_interval(&self) -> u32 {
         let improvements = self.config.emitters.iter().filter(|emitter| matches!(emitter, Emitter::Improvement { .. }));
         let individuals: usize = improvements.map(Emitter::batch).sum();

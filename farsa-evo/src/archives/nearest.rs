@@ -9,7 +9,8 @@ const LEAF: usize = 6;
 /// A k-d tree over points that do not change. It finds exactly the point that a comparison with all finds, the first of
 /// equals.
 ///
-/// Source: \[Bentley1975\]. Deviations: leaves of a few points; splits along the axis in which the points spread most.
+/// Source: \[Bentley1975\]. Deviations: leaves have a few points, and a node splits the axis along which its points spread
+/// most.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nearest {
     d: usize,
@@ -17,7 +18,7 @@ pub(super) struct Nearest {
     points: Vec<f64>,
     /// The number of each of them.
     numbers: Vec<u32>,
-    /// Of each inner node, children of node i being 2 i + 1 and 2 i + 2: the axis and where it is split.
+    /// The axis and the split of each inner node. The children of node i are 2 i + 1 and 2 i + 2.
     splits: Vec<(u32, f64)>,
 }
 
@@ -43,7 +44,7 @@ impl Nearest {
     pub(super) fn find(&self, point: &[f64]) -> usize {
         let mut best = Best { square: f64::INFINITY, number: u32::MAX };
         self.search(point, 0, 0, self.numbers.len(), &mut best);
-        // Overflow makes all distances infinite; the first is as near as any then.
+        // On overflow all distances are infinite, and the first centroid is the nearest.
         if best.number == u32::MAX { 0 } else { best.number as usize }
     }
 

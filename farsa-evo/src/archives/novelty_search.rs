@@ -1,4 +1,4 @@
-//! Novelty in the place of fitness.
+//! Novelty search.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,21 +14,21 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_scored};
 
-/// What a [`NoveltySearch`](crate::archives::NoveltySearch) needs to know besides the strategy that it drives; a plain value that is
-/// checked where it is used.
+/// The configuration of a [`NoveltySearch`](crate::archives::NoveltySearch) except its inner strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoveltyConfig {
     /// Number of values d of a measures, 1 to 1000.
     #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
     pub measures: usize,
-    /// Number k of nearest behaviours whose mean distance is the novelty, 1 or more; 15 in the source.
-    pub neighbours: usize,
-    /// Which behaviours enter the archive.
+    /// Number k of nearest behaviors whose mean distance is the novelty, 1 or more. 15 in the source.
+    #[cfg_attr(feature = "serde", serde(rename = "neighbours"))]
+    pub neighbors: usize,
+    /// The rule for additions to the archive.
     pub archive: ArchiveRule,
 }
 
-/// Which behaviours enter the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
+/// The rule for additions to the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ArchiveRule {
@@ -37,23 +37,23 @@ pub enum ArchiveRule {
         /// The probability.
         rate: f64,
     },
-    /// Those whose novelty is above a threshold, in the unit of the measures, that follows how many there are: it is
-    /// multiplied by 1.2 after a generation that added more than `most`, and by 0.95 after `patience` generations that added
-    /// none. It stays between 1e-100 and 1e100.
+    /// Behaviors whose novelty is above a threshold, in the unit of the measures. The threshold is multiplied by 1.2 after
+    /// a generation with more than `most` additions. It is multiplied by 0.95 after `patience` generations without
+    /// additions. It stays between 1e-100 and 1e100.
     Threshold {
         /// The first threshold, 1e-100 to 1e100.
         first: f64,
-        /// The most additions of a generation that do not raise it; 4 in the program of the source.
+        /// The largest number of additions of a generation that does not raise it. 4 in the program of the source.
         most: usize,
-        /// Generations without additions that lower it, 1 or more; 10 in the program of the source.
+        /// The number of generations without additions that lowers it, 1 or more. 10 in the program of the source.
         patience: u32,
     },
 }
 
 impl NoveltyConfig {
-    /// 15 neighbours \[Lehman2011\], and each behaviour enters the archive with probability 0.02, which is ours.
+    /// 15 neighbors \[Lehman2011\]. Each behavior enters the archive with probability 0.02, which is ours.
     pub const fn new(measures: usize) -> Self {
-        Self { measures, neighbours: 15, archive: ArchiveRule::Random { rate: 0.02 } }
+        Self { measures, neighbors: 15, archive: ArchiveRule::Random { rate: 0.02 } }
     }
 
     /// Checks every number.
@@ -61,7 +61,7 @@ impl NoveltyConfig {
     /// # Errors
     /// [`EvoError::Setting`].
     pub fn validate(&self) -> Result<(), EvoError> {
-        let (d, k) = (self.measures, self.neighbours);
+        let (d, k) = (self.measures, self.neighbors);
         check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
         check_setting(k > 0, "the number of neighbours", k as f64, "1 or more")?;
         match self.archive {
@@ -77,17 +77,18 @@ impl NoveltyConfig {
 /// The limits of a threshold.
 const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
 
-/// Novelty search: a strategy of any kind is told how new the behaviour of each individual is, in the place of its fitness.
+/// Novelty search, which passes the novelty of each individual's behavior to an inner strategy instead of its fitness.
 ///
-/// The novelty of a behaviour is the mean distance of its measures to the k nearest among the others of the generation and
-/// an archive of earlier ones. It is judged by the fitness, by which alone individuals are logged and champions named, and
-/// the measures. A failed evaluation has no behaviour: the strategy is told that it failed.
+/// The novelty of a behavior is the mean distance of its measures to the k nearest among the generation and an archive of
+/// earlier ones. Scores are the fitness, which is only logged, and the measures. A failed evaluation has no behavior, and
+/// the inner strategy receives a failed fitness.
 ///
-/// After the generation was judged, behaviours enter the archive by index. Where they do so by chance, individual `i` of
-/// generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). The archive grows without an end.
+/// After `tell_scores`, behaviors enter the archive by index. Where they do so by chance, individual `i` of generation `g`
+/// draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). The archive grows without limit.
 ///
-/// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: any strategy, where the source has NEAT; an archive
-/// by chance, which the source has not; all of a generation are compared with the archive before any of them enters it.
+/// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: the inner strategy is any strategy, where
+/// the source has NEAT. An archive by chance is ours. All behaviors of a generation are compared with the archive before
+/// any of them enters it.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -109,15 +110,15 @@ pub struct NoveltySearch<S> {
     config: NoveltyConfig,
     seed: u64,
     inner: S,
-    /// What each measure is divided by before distances are taken \[d\].
+    /// The divisor of each measure in distances \[d\].
     units: Vec<f64>,
-    /// The archive [behaviours x d].
+    /// The archive [behaviors x d].
     archive: Vec<f64>,
     /// The threshold of the archive, of effect only where it has one.
     threshold: f64,
     /// Generations since the latest addition, or since the threshold was lowered.
     idle: u32,
-    /// The novelty of the generation that was told last.
+    /// The novelty of the latest reported generation.
     novelty: Vec<Fitness>,
 }
 
@@ -125,8 +126,8 @@ impl<S> NoveltySearch<S> {
     /// A search that drives a strategy, with an empty archive.
     ///
     /// # Errors
-    /// Those of [`NoveltyConfig::validate`]; [`EvoError::AlreadyTold`] and [`EvoError::ScoreShape`] for a strategy that was told
-    /// something, or that wants more than fitness.
+    /// The errors of [`NoveltyConfig::validate`]. [`EvoError::AlreadyTold`] or [`EvoError::ScoreShape`] for an inner
+    /// strategy that is past generation 0 or requires scores.
     pub fn new<G: Gene>(config: NoveltyConfig, inner: S, seed: u64) -> Result<Self, EvoError>
     where
         S: Strategy<G> + Snapshot,
@@ -147,7 +148,8 @@ impl<S> NoveltySearch<S> {
     /// The same where each measure is divided by a unit \[d\], such as its range, before distances are taken.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for another number of units, and for one that is not from 1e-100 to 1e100; [`EvoError::AlreadyTold`].
+    /// [`EvoError::Setting`] for another number of units, or one outside 1e-100 to 1e100. [`EvoError::AlreadyTold`] after
+    /// generation 0.
     pub fn with_units<G: Gene>(self, units: &[f64]) -> Result<Self, EvoError>
     where
         S: Strategy<G>,
@@ -178,7 +180,7 @@ impl<S> NoveltySearch<S> {
         &self.inner
     }
 
-    /// The archive [behaviours x d], in the units of each value.
+    /// The archive [behaviors x d], in the units of each measure.
     pub fn archive(&self) -> &[f64] {
         &self.archive
     }
@@ -188,13 +190,13 @@ impl<S> NoveltySearch<S> {
         matches!(self.config.archive, ArchiveRule::Threshold { .. }).then_some(self.threshold)
     }
 
-    /// The novelty \[individuals\] of the generation that was told last, in the unit of the measures; empty before, and after a
-    /// state was restored.
+    /// The novelty \[individuals\] of the latest reported generation, in the unit of the measures. Empty in generation 0
+    /// and after a state was restored.
     pub fn novelty(&self) -> &[Fitness] {
         &self.novelty
     }
 
-    /// Adds behaviours of a generation to the archive.
+    /// Adds behaviors of a generation to the archive.
     fn remember(&mut self, rows: &[Option<&[f64]>], novelty: &[Option<f64>], generation: u32) {
         let before = self.archive.len();
         for (individual, (row, novelty)) in rows.iter().zip(novelty).enumerate() {
@@ -247,7 +249,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
         let row = |individual| (!scores.is_failed(individual)).then(|| in_units(scores.measures(individual)));
         let scaled: Vec<Option<Vec<f64>>> = (0..count).map(row).collect();
         let rows: Vec<Option<&[f64]>> = scaled.iter().map(Option::as_deref).collect();
-        let found = novelty(&rows, &self.archive, self.config.measures, self.config.neighbours);
+        let found = novelty(&rows, &self.archive, self.config.measures, self.config.neighbors);
         let told: Vec<Fitness> =
             found.iter().map(|novelty| novelty.map_or(Fitness::WORST, Fitness::nan_as_failed)).collect();
         self.inner.tell(&told)?;
@@ -275,13 +277,13 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
         self.inner.genealogy()
     }
 
-    /// Of one population: the fitness of a generation is nothing that the search improves.
+    /// The best individual of all generations, because the search does not improve fitness.
     fn champion_is_best_ever(&self) -> bool {
         self.populations() == 1
     }
 
-    /// The behaviours in the archive, the largest novelty of the generation that was told last, and what the strategy that is
-    /// driven says.
+    /// The size of the archive, the largest novelty of the latest reported generation, then the numbers of the inner
+    /// strategy.
     fn diagnostics(&self) -> Vec<f64> {
         let largest = self.novelty.iter().max().map_or(0.0, |novelty| novelty.get());
         let mut all = vec![(self.archive.len() / self.config.measures) as f64, largest];
@@ -290,7 +292,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
     }
 }
 
-/// The strategy's state, with its length in front, then the threshold and the archive, with the number of its behaviours.
+/// Returns the inner state after its length, then the threshold, the number of archived behaviors and the archive.
 impl<S: Snapshot> Snapshot for NoveltySearch<S> {
     fn snapshot_interval(&self) -> u32 {
         self.inner.snapshot_interval()
@@ -314,8 +316,8 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
         let short = EvoError::StateLength { expected: length.saturating_add(28), found: state.len() };
         let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or(short)?;
         let mut header = StateReader::new(own, own.len())?;
-        let (idle, threshold, behaviours) = (header.u32()?, header.real()?, size(header.u64()?));
-        let numbers = behaviours.saturating_mul(self.config.measures);
+        let (idle, threshold, behaviors) = (header.u32()?, header.real()?, size(header.u64()?));
+        let numbers = behaviors.saturating_mul(self.config.measures);
         let mut reader = StateReader::new(own, numbers.saturating_mul(8).saturating_add(20))?;
         let _ = (reader.u32()?, reader.real()?, reader.u64()?);
         if !(THRESHOLDS[0]..=THRESHOLDS[1]).contains(&threshold) {
@@ -330,16 +332,15 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
     }
 }
 
-/// The mean distance of each behaviour of a generation to the k nearest of the others and of an archive, of as many as there
-/// are if they are fewer; 0 if there are none. Behaviours that are none, being of failed evaluations, have none and are
-/// nobody's neighbours. [rows x d]
-pub(super) fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<Option<f64>> {
+/// Returns the mean distance of each behavior of a generation to the k nearest among the others and the archive, 0 if there are
+/// none. Failed evaluations have no behavior and are no neighbors. [rows x d]
+fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<Option<f64>> {
     let mut nearest: Vec<f64> = Vec::with_capacity(k.min(rows.len() + archive.len() / d.max(1)));
-    let mut of = |own: usize, behaviour: &[f64]| {
+    let mut of = |own: usize, behavior: &[f64]| {
         nearest.clear();
         let others = rows.iter().enumerate().filter(|(other, _)| *other != own).filter_map(|(_, row)| *row);
         for other in others.chain(archive.chunks_exact(d.max(1))) {
-            let square = other.iter().zip(behaviour).fold(0.0, |sum, (a, b)| sum + (a - b) * (a - b));
+            let square = other.iter().zip(behavior).fold(0.0, |sum, (a, b)| sum + (a - b) * (a - b));
             if nearest.len() == k && nearest.last().is_some_and(|farthest| square >= *farthest) {
                 continue;
             }
@@ -350,7 +351,7 @@ pub(super) fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usi
         let sum: f64 = nearest.iter().map(|square| Scalar::sqrt(*square)).sum();
         if nearest.is_empty() { 0.0 } else { sum / nearest.len() as f64 }
     };
-    rows.iter().enumerate().map(|(own, row)| row.map(|behaviour| of(own, behaviour))).collect()
+    rows.iter().enumerate().map(|(own, row)| row.map(|behavior| of(own, behavior))).collect()
 }
 
 #[cfg(test)]

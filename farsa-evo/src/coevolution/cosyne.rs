@@ -18,22 +18,22 @@ use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 pub enum Permutation {
     /// All but those of new offspring, as in the experiments of \[Gomez2008\].
     All,
-    /// Of those, a weight of a network of fitness f with the probability 1 - ((f - min) / (max - min))^(1/n) for n genes,
-    /// \[Gomez2008\] eq. 1, which keeps good networks together. Deviations: failed evaluations are not the minimum, and their
-    /// weights are always permuted, as are all weights where the fitness of all is the same.
+    /// The same weights, each with the probability 1 - ((f - min) / (max - min))^(1/n) for a network of fitness f and n
+    /// genes, \[Gomez2008\] eq. 1. It keeps good networks together. Deviations: failed evaluations are not the minimum, and
+    /// their weights are always permuted, as are all weights where all fitness is equal.
     ByFitness,
 }
 
-/// What a [`Cosyne`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Cosyne`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CosyneConfig {
-    /// Number of genes of each segment, at least 1; together all genes. A segment is what belongs together, such as the
-    /// weights of one neuron: crossover cuts each of them once.
+    /// Number of genes of each segment, at least 1. Segments cover all genes and group related ones, such as the weights of
+    /// a neuron. Crossover cuts each of them once.
     pub segments: Vec<usize>,
     /// Number of individuals m, at least 2: weights of each subpopulation.
     pub population: usize,
-    /// Number of the best that are parents, 1 to `population`; a quarter in the source.
+    /// Number of parents, the best individuals, 1 to `population`. A quarter in the source.
     pub parents: usize,
     /// Number of offspring l, which replace the worst: 0 to `population`.
     pub offspring: usize,
@@ -49,10 +49,10 @@ pub struct CosyneConfig {
 }
 
 impl CosyneConfig {
-    /// The values of \[Gomez2008\] section 5.3 for two poles, with one segment of so many genes: 30 individuals, of which the
-    /// best 7 are parents, weights from -10 to 10, and 30 % of those of offspring mutated with a scale of 0.3.
+    /// The values of \[Gomez2008\] section 5.3 for two poles, with one segment. There are 30 individuals, of which the best
+    /// 7 are parents. Weights are from -10 to 10, and 30 % of the weights of offspring are mutated with a scale of 0.3.
     ///
-    /// The source does not say how many offspring there are. Half of the population are replaced here, as in ESP of the same
+    /// The source does not give the number of offspring. Half of the population is replaced here, as in ESP of the same
     /// authors.
     pub fn new(genes: usize) -> Self {
         Self {
@@ -93,26 +93,26 @@ impl CosyneConfig {
     }
 }
 
-/// The trial of the streams that permute subpopulations; those of offspring have 0.
+/// The trial of the streams that permute subpopulations. Offspring use 0.
 const PERMUTATION: u32 = 1;
 
-/// Cooperative Synapse Neuroevolution, `CoSyNE`: each gene, the weight of a connection, has a subpopulation of its own, and
-/// an individual is a network of one weight of each. Genes are unbounded reals.
+/// Cooperative Synapse Neuroevolution, `CoSyNE`. Each gene, the weight of a connection, has its subpopulation, and an
+/// individual is a network with one weight of each. Genes are unbounded reals.
 ///
-/// In each generation the best make offspring by crossover and mutation, which replace the worst; then the weights change
-/// places within their subpopulations, so that each is tried in another network. Small networks are found in few evaluations;
-/// with many genes good combinations are lost, which [`Permutation::ByFitness`] is against.
+/// In each generation the best make offspring by crossover and mutation, which replace the worst. Then weights change
+/// places within their subpopulations, so that each is evaluated in another network. Small networks need few evaluations.
+/// With many genes good combinations are lost, unless [`Permutation::ByFitness`] keeps them.
 ///
-/// Individuals stand in the order of their fitness in the generation before, the best first, equals by index, failed ones
-/// last; the offspring follow. A pair of offspring has two parents that are drawn uniformly, the second again until it is
-/// another one if there is one. Each segment is cut at a place that is uniform from before its first gene to after its last.
+/// Individuals are in the order of their fitness in the previous generation, best first, equals by index, failed ones last.
+/// The offspring follow. A pair of offspring has two parents that are drawn uniformly and differ if possible. The cut of
+/// each segment is uniform from before its first gene to after its last.
 ///
-/// Offspring `2 i` and `2 i + 1` of generation `g` draw from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`), the
-/// permutation of gene `i` from (seed, [`Domain::Mutation`], trial 1, `i`, `g`). Individual `i` of generation 0 draws from
-/// (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// Offspring `2 i` and `2 i + 1` of generation `g` draw from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`).
+/// The permutation of gene `i` draws from (seed, [`Domain::Mutation`], trial 1, `i`, `g`). Individual `i` of generation 0
+/// draws from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Source: \[Gomez2008\] algorithm 2, with the crossover and mutation of section 4. Its number of offspring and its choice of
-/// parents are not given; see above and [`CosyneConfig::new`].
+/// Source: \[Gomez2008\] algorithm 2, with the crossover and mutation of section 4. It gives neither the number of
+/// offspring nor the choice of parents, see above and [`CosyneConfig::new`].
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -129,7 +129,7 @@ pub struct Cosyne {
     config: CosyneConfig,
     seed: u64,
     generation: u32,
-    /// Where each gene was in the generation before [individuals x genes]; empty in generation 0.
+    /// The place of each gene in the previous generation [individuals x genes]. Empty in generation 0.
     origins: Vec<u32>,
     population: Population<f64>,
 }
@@ -138,7 +138,7 @@ impl Cosyne {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`CosyneConfig::validate`].
+    /// The errors of [`CosyneConfig::validate`].
     pub fn new(config: CosyneConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let mut population = Population::new(config.population, config.genes())?;
@@ -243,7 +243,7 @@ fn cauchy(stream: &mut Stream) -> f64 {
     sine / cosine
 }
 
-/// The probability that a weight of each individual is permuted, given their fitness, best first; equation 1.
+/// The probability (equation 1) that a weight of each individual is permuted, given their fitness, best first.
 fn chances(fitness: &[Fitness], genes: usize) -> Vec<f64> {
     let succeeded = || fitness.iter().filter(|fitness| !fitness.is_failed());
     let (Some(most), Some(least)) = (succeeded().max(), succeeded().min()) else { return vec![1.0; fitness.len()] };
@@ -368,7 +368,7 @@ mod tests {
     fn half_of_the_mutations_are_within_the_scale() {
         let mut stream = Stream::from_seed(4);
         let numbers: Vec<f64> = (0..100_000).map(|_| cauchy(&mut stream)).collect();
-        // Of the distribution function 1/2 + atan(x) / pi: 1/4, 1/2 and 3/4 at -1, 0 and 1, and 0.9 at 3.078.
+        // The distribution function is 1/2 + atan(x) / pi, so 1/4, 1/2 and 3/4 at -1, 0 and 1, and 0.9 at 3.078.
         for (x, want) in [(-1.0, 0.25), (0.0, 0.5), (1.0, 0.75), (3.077_683_5, 0.9)] {
             let part = numbers.iter().filter(|number| **number < x).count() as f64 / 1e5;
             assert!((part - want).abs() < 0.008, "{x}: {part}");

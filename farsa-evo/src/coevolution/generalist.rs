@@ -20,37 +20,40 @@ use crate::words::mutation::{BitMutation, randomize_bits};
 
 /// The populations.
 const SIDES: usize = 2;
-/// The trial of the streams that choose opponents and newcomers, added to the number of the population; those of mutation have
-/// that number.
+/// The trial of the streams that choose opponents and newcomers, plus the number of the population. Mutation uses that
+/// number alone.
 const CHOICE: u32 = SIDES as u32;
 
-/// Competitive co-evolution of two populations with the generalist selection of Simione and Nolfi: what was learned against some
-/// opponents stays only if it is better against all of them.
+/// Competitive co-evolution of two populations with the generalist selection of Simione and Nolfi. A trained individual
+/// stays only if it is better against all opponents.
 ///
-/// A round has two phases. In the *encounters* all members and newcomers of each population meet all of the other, m opponents in
-/// a generation. Then as many stay members as there were, those with the highest mean against all members of the other
-/// population ([`Outcomes::replacements`]). In the *training*, copies of members that are drawn without replacement become
-/// newcomers and evolve for some generations against m members of the other population that differ most
-/// ([`Outcomes::differing_opponents`]): in each generation a newcomer is tried as it is and in mutated copies, and the best
-/// takes its place, among equals the lowest index. The members rest meanwhile. Generation 0 begins with encounters of random
-/// genomes.
+/// A round has two phases. In the *encounters* each member and newcomer is evaluated against all of the other population, m
+/// opponents in a generation. The members of the next phase are those with the highest mean against all members of the
+/// other population ([`Outcomes::replacements`]).
 ///
-/// [`Opponents`] says whom each individual meets, and outcomes are told as scores: [`Strategy::score_shape`] 1 + m objectives,
-/// the fitness of all trials and that against each opponent. In encounters that do not come out even, the last generation meets
-/// the first opponents again, which counts for the fitness alone. Individuals are ranked by the fitness, during encounters by
-/// its mean over their generations so far; so the champion of the last of them, generation [`encounters`] - 1 of a round, is the
-/// best against all, and the champion of a generation of training the best against m.
+/// In the *training*, copies of randomly drawn members become newcomers and evolve for some generations. Their opponents
+/// are m members of the other population that differ most ([`Outcomes::differing_opponents`]). In each generation a
+/// newcomer is evaluated with mutated copies, and the best of them replaces it, the lowest index among equals. Members rest
+/// meanwhile. Generation 0 begins with encounters of random genomes.
 ///
-/// With M members and E newcomers a generation is M, then E individuals of each population, in training M / E + 1
-/// for each newcomer. Individual `i` of population `p` draws from the stream (seed, [`Domain::InitialGenome`], trial `p`,
-/// `i`, 0), and its mutation in generation `g` from (seed, [`Domain::Mutation`], trial `p`, `i`, `g`); opponents and newcomers are
-/// drawn from (seed, [`Domain::Mutation`], trial `p` + 2, 0, `g`), the opponents first.
+/// [`Opponents`] returns the opponents of each individual. Scores have 1 + m objectives ([`Strategy::score_shape`]), the
+/// fitness of all trials and the fitness against each opponent. If m does not divide the encounters, their last generation
+/// repeats the first opponents, which counts for the fitness alone.
 ///
-/// Source: \[Simione2020\], by its program `generalist.py`. Deviations: both populations evolve at once, where there they take
-/// turns; they meet again in every round, members too, because trials differ from generation to generation, where there outcomes
-/// are kept; each side is told what it earned itself, where there one side has 1 less the other's outcome; newcomers evolve by
-/// mutation and selection of words, where there each takes steps of a natural evolution strategy with Adam; opponents are chosen after both
-/// populations were selected; ties and failures are as [`Outcomes`] says.
+/// Individuals are ranked by fitness, during encounters by its mean over their generations so far. The champion of the last
+/// generation of encounters, [`encounters`] - 1 of a round, is therefore the best against all. The champion of a generation
+/// of training is the best against m.
+///
+/// With M members and E newcomers, a generation is M and then E individuals of each population, in training M / E + 1 for
+/// each newcomer. Individual `i` of population `p` draws from the stream (seed, [`Domain::InitialGenome`], trial `p`, `i`,
+/// 0). Its mutation in generation `g` draws from (seed, [`Domain::Mutation`], trial `p`, `i`, `g`). Opponents and then
+/// newcomers draw from (seed, [`Domain::Mutation`], trial `p` + 2, 0, `g`).
+///
+/// Source: \[Simione2020\], by its program `generalist.py`. Deviations: both populations evolve at once, where the source
+/// alternates. Members are evaluated again in every round, because trials differ, where the source keeps outcomes. Each
+/// side has its own outcome, where in the source one side has 1 less the other's. Newcomers evolve by selection and
+/// mutation of integer genes, where the source uses a natural evolution strategy with Adam. Opponents are chosen after the
+/// selection of both populations. For ties and failures see [`Outcomes`].
 ///
 /// [`encounters`]: GeneralistConfig::encounters
 ///
@@ -85,18 +88,19 @@ pub struct GeneralistCoevolution {
     population: Population,
 }
 
-/// What is kept of a population beside its individuals.
+/// The state of a population except its genomes.
 #[derive(Clone, Debug, PartialEq)]
 struct Side {
     members: Population,
-    /// Whom its newcomers are trained against, members of the other population [opponents x genes]; zeros in encounters.
+    /// The opponents of its newcomers, members of the other population [opponents x genes]. Zeros in encounters.
     opponents: Population,
-    /// What individuals earned against those of the other population [size x size], zeros beyond the encounters so far and in
-    /// training.
+    /// The outcomes against the individuals of the other population [size x size]. Zeros beyond the encounters so far and
+    /// in training.
     outcomes: Vec<Fitness>,
     /// The sums of fitness over the encounters so far \[size\], zeros in training.
     sums: Vec<Fitness>,
-    /// The individual of the generation before that each newcomer is from \[newcomers\]; zeros where there was none.
+    /// The individual of the previous generation from which each newcomer derives \[newcomers\]. Zeros where there was
+    /// none.
     origins: Vec<u32>,
     /// Members that the latest encounters replaced, and the mean that members earned in them against members.
     selected: [Fitness; 2],
@@ -125,7 +129,7 @@ impl GeneralistCoevolution {
     /// A co-evolution at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`GeneralistConfig::validate`].
+    /// The errors of [`GeneralistConfig::validate`].
     pub fn new(config: GeneralistConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let (mutation, size) = (config.bit_mutation()?, config.size());
@@ -155,7 +159,7 @@ impl GeneralistCoevolution {
         if population == 0 { &first.members } else { &second.members }
     }
 
-    /// Whether the current generation is one of training.
+    /// Returns true if the current generation is one of training.
     pub fn is_training(&self) -> bool {
         self.place() >= self.config.encounters()
     }
@@ -165,7 +169,7 @@ impl GeneralistCoevolution {
         self.generation % self.config.round()
     }
 
-    /// Columns of outcomes that are known before a generation, none in training.
+    /// Columns of outcomes from before a generation, 0 in training.
     fn known(&self, generation: u32) -> usize {
         let place = generation % self.config.round();
         let known = (place as usize).saturating_mul(self.config.opponents).min(self.config.size());
@@ -232,7 +236,7 @@ impl GeneralistCoevolution {
             for (genes, opponent) in side.opponents.iter_mut().zip(chosen) {
                 genes.copy_from_slice(genome(1 - number, other[opponent]));
             }
-            // The first so many of a random order.
+            // The first elements of a random order.
             let mut order = own.clone();
             for (place, origin) in side.origins.iter_mut().enumerate() {
                 order.swap(place, place + stream.below((members - place) as u32) as usize);
@@ -347,8 +351,8 @@ impl Strategy for GeneralistCoevolution {
         Some(self)
     }
 
-    /// How many members of each population the latest encounters replaced, and the mean that members of each earned in them
-    /// against members; zeros before.
+    /// The number of members of each population that the latest encounters replaced, and the mean outcome of its members
+    /// against members. Zeros before.
     fn diagnostics(&self) -> Vec<f64> {
         (0..2).flat_map(|number| self.sides.iter().map(move |side| side.selected[number].get())).collect()
     }

@@ -1,10 +1,10 @@
-//! What competitive co-evolution with generalist selection needs to know.
+//! The configuration of co-evolution with generalist selection.
 
 use crate::error::{EvoError, check_setting};
 use crate::population::Population;
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits};
 
-/// What a [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GeneralistConfig {
@@ -16,19 +16,20 @@ pub struct GeneralistConfig {
     pub members: usize,
     /// Members of which a copy is trained in each round, at least 1: the newcomers that may replace members.
     pub newcomers: usize,
-    /// Opponents m that each individual meets in a generation, 1 to `members`.
+    /// Opponents m of each individual in a generation, 1 to `members`.
     pub opponents: usize,
     /// Generations of training in a round, at least 1.
     pub iterations: u32,
     /// Probability, 0 to 1, that mutation hits a bit.
     pub mutation_rate: f64,
-    /// What happens to a bit that is hit.
+    /// The change of a bit that mutation hits.
     pub mutation: Mutation,
 }
 
 impl GeneralistConfig {
-    /// The sizes of the program of \[Simione2020\] for genomes of this many genes of 16 bits: 80 members and 10 newcomers of
-    /// each population, trained for 20 generations against 10 opponents; mutation as in [`GaConfig::new`](crate::GaConfig::new).
+    /// The sizes of the program of \[Simione2020\] for genomes of this many genes of 16 bits. Each population has 80
+    /// members and 10 newcomers, trained for 20 generations against 10 opponents. Mutation is that of
+    /// [`GaConfig::new`](crate::words::GaConfig::new).
     pub const fn new(genes: usize) -> Self {
         let (members, newcomers, opponents, iterations) = (80, 10, 10, 20);
         let (gene_bits, mutation_rate, mutation) = (u16::BITS, 0.015, Mutation::Resample);
@@ -47,7 +48,7 @@ impl GeneralistConfig {
         check_setting(even, "the number of newcomers", newcomers as f64, "a divisor of the members")?;
         let size = members.saturating_add(newcomers);
         Population::check(size.saturating_mul(2), genes)?;
-        // Everyone meets everyone of the other population.
+        // All pairs of the two populations.
         Population::check(size.saturating_mul(2), size)?;
         let some = (1..=members).contains(&opponents);
         check_setting(some, "the number of opponents", opponents as f64, "1 to all members")?;
@@ -61,17 +62,17 @@ impl GeneralistConfig {
         self.members.saturating_add(self.newcomers)
     }
 
-    /// Generations of a round in which everyone meets everyone of the other population; of a valid configuration only.
+    /// Generations of the encounters of a round, for a valid configuration.
     pub const fn encounters(&self) -> u32 {
         self.size().div_ceil(self.opponents) as u32
     }
 
-    /// Generations of a round: the encounters, then the training; of a valid configuration only.
+    /// Generations of a round, the encounters and then the training, for a valid configuration.
     pub const fn round(&self) -> u32 {
         self.encounters().saturating_add(self.iterations)
     }
 
-    /// Individuals that are tried for each newcomer in a generation of training; of a valid configuration only.
+    /// Individuals evaluated for each newcomer in a generation of training, for a valid configuration.
     pub(crate) const fn candidates(&self) -> usize {
         self.size() / self.newcomers
     }

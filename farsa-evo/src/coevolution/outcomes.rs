@@ -1,4 +1,4 @@
-//! Who did how well against whom, and what co-evolving populations select by it.
+//! Outcomes of individuals against opponents, and selection by them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -18,17 +18,16 @@ pub struct Replacement {
     pub newcomer: usize,
 }
 
-/// What each individual earned against each opponent: larger is better for the individual.
+/// The outcome of each individual against each opponent. Larger is better for the individual.
 ///
-/// It holds what generalist selection needs: fitness is the mean against all opponents, those that evolving individuals train
-/// against are opponents against which others earn most differently, and of those that have trained only the ones stay that
-/// do better against *all* opponents. What was learned against some and lost against others does not pass.
+/// It implements generalist selection. Fitness is the mean against all opponents. Training opponents are those with the
+/// most different outcomes. A trained individual stays only if it is better against *all* opponents.
 ///
-/// Who meets whom, and how those that are chosen evolve in between, is the caller's.
+/// The caller pairs individuals and opponents, and evolves the chosen ones in between.
 ///
-/// Source: \[Simione2020\] and its program `generalist.py`. Deviations: the matrix is of one side, whatever the range of its
-/// outcomes (there the other side earns 1 less the outcome); among equals the lower index is chosen, so that a newcomer has to
-/// be better than the one whose place it takes; one that failed against an opponent ranks last.
+/// Source: \[Simione2020\] and its program `generalist.py`. Deviations: the matrix has one side and any range of outcomes,
+/// where in the source the other side has 1 less the outcome. The lower index wins among equals, so a newcomer must be
+/// better than the member that it replaces. An individual that failed against an opponent ranks last.
 ///
 /// ```
 /// use farsa_evo::coevolution::{Outcomes, Replacement};
@@ -47,7 +46,8 @@ pub struct Outcomes {
 }
 
 impl Outcomes {
-    /// What individuals earned against so many opponents [individuals x opponents]; a NaN is a failed evaluation.
+    /// Builds the outcomes of individuals against the given number of opponents [individuals x opponents]. A NaN is a
+    /// failed evaluation.
     ///
     /// # Errors
     /// [`EvoError::NoIndividuals`] for no opponents or no values, [`EvoError::FitnessCount`] if the last individual has fewer
@@ -74,7 +74,7 @@ impl Outcomes {
         self.opponents
     }
 
-    /// What an individual earned against each opponent \[opponents\], none beyond the last individual.
+    /// The outcome of an individual against each opponent \[opponents\]. Empty beyond the last individual.
     pub fn of(&self, individual: usize) -> Option<&[Fitness]> {
         self.values.chunks_exact(self.opponents).nth(individual)
     }
@@ -88,8 +88,9 @@ impl Outcomes {
         self.values.chunks_exact(self.opponents).map(mean).collect()
     }
 
-    /// So many opponents against which individuals earn as differently as possible: the first is drawn, each of the others has
-    /// the largest sum of differences, over all individuals, from those before it. Outcomes that are not finite do not count.
+    /// Chooses the given number of opponents with outcomes that differ as much as possible. The first is drawn. Each of the
+    /// others has the largest sum of differences, over all individuals, from those before it. Outcomes that are not finite
+    /// do not count.
     ///
     /// # Errors
     /// [`EvoError::Setting`] for none, or more than there are.
@@ -114,8 +115,8 @@ impl Outcomes {
         Ok(chosen)
     }
 
-    /// Which members of a population, the first individuals, give way to which of the last so many, the newcomers: of all,
-    /// as many of the best stay as there are members. Worse newcomers take the places of worse members.
+    /// Returns the members, the first individuals, that newcomers, the last individuals, replace. The best of all stay, as
+    /// many as there are members. Worse newcomers replace worse members.
     ///
     /// # Errors
     /// [`EvoError::Setting`] for as many newcomers as individuals, or more.

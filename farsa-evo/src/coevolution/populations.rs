@@ -16,12 +16,11 @@ use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Collection, Genealogy, Member, RecordKind, Strategy, next_generation};
 use crate::words::{GaConfig, TruncationGa};
 
-/// Two or more searches of the same kind and number of individuals. Each receives the fitness, or the scores, of its own
-/// individuals.
+/// Two or more searches of the same kind and number of individuals. Each takes the fitness, or the scores, of one population.
 ///
-/// All individuals are in one [`Population`], one search after the other: individual `i` of population `p` is number
-/// `p * size + i`. Genomes are as long as the longest, and shorter ones end in zeros. The caller chooses who is evaluated
-/// against whom.
+/// All individuals are in one [`Population`], one search after the other. Individual `i` of population `p` is number `p *
+/// size + i`. Genomes are as long as the longest, and shorter ones end in zeros. The caller pairs individuals for
+/// evaluation.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -336,7 +335,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
 impl serde::Serialize for Populations<TruncationGa, u16> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if self.kind != RecordKind::Order {
-            return Err(serde::ser::Error::custom("populations with seeds of their own cannot be serialized"));
+            return Err(serde::ser::Error::custom("populations with different seeds cannot be serialized"));
         }
         let configs: Vec<GaConfig> = self.configs().copied().collect();
         SavedStrategy::new(configs, self.seed(), self).serialize(serializer)

@@ -27,7 +27,7 @@ pub struct Cholesky {
     n: usize,
     /// The matrix C [n x n], of which the lower triangle counts.
     matrix: Vec<f64>,
-    /// The factor A [n x n], as of the latest factorization; zero above the diagonal.
+    /// The factor A [n x n] of the latest factorization, zero above the diagonal.
     factor: Vec<f64>,
     /// Updates since the latest factorization.
     age: u32,
@@ -40,7 +40,7 @@ impl Cholesky {
         self.factor.iter().step_by(self.n + 1).copied()
     }
 
-    /// Computes the factor from the matrix; leaves it as it is if a number is not finite or no variance is positive.
+    /// Computes the factor from the matrix. The factor stays if a number is not finite or no variance is positive.
     fn factorize(&mut self) {
         let (n, matrix) = (self.n, &self.matrix);
         let factor = dispatch!(Instructions::detect().level(), simd => simd.vectorize(
@@ -53,8 +53,8 @@ impl Cholesky {
     }
 }
 
-/// The lower triangular factor of a matrix [n x n], of which the lower triangle is read, row after row, four at a time; a square
-/// on its diagonal is no less than a fraction of the largest variance.
+/// Returns the lower triangular factor of the lower triangle of a matrix [n x n], computed in blocks of four rows. A square
+/// on its diagonal is at least a fraction of the largest variance.
 #[inline(always)]
 fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let largest = matrix.iter().step_by(n + 1).fold(0.0_f64, |largest, x| largest.max(*x));
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn what_has_no_factor_gets_the_nearest_or_leaves_all_as_it_is() {
-        // Of rank one: what is left of the second variance is rounding.
+        // A matrix of rank one. The rest of the second variance is rounding.
         let covariance = of(vec![1.0, 1.0, 1.0, 1.0], 2);
         assert_eq!(covariance.factor, [1.0, 0.0, 1.0, 1e-8]);
         assert_eq!(covariance.extremes(), [1e-8 * 1e-8, 1.0]);

@@ -36,7 +36,7 @@ impl Covariance for Diagonal {
 /// [`CmaEs<Full>`](CmaEs), which spends most of it on the axes.
 ///
 /// It differs from [`CmaEs<Full>`](CmaEs) in one thing. The path of the step size turns steps by A^-1 of C = A A^T instead of
-/// C^-1/2, so the two paths differ once C is no multiple of the identity. It learns as well.
+/// C^-1/2. The two paths differ once C is no multiple of the identity.
 ///
 /// Source: \[Krause2016\], which updates the factor in every generation. Here it is computed from C every
 /// 1 / (10 n (`c_1` + `c_mu`)) generations. Deviations: those of `CmaEs`, and squares on the factor's diagonal are at least
@@ -117,7 +117,7 @@ impl CmaEs {
     /// Starts a search with a full covariance matrix.
     ///
     /// # Errors
-    /// Those of [`CmaEsConfig::validate`].
+    /// The errors of [`CmaEsConfig::validate`].
     pub fn new(config: CmaEsConfig, seed: u64) -> Result<Self, EvoError> {
         Self::with_covariance(config, seed)
     }
@@ -127,7 +127,7 @@ impl<C: Covariance> CmaEs<C> {
     /// Starts a search with the covariance matrix of the type.
     ///
     /// # Errors
-    /// Those of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`].
+    /// The errors of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`].
     pub fn with_covariance(config: C::Config, seed: u64) -> Result<Self, EvoError> {
         config.check()?;
         let (mean, sigma, population) = config.start();

@@ -7,7 +7,7 @@ use farsa_num::{Scalar, exp, ln};
 /// Weights and learning rates: functions of the number of genes and individuals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
-    /// Weights w of the ranks, best first; those of the mean's parents are positive with sum 1, others zero or negative.
+    /// Weights w of the ranks, best first. The weights of the parents are positive with sum 1, others zero or negative.
     pub(crate) weights: Vec<f64>,
     /// Number of parents, mu.
     pub(crate) parents: usize,
@@ -28,8 +28,7 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// The defaults of \[Hansen2016\] table 1, where `rates` may change `c_1` and `c_mu`; without negative weights if not
-    /// `active`.
+    /// The defaults of \[Hansen2016\] table 1. `rates` may change `c_1` and `c_mu`. Without `active` no weight is negative.
     pub(crate) fn new(
         genes: usize,
         population: usize,
@@ -72,7 +71,7 @@ impl Coefficients {
         self.weights.len()
     }
 
-    /// Whether the path of the covariance stands still because that of the step size is long, `h_sigma` being 0.
+    /// Returns true if the path of the covariance stalls because that of the step size is long, `h_sigma` = 0.
     pub(crate) fn stalls(&self, genes: usize, updates: u32, step_path_length: f64) -> bool {
         let left = exp(2.0 * f64::from(updates) * ln(1.0 - self.step_path_rate));
         let limit = (1.4 + 2.0 / (genes as f64 + 1.0)) * self.expected;

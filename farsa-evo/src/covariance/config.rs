@@ -22,18 +22,18 @@ pub trait Start: Clone + core::fmt::Debug + PartialEq {
     fn check(&self) -> Result<(), EvoError>;
 }
 
-/// What a [`CmaEs`](crate::covariance::CmaEs) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`CmaEs`](crate::covariance::CmaEs).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CmaEsConfig {
     /// The initial mean m, a number for each gene, of magnitude up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes: about a third of how far the optimum may lie
-    /// from the mean in each gene.
+    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes. About a third of the distance to the
+    /// optimum in each gene is a good choice.
     pub sigma: f64,
     /// Number of individuals lambda, at least 2. \[Hansen2016\] eq. 48.
     pub population: usize,
-    /// Whether the worse half has negative weights. \[Hansen2016\] eq. 53.
+    /// Negative weights for the worse half. \[Hansen2016\] eq. 53.
     pub active: bool,
     /// The rate of the rank-one update `c_1`, 0 to 1, if not that of \[Hansen2016\] eq. 57.
     pub rank_one_rate: Option<f64>,
@@ -53,8 +53,8 @@ impl CmaEsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`], [`EvoError::TooLarge`] for more genes of a population, or elements of
-    /// the covariance matrix, than [`Population::MAX_GENES`]; [`EvoError::Setting`].
+    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`] or [`EvoError::Setting`]. [`EvoError::TooLarge`] for more genes
+    /// of a population, or elements of the covariance matrix, than [`Population::MAX_GENES`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let genes = self.mean.len();
         check_start(&self.mean, self.sigma, self.population)?;
@@ -89,14 +89,14 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
     mean.iter().try_for_each(|&x| check_range("mean", x, MEANS, "-1e100 to 1e100"))
 }
 
-/// What a [`SeparableCmaEs`](crate::covariance::SeparableCmaEs) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`SeparableCmaEs`](crate::covariance::SeparableCmaEs).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeparableCmaEsConfig {
     /// The initial mean m, a number for each gene, of magnitude up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes: about a third of how far the optimum may lie
-    /// from the mean in each gene.
+    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes. About a third of the distance to the
+    /// optimum in each gene is a good choice.
     pub sigma: f64,
     /// Number of individuals lambda, at least 2.
     pub population: usize,

@@ -15,16 +15,16 @@ use crate::snapshot::{StateReader, push_reals};
 pub(crate) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
 /// The limits of an initial mean's genes.
 pub(crate) const MEANS: [f64; 2] = [-1e100, 1e100];
-/// The limits of the largest variance; beyond them the step size takes what is too much or too little.
+/// The limits of the largest variance. Beyond them the step size takes the excess.
 const VARIANCES: [f64; 2] = [1e-30, 1e30];
-/// How often a point that is out of bounds is drawn again.
+/// The number of tries to draw a point within bounds.
 const TRIES: usize = 100;
 /// The limit of all numbers of a saved state.
 const STATE: f64 = 1e140;
 
 /// A covariance matrix that is adapted.
 pub trait Matrix: Clone + core::fmt::Debug + PartialEq {
-    /// The identity of so many genes, which learns at these rates.
+    /// The identity matrix, which learns at these rates.
     fn identity(genes: usize, coefficients: &Coefficients) -> Self;
 
     /// Turns standard normal rows [rows x genes] into rows of this covariance.
@@ -54,7 +54,7 @@ pub trait Matrix: Clone + core::fmt::Debug + PartialEq {
     /// Appends the state.
     fn save(&self, state: &mut Vec<u8>);
 
-    /// Takes a state; on error half of it.
+    /// Restores a state. On error the state is incomplete.
     fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError>;
 }
 
@@ -89,7 +89,7 @@ impl<C: Matrix> Distribution<C> {
         Self { coefficients, mean, sigma, covariance, step_path, path, updates: 0, normals, steps }
     }
 
-    /// Draws the individuals of a generation, each from a stream of its own.
+    /// Draws the individuals of a generation, each from its stream.
     pub(crate) fn sample(&mut self, seed: u64, generation: u32, points: &mut Population<f64>) {
         self.sample_from(|individual| stream(seed, generation, individual), points);
     }
@@ -227,7 +227,7 @@ impl<C: Matrix> Distribution<C> {
         4 + 8 * (1 + 3 * genes) + C::state_length(genes)
     }
 
-    /// Appends the state; samples are not part of it.
+    /// Appends the state, without the samples.
     pub(crate) fn save(&self, state: &mut Vec<u8>) {
         state.extend(self.updates.to_le_bytes());
         push_reals(state, &[self.sigma]);
@@ -237,7 +237,7 @@ impl<C: Matrix> Distribution<C> {
         self.covariance.save(state);
     }
 
-    /// Takes a state; on error half of it.
+    /// Restores a state. On error the state is incomplete.
     pub(crate) fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
         self.updates = reader.u32()?;
         let mut sigma = [0.0];

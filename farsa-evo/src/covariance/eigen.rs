@@ -8,7 +8,7 @@ use farsa_num::{Instructions, Scalar};
 
 use crate::covariance::linear::{add_scaled, dot_in_vectors, dots_in_vectors};
 
-/// The most QL iterations of one eigenvalue; two are usual.
+/// The largest number of QL iterations of one eigenvalue. Two are usual.
 const ITERATIONS: usize = 60;
 /// Columns of eigenvectors that are rotated together, so that they stay in the cache.
 const STRIP: usize = 32;
@@ -32,14 +32,15 @@ struct Rotation {
 }
 
 impl SymmetricEigen {
-    /// The decomposition of a matrix [n x n], of which the lower triangle is read; none if a number of it is not finite, or if
-    /// the iterations do not come to an end.
+    /// Decomposes a matrix [n x n] given by its lower triangle. Returns `None` if a number is not finite or the iterations
+    /// do not converge.
     ///
-    /// Householder's reduction to a tridiagonal matrix, then QL iterations with implicit shifts: of the order of n^3
-    /// operations, in a fixed order and with no function but the square root.
+    /// Householder's reduction to a tridiagonal matrix, then QL iterations with implicit shifts. They take of the order of
+    /// n^3 operations, in a fixed order and with no function but the square root.
     ///
-    /// Source: \[Smith1976\] procedures TRED2 and IMTQL2. Deviations: the transformation is kept transposed, so that all loops
-    /// run along rows; rotations are collected and applied strip by strip; lengths are scaled by the larger component.
+    /// Source: \[Smith1976\] procedures TRED2 and IMTQL2. Deviations: the transformation is stored transposed, so that all
+    /// loops run along rows. Rotations are collected and applied strip by strip. Lengths are scaled by the larger
+    /// component.
     pub(super) fn from_lower(matrix: &[f64], n: usize) -> Option<Self> {
         dispatch!(Instructions::detect().level(), simd => simd.vectorize(
             #[inline(always)]
@@ -73,8 +74,8 @@ impl SymmetricEigen {
     }
 }
 
-/// The diagonal \[n\], what stands beside it (number i couples i and i + 1) and half the squared lengths of the Householder
-/// vectors; the vectors themselves replace the lower triangle, row i having i elements.
+/// The diagonal \[n\], the off-diagonal (number i couples i and i + 1) and half the squared lengths of the Householder
+/// vectors. The vectors replace the lower triangle, and row i has i elements.
 ///
 /// The update after a reflection and the product that the next one needs go through the matrix together.
 #[inline(always)]
@@ -239,7 +240,7 @@ fn into_strips(rows: &[f64], n: usize) -> Vec<[f64; STRIP]> {
 #[inline(always)]
 fn rotate(strips: &mut [[f64; STRIP]], n: usize, rotations: &[Rotation]) {
     for strip in strips.chunks_exact_mut(n.max(1)) {
-        // Within a sweep indices fall by one: the row that the next rotation changes as well is kept at hand.
+        // Indices fall by one within a sweep, so the row of the next rotation stays in the cache.
         for sweep in rotations.chunk_by(|rotation, next| rotation.index == next.index + 1) {
             let (Some(first), Some(last)) = (sweep.first(), sweep.last()) else { continue };
             let mut kept = strip[first.index + 1];

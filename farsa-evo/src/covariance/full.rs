@@ -26,7 +26,7 @@ pub struct Full {
     n: usize,
     /// The matrix C [n x n], of which the lower triangle counts.
     matrix: Vec<f64>,
-    /// The standard deviations D along the axes \[n\], rising, as of the latest decomposition.
+    /// The standard deviations D along the axes \[n\] of the latest decomposition, rising.
     deviations: Vec<f64>,
     /// The axes B [n x n], one after the other.
     axes: Vec<f64>,
@@ -48,7 +48,7 @@ impl Full {
         (axis, self.deviations.get(index).copied().unwrap_or_default())
     }
 
-    /// Computes axes and deviations from the matrix; leaves them as they are if it has no positive eigenvalue.
+    /// Computes axes and deviations from the matrix. They stay if it has no positive eigenvalue.
     fn decompose(&mut self) {
         let Some(SymmetricEigen { values, vectors }) = SymmetricEigen::from_lower(&self.matrix, self.n) else { return };
         let largest = values.last().copied().unwrap_or_default();
@@ -163,7 +163,7 @@ impl Matrix for Full {
             bounded(reader, &mut elements[..=index], [-ELEMENT, ELEMENT])?;
         }
         bounded(reader, &mut self.deviations, DEVIATIONS)?;
-        // A unit vector, but for rounding.
+        // A unit vector, up to rounding.
         bounded(reader, &mut self.axes, [-1.001, 1.001])
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn dot_in_vectors<V: Simd>(simd: V, a: &[f64], b: &[f64]) -> f64 {
     (((s0 + s4) + (s2 + s6)) + ((s1 + s5) + (s3 + s7))) + rest
 }
 
-/// The dot products of four rows, which lie `stride` apart, with one vector; each has the bits of [`dot`].
+/// The dot products of four rows, `stride` apart, with one vector. Each has the bits of [`dot`].
 #[inline(always)]
 pub(super) fn dots_in_vectors<V: Simd>(simd: V, rows: &[f64], stride: usize, vector: &[f64]) -> [f64; 4] {
     let (blocks, rest) = vector.as_chunks::<SUMS>();

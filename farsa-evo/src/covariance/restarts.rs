@@ -1,4 +1,4 @@
-//! Matrix matrix adaptation that begins anew where it has come to an end.
+//! Covariance matrix adaptation in a sequence of runs.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -18,7 +18,7 @@ use crate::strategy::{Strategy, next_generation};
 /// The most individuals of a run, in blocks: nine doublings.
 const MOST_BLOCKS: u32 = 1 << 9;
 
-/// How many individuals the runs of [`CmaEsRestarts`] have.
+/// The population sizes of the runs of [`CmaEsRestarts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -29,15 +29,15 @@ pub enum RestartSchedule {
     Bipop,
 }
 
-/// What [`CmaEsRestarts`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`CmaEsRestarts`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CmaEsRestartsConfig {
     /// The first run. Its number of individuals is that of each generation.
     pub first: CmaEsConfig,
-    /// How many individuals later runs have.
+    /// The population sizes of later runs.
     pub schedule: RestartSchedule,
-    /// How far from the first mean those of later runs lie at most, in each gene and in its unit, 0 to 10^100.
+    /// The largest distance of the first mean to those of later runs, in each gene and in its unit, 0 to 10^100.
     pub spread: f64,
 }
 
@@ -51,8 +51,8 @@ impl CmaEsRestartsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// Those of [`CmaEsConfig::validate`]; [`EvoError::TooLarge`] if the largest run, of 512 times as many individuals as the
-    /// first, has more genes than [`Population::MAX_GENES`].
+    /// The errors of [`CmaEsConfig::validate`]. [`EvoError::TooLarge`] if the largest run, of 512 times as many individuals
+    /// as the first, has more genes than [`Population::MAX_GENES`].
     pub fn validate(&self) -> Result<(), EvoError> {
         self.first.validate()?;
         let most = self.first.population.saturating_mul(MOST_BLOCKS as usize);
@@ -68,7 +68,7 @@ struct Run {
     number: u32,
     /// Individuals of one of its generations, in blocks.
     blocks: u32,
-    /// Whether it is one of the runs of few individuals.
+    /// True for a run of few individuals.
     small: bool,
     /// The step size that it began with.
     sigma: f64,
@@ -79,21 +79,24 @@ struct Run {
     progress: Progress,
 }
 
-/// Matrix matrix adaptation in runs: where one has come to an end, the next begins elsewhere, with more individuals or
+/// Covariance matrix adaptation in runs. When one terminates, the next begins at another mean, with more individuals or
 /// with few.
 ///
 /// It is for fitness with many optima, which few individuals overlook.
 ///
-/// A strategy asks for the same number of genomes in all generations, but runs differ in theirs. So a generation of this strategy
-/// is a block, of as many individuals as the first run has, and a generation of a run is one to 512 blocks in a row: it is
-/// adapted when its last block is told. Individuals of a block are those of a [`CmaEs`](crate::covariance::CmaEs) and draw from the same
-/// streams; the mean of run `r` and its size from (seed, [`Domain::Mutation`], trial 1, individual 0, `r`).
+/// A strategy has the same number of genomes in all generations, but runs differ in theirs. A generation of this strategy
+/// is therefore a block of as many individuals as the first run has. A generation of a run is one to 512 blocks, and the
+/// run adapts after its last block.
 ///
-/// A run ends by `MaxIter`, 100 + 50 (n + 3)^2 / sqrt(lambda) generations, `TolHistFun`, `TolX` (10^-12), `TolUpSigma` (10^4),
-/// `ConditionCov` (10^14), `NoEffectAxis`, `NoEffectCoord` or `Stagnation` of \[Hansen2016\] section B.3 and \[Hansen2009\].
+/// Individuals of a block are those of [`CmaEs`](crate::covariance::CmaEs) and draw from the same streams. The mean and the
+/// size of run `r` draw from (seed, [`Domain::Mutation`], trial 1, individual 0, `r`).
+///
+/// A run terminates by `MaxIter`, 100 + 50 (n + 3)^2 / sqrt(lambda) generations, `TolHistFun`, `TolX` (10^-12),
+/// `TolUpSigma` (10^4), `ConditionCov` (10^14), `NoEffectAxis`, `NoEffectCoord` or `Stagnation`. See \[Hansen2016\] section
+/// B.3 and \[Hansen2009\].
 ///
 /// Source: \[Auger2005\], \[Hansen2009\]. Deviations: the individuals of a run are a multiple of those of the first, where
-/// the source rounds down to any number; and they double nine times, after which runs stay as large.
+/// the source rounds down to any number. They double nine times, and later runs stay as large.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -118,7 +121,7 @@ pub struct CmaEsRestarts {
     latest: u64,
     run: Run,
     distribution: Distribution<Full>,
-    /// The fitness of the blocks of the run's generation that were told.
+    /// The fitness of the reported blocks of the run's generation.
     told: Vec<Fitness>,
     /// The individuals of the run's generation.
     points: Population<f64>,
@@ -130,7 +133,7 @@ impl CmaEsRestarts {
     /// A search at the first generation of its first run.
     ///
     /// # Errors
-    /// Those of [`CmaEsRestartsConfig::validate`].
+    /// The errors of [`CmaEsRestartsConfig::validate`].
     pub fn new(config: CmaEsRestartsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let CmaEsConfig { mean, sigma, population, .. } = &config.first;
@@ -171,7 +174,7 @@ impl CmaEsRestarts {
         self.distribution.sigma
     }
 
-    /// Blocks of the run's generation that were told.
+    /// Reported blocks of the run's generation.
     fn block(&self) -> usize {
         self.told.len() / self.population.len()
     }

@@ -8,11 +8,11 @@ use crate::covariance::distribution::{Distribution, Matrix};
 use crate::covariance::full::Full;
 use crate::fitness::Fitness;
 
-/// The most generations of which best and median are remembered.
+/// The largest number of generations whose best and median are stored.
 pub(super) const LONGEST: usize = 20_000;
 /// Differences of fitness, and of genes as a fraction of the initial step size, that count for nothing.
 const TOLERANCE: f64 = 1e-12;
-/// How many times the initial step size the longest axis may be.
+/// The largest ratio of the longest axis to the initial step size.
 const LONGEST_AXIS: f64 = 1e4;
 /// The largest ratio of the squares of the longest and the shortest axis.
 const CONDITION: f64 = 1e14;
@@ -30,7 +30,7 @@ pub(super) enum Termination {
     Stagnation,
 }
 
-/// What is remembered of the generations of a run.
+/// The history of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Progress {
     /// Generations so far, those that failed as a whole too.
@@ -87,14 +87,14 @@ impl Progress {
     }
 }
 
-/// Whether the latest values of a window differ by next to nothing.
+/// Returns true if the latest values of a window are almost equal.
 fn flat(history: &[Fitness], window: usize) -> bool {
     let Some(latest) = history.len().checked_sub(window).map(|start| &history[start..]) else { return false };
     let (Some(low), Some(high)) = (latest.iter().min(), latest.iter().max()) else { return false };
     low == high || high.get() - low.get() < TOLERANCE
 }
 
-/// Whether the median of the last 30 % of a window is not better than that of the first.
+/// Returns true if the median of the last 30 % of a window is not better than that of the first.
 fn stagnates(history: &[Fitness], window: usize) -> bool {
     let Some(latest) = history.len().checked_sub(window).map(|start| &history[start..]) else { return false };
     let part = (3 * window / 10).max(1);
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn stagnation_compares_medians_of_three_tenths_of_a_window() {
-        // Of 20 generations the first six and the last six; the upper one of the two in the middle counts.
+        // The first six and the last six of 20 generations. The upper one of the two in the middle is the median.
         let history = |first: [f64; 6]| -> Vec<Fitness> {
             let values = first.into_iter().chain([7.0; 8]).chain([5.0; 6]);
             values.map(Fitness::nan_as_failed).collect()

@@ -14,7 +14,7 @@ use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 
-/// What an [`Ars`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Ars`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ArsConfig {
@@ -31,8 +31,8 @@ pub struct ArsConfig {
 }
 
 impl ArsConfig {
-    /// ARS V1: all directions count. The step size of 0.02 and the noise of 0.03 are what the program of the authors of
-    /// \[Mania2018\] begins with; the paper chooses both for each task.
+    /// ARS V1, in which all directions count. The step size of 0.02 and the noise of 0.03 are the defaults of the program
+    /// of the authors of \[Mania2018\]. The paper chooses both for each task.
     pub const fn new(mean: Vec<f64>, directions: usize) -> Self {
         Self { mean, directions, top_directions: directions, step_size: 0.02, noise: 0.03 }
     }
@@ -54,17 +54,17 @@ impl ArsConfig {
     }
 }
 
-/// Augmented random search: mirrored noise of one size around one point, which moves by the differences of rewards
+/// Augmented random search, with mirrored noise of one size around one point. The point moves by the differences of rewards
 /// along the best directions, divided by the standard deviation of these rewards.
 ///
 /// The simplest of the strategies for many genes. It depends on the values of fitness, though not on their unit or
 /// zero.
 ///
-/// Source: \[Mania2018\] algorithm 1, V1, and V1-t with fewer top directions. V2 is the same with observations that
-/// [`ObservationStatistics`](crate::ObservationStatistics) normalise. Deviations: sums go through the directions by
-/// index; a failed evaluation counts as the worst finite value of its generation and an infinite one as the best; the
-/// rewards are divided by the largest magnitude of them beforehand; where they are all the same, or none is finite, the
-/// point stays; it stays within 1e100 of zero.
+/// Source: \[Mania2018\] algorithm 1, V1, and V1-t with fewer top directions. For V2 normalize observations with
+/// [`ObservationStatistics`](crate::ObservationStatistics). Deviations: sums go through the directions by index. A failed
+/// evaluation counts as the worst finite value of its generation and an infinite one as the best. The rewards are divided
+/// by their largest magnitude first. The point stays within 1e100 of zero, and does not move where all rewards are equal or
+/// none is finite.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -91,7 +91,7 @@ impl Ars {
     /// A search at its first generation.
     ///
     /// # Errors
-    /// Those of [`ArsConfig::validate`].
+    /// The errors of [`ArsConfig::validate`].
     pub fn new(config: ArsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let samples = Mirrored::new(config.mean.clone(), config.directions, config.noise, seed)?;
@@ -113,7 +113,7 @@ impl Ars {
         &self.samples.mean
     }
 
-    /// The top directions by the fitness of the better of their two individuals, equals by index; in order of index.
+    /// The top directions by the fitness of the better of their two individuals, equals by index, in order of index.
     fn top(&self, fitness: &[Fitness]) -> Vec<usize> {
         let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
         let mut top = Fitness::ranking(&better);

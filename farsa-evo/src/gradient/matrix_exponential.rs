@@ -14,12 +14,12 @@ const INVERSE_FACTORIALS: [f64; 17] = {
     inverse
 };
 
-/// The exponential of a symmetric matrix [n x n], which is symmetric; none if it would not be finite.
+/// Returns the exponential of a symmetric matrix [n x n], which is symmetric, or `None` if it is not finite.
 ///
-/// Source: \[Moler2003\] method 3, scaling and squaring with a Taylor series: the matrix is halved until its largest
-/// sum of magnitudes in a row is at most 1/2, where the rest after degree 16 is below 2^-64. The polynomial of degree
-/// 16 takes six products, grouped by four degrees (\[Paterson1973\]). As all factors are polynomials of one symmetric
-/// matrix, only the upper half of a product is computed.
+/// Source: \[Moler2003\] method 3, scaling and squaring with a Taylor series. The matrix is halved until its largest sum of
+/// magnitudes in a row is at most 1/2, where the rest after degree 16 is below 2^-64. The polynomial of degree 16 takes six
+/// products, grouped by four degrees (\[Paterson1973\]). All factors are polynomials of one symmetric matrix, so only the
+/// upper half of a product is computed.
 pub(super) fn exponential(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let norm = matrix.chunks_exact(n).map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max);
     // e^1024 is more than any number. A NaN is found at the end.

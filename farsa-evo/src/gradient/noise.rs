@@ -1,4 +1,4 @@
-//! The random numbers of a generation, drawn anew wherever they are needed, and genomes made of them.
+//! The random numbers of a generation, and genomes made of them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ use crate::vectors::vectorized;
 /// Numbers drawn at a time: few enough to stay in the fastest memory, and even, for normal numbers come in pairs.
 const BLOCK: usize = 256;
 
-/// The standard normal numbers of a generation: row after row, each from a stream of its own.
+/// The standard normal numbers of a generation, row after row. Each row has its stream.
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
     pub(super) seed: u64,
@@ -25,8 +25,8 @@ pub(super) enum Spread<'s> {
     Each(&'s [f64]),
 }
 
-/// The noise of a generation whose individuals mirror each other, kept from when they are made until they are judged: a row of
-/// numbers is read in a fourth of the time in which it is drawn again.
+/// The noise of a generation of mirrored individuals, kept until the update. To read a row takes a fourth of the time of
+/// drawing it again.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Directions {
     genes: usize,
@@ -35,7 +35,7 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Room for so many rows.
+    /// Allocates the given number of rows.
     pub(super) fn new(rows: usize, genes: usize) -> Self {
         Self { genes, numbers: vec![0.0; rows * genes] }
     }

@@ -10,21 +10,21 @@ use crate::error::{EvoError, check_range};
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 
-/// The largest sum of squares that is taken over from elsewhere.
+/// The largest sum of squares in a saved state.
 const LARGEST_SQUARES: f64 = 1e250;
 
-/// The standard deviation below which a channel says nothing, as in the program of the authors of \[Mania2018\].
+/// The standard deviation below which a channel is constant, as in the program of the authors of \[Mania2018\].
 const LEAST_DEVIATION: f64 = 1e-7;
 
-/// Running mean and variance of every channel of what a network observes, to normalise it with.
+/// Running mean and variance of every channel of an observation, for its normalization.
 ///
-/// It is a value of its own beside the strategies: statistics of parts (of an episode, an individual) are made anywhere
-/// and [`merge`](Self::merge)d in a fixed order. Merged parts and a whole agree to a relative 1e-12, not in their bits;
-/// parts that are merged in the same order agree in their bits.
+/// It is independent of the strategies. Statistics of parts, such as an episode or an individual, are computed anywhere and
+/// [`merge`](Self::merge)d in a fixed order. Merged parts and a whole agree to a relative 1e-12, but not in their bits.
+/// Parts that are merged in the same order agree in their bits.
 ///
-/// Source: \[Welford1962\] for one row, \[Chan1983\] for parts; normalisation as V2 of \[Mania2018\] algorithm 1, where
-/// a channel with a standard deviation below 1e-7 is 0. Deviations: the variance is the mean square (divided by n, not
-/// n - 1); a limit.
+/// Source: \[Welford1962\] for one row, \[Chan1983\] for parts, and V2 of \[Mania2018\] algorithm 1 for the normalization,
+/// where a channel with a standard deviation below 1e-7 is 0. Deviations: the variance is the mean square (divided by n,
+/// not n - 1), and there is a limit.
 ///
 /// ```
 /// use farsa_evo::ObservationStatistics;
@@ -35,7 +35,7 @@ const LEAST_DEVIATION: f64 = 1e-7;
 /// }
 /// assert_eq!((statistics.count(), statistics.mean()), (2, &[2.0, 5.0][..]));
 /// let mut row = [4.0, 9.0];
-/// statistics.normalise(&mut row, 10.0);
+/// statistics.normalize(&mut row, 10.0);
 /// assert_eq!(row, [2.0, 0.0]);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
@@ -48,7 +48,7 @@ pub struct ObservationStatistics {
 }
 
 impl ObservationStatistics {
-    /// No observation yet, of so many channels.
+    /// Statistics without observations, for the given number of channels.
     ///
     /// # Errors
     /// [`EvoError::Setting`] for none, or more than [`Population::MAX_GENES`].
@@ -97,8 +97,8 @@ impl ObservationStatistics {
         self.squares.iter().map(move |squares| squares / count)
     }
 
-    /// Adds an observation \[channels\], and says whether it did: one with a number that is not finite, or of another
-    /// length, is left out.
+    /// Adds an observation \[channels\] and returns true. An observation of another length, or with a number that is not
+    /// finite, is left out.
     pub fn push(&mut self, row: &[f32]) -> bool {
         debug_assert_eq!(row.len(), self.channels(), "a row of other channels");
         if row.len() != self.channels() || self.count == u64::MAX || !row.iter().all(|x| x.is_finite()) {
@@ -120,7 +120,7 @@ impl ObservationStatistics {
     ///
     /// # Errors
     /// [`EvoError::Setting`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
-    /// above 1e250, and more than 2^64 - 1 observations; nothing is added then.
+    /// above 1e250, or more than 2^64 - 1 observations. Nothing is added then.
     pub fn add(&mut self, count: u64, mean: &[f64], squares: &[f64]) -> Result<(), EvoError> {
         for channels in [mean.len(), squares.len()] {
             if channels != self.channels() {
@@ -150,17 +150,17 @@ impl ObservationStatistics {
     /// Adds other statistics.
     ///
     /// # Errors
-    /// Those of [`add`](Self::add).
+    /// The conditions of [`add`](Self::add).
     pub fn merge(&mut self, other: &Self) -> Result<(), EvoError> {
         self.add(other.count, &other.mean, &other.squares)
     }
 
-    /// Normalises an observation \[channels\] in place: less the mean, divided by the standard deviation, at most
-    /// `limit` from zero.
+    /// Normalizes an observation \[channels\] in place. The mean is subtracted, the result divided by the standard
+    /// deviation and limited to `limit` from zero.
     ///
     /// A channel with a standard deviation below 1e-7 becomes 0, so that all are 0 until there are two observations. A
     /// NaN stays one. A `limit` that is not above 0 limits nothing.
-    pub fn normalise(&self, row: &mut [f32], limit: f32) {
+    pub fn normalize(&self, row: &mut [f32], limit: f32) {
         debug_assert_eq!(row.len(), self.channels(), "a row of other channels");
         let limit = if limit > 0.0 { limit } else { f32::INFINITY };
         for ((x, mean), variance) in row.iter_mut().zip(&self.mean).zip(self.variance()) {

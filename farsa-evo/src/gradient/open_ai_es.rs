@@ -6,14 +6,14 @@ use alloc::vec::Vec;
 use super::mirrored::Mirrored;
 use super::optimizer::{Memory, Optimizer};
 use super::settings::{point, positive};
-use super::utilities::centred_ranks;
+use super::utilities::centered_ranks;
 use crate::error::{EvoError, check_range};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{RecordKind, Strategy, next_generation};
 
-/// What an [`OpenAiEs`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`OpenAiEs`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OpenAiEsConfig {
@@ -25,16 +25,16 @@ pub struct OpenAiEsConfig {
     pub sigma: f64,
     /// Learning rate (alpha), 1e-100 to 1e100.
     pub learning_rate: f64,
-    /// What is subtracted from the gradient for each unit of a parameter, 0 to 1e9.
+    /// The weight decay, subtracted from the gradient for each unit of a parameter, 0 to 1e9.
     pub weight_decay: f64,
-    /// How the gradient becomes a step.
+    /// The optimizer.
     pub optimizer: Optimizer,
 }
 
 impl OpenAiEsConfig {
-    /// The parameters of the program of the authors of \[Salimans2017\] for its humanoid: noise of 0.02,
-    /// [`Optimizer::ADAM`] with a learning rate of 0.01, a weight decay of 0.005 / sigma (0.005 there, where the
-    /// gradient is not divided by sigma).
+    /// The parameters of the program of the authors of \[Salimans2017\] for its humanoid, with noise of 0.02 and
+    /// [`Optimizer::ADAM`] with a learning rate of 0.01. The weight decay is 0.005 / sigma (0.005 there, where the gradient
+    /// is not divided by sigma).
     pub const fn new(mean: Vec<f64>, pairs: usize) -> Self {
         let (sigma, weight_decay) = (0.02, 0.25);
         Self { mean, pairs, sigma, learning_rate: 0.01, weight_decay, optimizer: Optimizer::ADAM }
@@ -56,13 +56,12 @@ impl OpenAiEsConfig {
 
 /// The evolution strategy of `OpenAI`: mirrored noise of one size around one point, which an optimizer moves.
 ///
-/// For genomes of very many genes: the noise is drawn anew for the update, and beside the genomes only the point and
-/// what the optimizer remembers are kept. It does not learn scales; sigma stays as it is. Only the order of fitness
-/// counts.
+/// It is for genomes of very many genes. Apart from the genomes it stores only the noise, the point and the state of the
+/// optimizer. It does not learn scales, and sigma is constant. Only the order of fitness counts.
 ///
-/// Source: \[Salimans2017\] algorithm 1, gradient 1 / (n sigma) times the sum of centred ranks times noise, with the
-/// antithetic sampling, the rank transformation and the weight decay of its section 2. Deviations: noise is drawn, not
-/// read from a table; sums go through the pairs by index; the point stays within 1e100 of zero.
+/// Source: \[Salimans2017\] algorithm 1, gradient 1 / (n sigma) times the sum of centered ranks times noise. Section 2 has
+/// the antithetic sampling, the rank transformation and the weight decay. Deviations: noise is drawn, not read from a
+/// table. Sums go through the pairs by index. The point stays within 1e100 of zero.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -91,7 +90,7 @@ impl OpenAiEs {
     /// A search at its first generation.
     ///
     /// # Errors
-    /// Those of [`OpenAiEsConfig::validate`].
+    /// The errors of [`OpenAiEsConfig::validate`].
     pub fn new(config: OpenAiEsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let memory = Memory::new(config.optimizer, config.mean.len());
@@ -128,7 +127,7 @@ impl Strategy<f64> for OpenAiEs {
         let next = next_generation(self.samples.generation, self.samples.population.len(), fitness)?;
         let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = self.config;
         let mut gradient = vec![0.0; self.samples.mean.len()];
-        for (row, pair) in centred_ranks(fitness).chunks_exact(2).enumerate() {
+        for (row, pair) in centered_ranks(fitness).chunks_exact(2).enumerate() {
             self.samples.directions.add(row, pair[0] - pair[1], &mut gradient);
         }
         let scale = 1.0 / (fitness.len() as f64 * sigma);

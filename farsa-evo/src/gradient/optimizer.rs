@@ -9,7 +9,7 @@ use super::settings::{LARGEST, decay, positive, read};
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
 
-/// How [`OpenAiEs`](crate::gradient::OpenAiEs) turns a gradient into a step.
+/// The optimizer of [`OpenAiEs`](crate::gradient::OpenAiEs).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub enum Optimizer {
         first_decay: f64,
         /// Decay of the mean square (beta 2), 0 to less than 1.
         second_decay: f64,
-        /// What is added to the root of the mean square (epsilon), 1e-100 to 1e100.
+        /// The addend to the root of the mean square (epsilon), 1e-100 to 1e100.
         epsilon: f64,
     },
     /// Gradient ascent with momentum: v = momentum v + (1 - momentum) gradient, the step is the learning rate times v.
@@ -50,7 +50,7 @@ impl Optimizer {
     }
 }
 
-/// What an optimizer remembers.
+/// The state of an optimizer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Memory {
     Adam(Adam),
@@ -105,7 +105,7 @@ impl Memory {
 
 /// The state of Adam.
 ///
-/// Source: \[Kingma2015\] algorithm 1; no deviation but the sign, as fitness is maximised. The powers of the decays are
+/// Source: \[Kingma2015\] algorithm 1, with the opposite sign, because fitness is maximized. The powers of the decays are
 /// products of one factor a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Adam {
@@ -164,7 +164,7 @@ impl ClipUp {
         Self { velocity: vec![0.0; genes] }
     }
 
-    /// Takes a gradient \[genes\]; the velocity is the step.
+    /// Takes a gradient \[genes\]. The velocity is the step.
     pub(super) fn step(&mut self, gradient: &[f64], step_size: f64, max_speed: f64, momentum: f64) {
         let length = norm(gradient);
         for (velocity, g) in self.velocity.iter_mut().zip(gradient) {

@@ -8,7 +8,7 @@ use farsa_num::Scalar;
 use super::noise::{Directions, Noise, Spread};
 use super::optimizer::ClipUp;
 use super::settings::{bounded, bounded_size, decay, learning_rate, point, positive, read_point, read_sizes};
-use super::utilities::centred_ranks;
+use super::utilities::centered_ranks;
 use super::utilities::rewards;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -16,18 +16,19 @@ use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{RecordKind, Strategy, next_generation};
 
-/// What [`Pgpe`] takes for the reward of an individual.
+/// The reward of an individual in [`Pgpe`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PgpeFitness {
-    /// Its rank, from -1/2 to 1/2 (0-centred ranking).
-    CentredRanks,
+    /// Its rank, from -1/2 to 1/2 (0-centered ranking).
+    #[cfg_attr(feature = "serde", serde(rename = "CentredRanks"))]
+    CenteredRanks,
     /// Its fitness, less the mean of its generation as baseline.
     Raw,
 }
 
-/// What a [`Pgpe`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Pgpe`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PgpeConfig {
@@ -47,14 +48,14 @@ pub struct PgpeConfig {
     pub sigma_learning_rate: f64,
     /// The most that a standard deviation changes in a generation, as a share of itself, 0 to less than 1.
     pub sigma_max_change: f64,
-    /// What stands for the reward.
+    /// The reward of an individual.
     pub fitness: PgpeFitness,
 }
 
 impl PgpeConfig {
-    /// The parameters of \[Toklu2020\] and of its authors' program, for so many pairs: a maximum speed of a 15th of the
-    /// initial radius sigma sqrt(n), a step size of half of that, momentum 0.9, learning rate 0.1 and largest change
-    /// 0.2 of the standard deviations, centred ranks.
+    /// The parameters of \[Toklu2020\] and of its authors' program, for the given number of pairs. The maximum speed is a
+    /// 15th of the initial radius sigma sqrt(n), the step size half of that, and the momentum 0.9. The standard deviations
+    /// have a learning rate of 0.1 and a largest change of 0.2. Rewards are centered ranks.
     pub fn new(mean: Vec<f64>, sigma: f64, pairs: usize) -> Self {
         let max_speed = sigma * Scalar::sqrt(mean.len() as f64) / 15.0;
         Self {
@@ -66,7 +67,7 @@ impl PgpeConfig {
             momentum: 0.9,
             sigma_learning_rate: 0.1,
             sigma_max_change: 0.2,
-            fitness: PgpeFitness::CentredRanks,
+            fitness: PgpeFitness::CenteredRanks,
         }
     }
 
@@ -89,15 +90,14 @@ impl PgpeConfig {
 /// Policy gradients with parameter-based exploration: a normal distribution with a standard deviation for each gene,
 /// symmetric pairs of individuals, and `ClipUp` to move the center.
 ///
-/// Its parameters say how far the center moves, whatever the scale of fitness. With
-/// [`CentredRanks`](PgpeFitness::CentredRanks) only the order of fitness counts, with [`Raw`](PgpeFitness::Raw) its
-/// values.
+/// Its parameters give the distance that the center moves, whatever the scale of fitness. With
+/// [`CenteredRanks`](PgpeFitness::CenteredRanks) only the order of fitness counts, with [`Raw`](PgpeFitness::Raw) its values.
 ///
-/// Source: \[Sehnke2010\] with symmetric sampling, as in \[Toklu2020\], whose `ClipUp` is the optimizer: with e = sigma
-/// s, the gradients are the means over the pairs of (f+ - f-) / 2 e and of ((f+ + f-) / 2 - b) (e^2 - sigma^2) / sigma.
-/// Deviations: sums go through the pairs by index; of raw fitness a failed evaluation counts as the worst finite value
-/// of its generation and an infinite one as the best, and a generation without a finite value changes nothing; centers
-/// stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
+/// Source: \[Sehnke2010\] with symmetric sampling, as in \[Toklu2020\], whose `ClipUp` is the optimizer. With e = sigma s,
+/// the gradients are the means over the pairs of (f+ - f-) / 2 e and of ((f+ + f-) / 2 - b) (e^2 - sigma^2) / sigma.
+/// Deviations: sums go through the pairs by index. With raw fitness, a failed evaluation counts as the worst finite value
+/// of its generation and an infinite one as the best. A generation without a finite value changes nothing. Centers stay
+/// within 1e100 of zero, standard deviations within 1e-100 to 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -121,7 +121,7 @@ pub struct Pgpe {
     mean: Vec<f64>,
     sigmas: Vec<f64>,
     clip_up: ClipUp,
-    /// Those of this generation.
+    /// The noise of this generation.
     directions: Directions,
     population: Population<f64>,
 }
@@ -130,7 +130,7 @@ impl Pgpe {
     /// A search at its first generation.
     ///
     /// # Errors
-    /// Those of [`PgpeConfig::validate`].
+    /// The errors of [`PgpeConfig::validate`].
     pub fn new(config: PgpeConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let genes = config.mean.len();
@@ -208,7 +208,7 @@ impl Strategy<f64> for Pgpe {
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         let next = next_generation(self.generation, self.population.len(), fitness)?;
         let rewards = match self.config.fitness {
-            PgpeFitness::CentredRanks => Some(centred_ranks(fitness)),
+            PgpeFitness::CenteredRanks => Some(centered_ranks(fitness)),
             PgpeFitness::Raw => rewards(fitness),
         };
         if let Some(rewards) = rewards {
@@ -221,7 +221,7 @@ impl Strategy<f64> for Pgpe {
 
     fn record_kind(&self) -> RecordKind {
         match self.config.fitness {
-            PgpeFitness::CentredRanks => RecordKind::Order,
+            PgpeFitness::CenteredRanks => RecordKind::Order,
             PgpeFitness::Raw => RecordKind::Values,
         }
     }

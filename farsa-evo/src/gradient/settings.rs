@@ -1,4 +1,4 @@
-//! What the numbers of a configuration and of a state may be.
+//! Ranges of the numbers of configurations and states.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,27 +12,27 @@ pub(super) const LARGEST: f64 = 1e100;
 /// The smallest step size.
 pub(super) const SMALLEST: f64 = 1e-100;
 
-/// Whether a number can be a step size, a speed and the like.
+/// Checks a step size or speed.
 pub(super) fn positive(name: &'static str, value: f64) -> Result<(), EvoError> {
     check_range(name, value, [SMALLEST, LARGEST], "1e-100 to 1e100")
 }
 
-/// Whether a number can be the learning rate of a distribution.
+/// Checks the learning rate of a distribution.
 pub(super) fn learning_rate(name: &'static str, value: f64) -> Result<(), EvoError> {
     check_range(name, value, [0.0, 10.0], "0 to 10")
 }
 
-/// Whether a number can be the share of the past in a mean that decays.
+/// Checks the share of the past in a decaying mean.
 pub(super) fn decay(name: &'static str, value: f64) -> Result<(), EvoError> {
     check_setting((0.0..1.0).contains(&value), name, value, "0 to less than 1")
 }
 
-/// Whether a count is as large as the least that makes sense.
+/// Checks the lower limit of a count.
 pub(super) fn at_least(name: &'static str, value: usize, least: usize, allowed: &'static str) -> Result<(), EvoError> {
     check_setting(value >= least, name, value as f64, allowed)
 }
 
-/// Whether these can be the coordinates of a search point.
+/// Checks the coordinates of a search point.
 pub(super) fn point(name: &'static str, point: &[f64]) -> Result<(), EvoError> {
     point.iter().try_for_each(|x| check_range(name, *x, [-LARGEST, LARGEST], "-1e100 to 1e100"))
 }

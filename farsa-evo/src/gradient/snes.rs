@@ -14,7 +14,7 @@ use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{RecordKind, Strategy, next_generation};
 
-/// What a [`Snes`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Snes`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SnesConfig {
@@ -61,11 +61,11 @@ impl SnesConfig {
 /// The separable natural evolution strategy: a normal distribution with a standard deviation for each gene, moved along
 /// the natural gradient of the expected fitness.
 ///
-/// It costs time and memory in proportion to the genes, and finds scales of its own for each of them, but no
-/// correlations: those are for [`Xnes`](crate::gradient::Xnes). Only the order of fitness counts.
+/// Time and memory are proportional to the number of genes. It learns a scale for each gene, but no correlations, for which
+/// there is [`Xnes`](crate::gradient::Xnes). Only the order of fitness counts.
 ///
-/// Source: \[Wierstra2014\] algorithm 6 (SNES) with the utilities of table 1. Deviations: sums go through the
-/// individuals by index; means stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
+/// Source: \[Wierstra2014\] algorithm 6 (SNES) with the utilities of table 1. Deviations: sums go through the individuals
+/// by index. Means stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -95,7 +95,7 @@ impl Snes {
     /// A search at its first generation.
     ///
     /// # Errors
-    /// Those of [`SnesConfig::validate`].
+    /// The errors of [`SnesConfig::validate`].
     pub fn new(config: SnesConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let population = Population::new(config.population, config.mean.len())?;

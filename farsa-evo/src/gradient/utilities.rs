@@ -8,7 +8,7 @@ use farsa_num::ln;
 use super::settings::bounded;
 use crate::fitness::Fitness;
 
-/// The utility of the individual of each rank, the best first; they sum to 0.
+/// The utility of the individual of each rank, the best first. Utilities sum to 0.
 ///
 /// Source: \[Wierstra2014\] table 1, that of rank k is max(0, ln(lambda / 2 + 1) - ln k) / sum - 1 / lambda.
 pub(super) fn utilities(population: usize) -> Vec<f64> {
@@ -29,10 +29,10 @@ pub(super) fn weights(fitness: &[Fitness], utilities: &[f64]) -> Vec<f64> {
     weights
 }
 
-/// The rank of each individual, spaced evenly from 1/2 for the best to -1/2 for the worst; equals by index.
+/// The rank of each individual, spaced evenly from 1/2 for the best to -1/2 for the worst, equals by index.
 ///
-/// Source: \[Salimans2017\] section 2 names them; the spacing is that of its authors' program.
-pub(super) fn centred_ranks(fitness: &[Fitness]) -> Vec<f64> {
+/// Source: \[Salimans2017\] section 2. The spacing is that of its authors' program.
+pub(super) fn centered_ranks(fitness: &[Fitness]) -> Vec<f64> {
     let last = fitness.len().saturating_sub(1).max(1) as f64;
     let mut ranks = vec![0.0; fitness.len()];
     for (place, individual) in Fitness::ranking(fitness).into_iter().enumerate() {
@@ -43,8 +43,8 @@ pub(super) fn centred_ranks(fitness: &[Fitness]) -> Vec<f64> {
     ranks
 }
 
-/// The values of fitness, where a failed evaluation counts as the worst finite value and an infinite one as the best;
-/// within 1e100 of zero. None if no value is finite.
+/// The values of fitness within 1e100 of zero. A failed evaluation counts as the worst finite value and an infinite one as
+/// the best. `None` if no value is finite.
 pub(super) fn rewards(fitness: &[Fitness]) -> Option<Vec<f64>> {
     let finite = || fitness.iter().map(|fitness| fitness.get()).filter(|value| value.is_finite());
     let worst = finite().reduce(f64::min)?;
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn utilities_favour_the_better_half() {
+    fn utilities_favor_the_better_half() {
         let got = utilities(4);
         // ln 3, ln 1.5, 0, 0.
         let (a, b) = (1.0986122886681098, 0.4054651081081644);
@@ -81,8 +81,8 @@ mod tests {
     #[test]
     fn ranks_are_spaced_evenly() {
         let told = [2.0, f64::NAN, 7.0, 2.0, 1.0].map(Fitness::nan_as_failed);
-        assert_eq!(centred_ranks(&told), [0.25, -0.5, 0.5, 0.0, -0.25]);
-        assert_eq!(centred_ranks(&told[..1]), [0.5]);
+        assert_eq!(centered_ranks(&told), [0.25, -0.5, 0.5, 0.0, -0.25]);
+        assert_eq!(centered_ranks(&told[..1]), [0.5]);
     }
 
     #[test]

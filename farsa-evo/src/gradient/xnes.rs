@@ -20,7 +20,7 @@ use crate::strategy::{RecordKind, Strategy, next_generation};
 /// The most genes: a matrix of 8 MiB, and some 10^10 products a generation.
 const MOST_GENES: usize = 1024;
 
-/// What an [`Xnes`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Xnes`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct XnesConfig {
@@ -39,8 +39,8 @@ pub struct XnesConfig {
 }
 
 impl XnesConfig {
-    /// The parameters of \[Wierstra2014\] table 1 for d genes: 4 + floor(3 ln d) individuals, learning rates 1 of the
-    /// mean and (9 + 3 ln d) / (5 d sqrt d) of step size and shape.
+    /// The parameters of \[Wierstra2014\] table 1 for d genes. There are 4 + floor(3 ln d) individuals. Learning rates are
+    /// 1 for the mean and (9 + 3 ln d) / (5 d sqrt d) for step size and shape.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let d = mean.len() as f64;
         let rate = (9.0 + 3.0 * ln(d)) / (5.0 * d * Scalar::sqrt(d));
@@ -73,16 +73,16 @@ impl XnesConfig {
     }
 }
 
-/// The exponential natural evolution strategy: a normal distribution with a full covariance, moved along the natural
-/// gradient of the expected fitness in coordinates in which it is the identity.
+/// The exponential natural evolution strategy. A normal distribution with a full covariance moves along the natural
+/// gradient of the expected fitness, in coordinates in which it is the identity.
 ///
 /// It learns scales and correlations, for up to some hundred genes: a generation takes time in proportion to the cube
 /// of their number. Only the order of fitness counts.
 ///
-/// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its
-/// table 1. A genome is mu + sigma B s; B is multiplied from the right by the exponential of a symmetric matrix without
-/// trace. Deviations: sums go through the individuals by index; means stay within 1e100 of zero, sigma within 1e-100 to
-/// 1e100, and B stays as it was where an element would pass 1e100.
+/// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its table
+/// 1. A genome is mu + sigma B s, and B is multiplied from the right by the exponential of a symmetric matrix without
+/// trace. Deviations: sums go through the individuals by index. Means stay within 1e100 of zero and sigma within 1e-100 to
+/// 1e100. B does not change where an element would pass 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -106,7 +106,7 @@ pub struct Xnes {
     utilities: Vec<f64>,
     mean: Vec<f64>,
     sigma: f64,
-    /// The normalised factor B of the covariance [genes x genes].
+    /// The normalized factor B of the covariance [genes x genes].
     shape: Vec<f64>,
     population: Population<f64>,
 }
@@ -115,7 +115,7 @@ impl Xnes {
     /// A search at its first generation.
     ///
     /// # Errors
-    /// Those of [`XnesConfig::validate`].
+    /// The errors of [`XnesConfig::validate`].
     pub fn new(config: XnesConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let genes = config.mean.len();

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Whether objectives \[m\] are nowhere smaller than others, and somewhere larger.
+/// Returns true if objectives \[m\] are nowhere smaller than others, and somewhere larger.
 pub fn dominates(objectives: &[f64], others: &[f64]) -> bool {
     let mut larger = false;
     for (own, other) in objectives.iter().zip(others) {
@@ -15,8 +15,9 @@ pub fn dominates(objectives: &[f64], others: &[f64]) -> bool {
     larger
 }
 
-/// The fronts of individuals with these objectives [individuals x m], larger being better: first those that nobody
-/// dominates, then those that only the first front dominates, and so on; in each front by index. No fronts for m = 0.
+/// Returns the fronts of individuals with these objectives [individuals x m], where larger is better. The first front has
+/// the individuals that no other dominates, the second those that only the first dominates, and so on. Each is in order of
+/// index. There are no fronts for m = 0.
 ///
 /// It asks at most 3 n^2 / 2 times whether one dominates another, and keeps a number for each individual.
 ///
@@ -61,11 +62,11 @@ pub fn non_dominated_fronts(objectives: &[f64], m: usize) -> Vec<Vec<usize>> {
 
 /// The crowding distance of each individual of a front \[front\], given the objectives of all [individuals x m].
 ///
-/// Of each objective, in the order of its values, it adds the difference of an individual's neighbours as a part of the whole
-/// range; the first and the last are infinitely far from others. Equals lie in the order of the front. An objective of
-/// which all values are the same, or one is infinite, adds nothing but that.
+/// For each objective, in the order of its values, it adds the difference of an individual's neighbors divided by the
+/// range. The first and the last have infinite distance. Equals are in the order of the front. An objective with equal
+/// values, or with an infinite one, adds nothing else.
 ///
-/// Source: \[Deb2002\] section III.B. Deviation: what is said of objectives without a finite range, on which it is silent.
+/// Source: \[Deb2002\] section III.B. Deviation: the source does not define objectives without a finite range.
 ///
 /// ```
 /// use farsa_evo::pareto::crowding_distances;
@@ -92,9 +93,10 @@ pub fn crowding_distances(objectives: &[f64], m: usize, front: &[usize]) -> Vec<
     distances
 }
 
-/// The area that points of two objectives dominate, larger being better, above a reference point; exact but for rounding.
+/// Returns the area above a reference point that points of two objectives dominate, where larger is better. It is exact up
+/// to rounding.
 ///
-/// What is not above the reference in both objectives adds nothing; neither does a point with a NaN.
+/// Points that are not above the reference in both objectives, or have a NaN, add nothing.
 ///
 /// Source: \[Zitzler1999\], the size of the space covered. Deviation: with a reference point and larger values
 /// being better.
@@ -146,7 +148,7 @@ mod tests {
             whole in proptest::collection::vec(-3_i32..4, 0..160),
             failed in proptest::collection::vec(any::<bool>(), 160),
         ) {
-            // Few values, so that many are equal; some rows failed.
+            // Few values, so that many are equal. Some rows failed.
             let mut objectives: Vec<f64> = whole.iter().map(|x| f64::from(*x)).collect();
             objectives.truncate(objectives.len() / m * m);
             for (row, failed) in objectives.chunks_mut(m).zip(&failed) {
@@ -174,7 +176,7 @@ mod tests {
         let objectives = [1.0, 9.0, 5.0, 2.0, 6.0, 5.0, 4.0, 5.0, 5.0, 5.0, 1.0, 5.0, 11.0, 0.0, 5.0];
         let want = [FAR, 3.0 / 10.0 + 4.0 / 9.0, 3.0 / 10.0 + 5.0 / 9.0, 7.0 / 10.0 + 5.0 / 9.0, FAR];
         assert_eq!(crowding_distances(&objectives, 3, &[0, 1, 2, 3, 4]), want);
-        // Of a part of them: 2 stands between 1 and 4, 3 is the last of the first objective.
+        // In this part 2 is between 1 and 4, and 3 is the last of the first objective.
         let want = [FAR, (5.0 - 2.0) / 3.0 + (6.0 - 1.0) / 5.0, FAR];
         assert_eq!(crowding_distances(&objectives, 3, &[1, 2, 3]), want);
     }
@@ -188,7 +190,7 @@ mod tests {
         assert_eq!(crowding_distances(&[2.0; 8], 2, &[0, 1, 2, 3]), [FAR, 0.0, 0.0, FAR]);
         let failed = [f64::NEG_INFINITY; 6];
         assert_eq!(crowding_distances(&failed, 2, &[0, 1, 2]), [FAR, 0.0, FAR]);
-        // An infinite objective says nothing of the others' distance.
+        // An infinite objective does not change the distance of the others.
         assert_eq!(crowding_distances(&[0.0, 4.0, 1.0, 3.0, FAR, 0.0], 2, &[0, 1, 2]), [FAR, 1.0, FAR]);
     }
 

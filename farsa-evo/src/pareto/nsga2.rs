@@ -19,11 +19,11 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Collection, Genealogy, Member, Strategy, next_scored};
 
-/// What an [`Nsga2`](crate::pareto::Nsga2) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`Nsga2`](crate::pareto::Nsga2).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nsga2Config {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100; equal ends freeze a gene.
+    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
     pub bounds: Vec<[f64; 2]>,
     /// Number of objectives m, at least 1.
     pub objectives: usize,
@@ -50,7 +50,8 @@ impl Nsga2Config {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] for genomes or objectives; [`EvoError::Setting`].
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::Setting`]. [`EvoError::TooLarge`] for genomes or
+    /// objectives.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_bounds(self.population, &self.bounds)?;
         check_setting(self.objectives > 0, "the number of objectives", self.objectives as f64, "1 or more")?;
@@ -69,20 +70,20 @@ impl Nsga2Config {
     }
 }
 
-/// NSGA-II over real genes within bounds: of parents and offspring together the better half become the next parents, by
-/// fronts of those that do not dominate each other, within a front by how much room an individual has.
+/// NSGA-II over real genes within bounds. The better half of parents and offspring become the next parents. They rank by
+/// non-dominated front, and within a front by crowding distance.
 ///
-/// Every generation asks for N offspring; parents keep their objectives and are not evaluated again. The parents of a child
-/// are the better of two, by front, then by crowding distance. Equals rank by index, parents before offspring. A failed
-/// evaluation is dominated by every other.
+/// Every generation has N offspring. Parents keep their objectives and are not evaluated again. Each parent of a child is
+/// the better of two, by front, then by crowding distance. Equals rank by index, parents before offspring. All individuals
+/// dominate a failed evaluation.
 ///
-/// Child `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`): the two rivals for its
-/// first parent, whether there is a second, the rivals for that, the crossover, its mutation, gene after gene. Individuals
-/// of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// Child `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The draws are the two
+/// rivals for its first parent, the decision for a second, its rivals, the crossover and the mutation, gene after gene.
+/// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Source: \[Deb2002\]; simulated binary crossover \[Deb1995\] and polynomial mutation as in K. Deb's program. Deviations:
-/// larger is better; rivals are drawn one by one, with replacement, where the program lets each parent compete twice; of
-/// the two children of a crossover one is made, each gene from either with probability 1/2; there are no constraints.
+/// Source: \[Deb2002\], with simulated binary crossover \[Deb1995\] and polynomial mutation as in K. Deb's program.
+/// Deviations: larger is better. Rivals are drawn one by one, with replacement, where the program lets each parent compete
+/// twice. A crossover makes one of the two children, each gene from either with probability 1/2. There are no constraints.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -102,20 +103,20 @@ pub struct Nsga2 {
     config: Nsga2Config,
     seed: u64,
     generation: u32,
-    /// None before the first generation is told.
+    /// `None` before the first generation is reported.
     parents: Option<Parents>,
     /// The parents of each individual that waits, as indices of the parents, the same where there is one.
     chosen: Vec<[u32; 2]>,
     population: Population<f64>,
 }
 
-/// Those that survived, the first fronts first.
+/// The survivors, the first fronts first.
 #[derive(Clone, Debug, PartialEq)]
 struct Parents {
     genes: Population<f64>,
     /// [parents x m]
     objectives: Vec<f64>,
-    /// What each of them is chosen by.
+    /// The rank of each survivor.
     standing: Vec<Standing>,
     /// The generation and the index of each.
     origins: Vec<[u32; 2]>,
@@ -139,7 +140,7 @@ impl Nsga2 {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`Nsga2Config::validate`].
+    /// The errors of [`Nsga2Config::validate`].
     pub fn new(config: Nsga2Config, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let population = Population::new(config.population, config.bounds.len())?;
@@ -158,7 +159,8 @@ impl Nsga2 {
         self.seed
     }
 
-    /// The genes \[genes\] and objectives \[m\] of the parents, the first fronts first; none before the first generation is told.
+    /// The genes \[genes\] and objectives \[m\] of the parents, the first fronts first. `None` before the first generation
+    /// is reported.
     pub fn parents(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         let m = self.config.objectives;
         self.parents.iter().flat_map(move |parents| parents.genes.iter().zip(parents.objectives.chunks_exact(m)))
@@ -174,7 +176,7 @@ impl Nsga2 {
         standing.take_while(|standing| standing.front == 0).count()
     }
 
-    /// The better half of parents and individuals that were told.
+    /// Returns the better half of parents and reported individuals.
     fn select(&self, scores: &Scores) -> Result<Parents, EvoError> {
         let (size, m) = (self.population.len(), self.config.objectives);
         let old = self.parents.as_ref();

@@ -27,7 +27,7 @@ pub(crate) fn draw_within(genes: &mut [f64], bounds: &[[f64; 2]], stream: &mut S
     }
 }
 
-/// A finite number as the ends of a range reflect it, as often as it takes; the low end of a range of no width.
+/// Reflects a finite number at the ends of a range as often as necessary. Returns the low end of a range of zero width.
 pub(crate) fn reflect(x: f64, [low, high]: [f64; 2]) -> f64 {
     if low <= x && x <= high {
         return x;
@@ -43,7 +43,7 @@ pub(crate) fn reflect(x: f64, [low, high]: [f64; 2]) -> f64 {
     (low + within).clamp(low, high)
 }
 
-/// Whether each genome's genes are within their bounds, for a state that is read.
+/// Checks that the genes of a saved state are within their bounds.
 pub(crate) fn check_within(population: &Population<f64>, bounds: &[[f64; 2]]) -> Result<(), EvoError> {
     for genes in population {
         for (&gene, &[low, high]) in genes.iter().zip(bounds) {

@@ -1,11 +1,11 @@
-//! How the genes of two parents are mixed.
+//! Crossover of two parents.
 
 use farsa_num::{Stream, exp, ln};
 
 use crate::error::{EvoError, check_rate, check_setting};
 use crate::real::bounds::reflect;
 
-/// How the genes of a child come from its two parents; each child is drawn by itself.
+/// The crossover of two parents. Each child is drawn independently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crossover {
@@ -16,16 +16,15 @@ pub enum Crossover {
         /// The probability, 0 to 1, that a gene is the second parent's.
         rate: f64,
     },
-    /// BLX-alpha: each gene is uniform in the interval between the parents' genes, which is widened at both ends by
-    /// alpha times its width \[Eshelman1993\]. What is out of bounds is reflected, where the source says nothing of
-    /// bounds.
+    /// BLX-alpha. Each gene is uniform in the interval between the parents' genes, which is widened at both ends by alpha
+    /// times its width \[Eshelman1993\]. Genes out of bounds are reflected, where the source has no bounds.
     Blend {
-        /// The widening alpha, 0 to 10; 0.5 in the source.
+        /// The widening alpha, 0 to 10. 0.5 in the source.
         alpha: f64,
     },
-    /// SBX: each gene lies near one of the parents' genes, as near as the two are to each other \[Deb1995\], in the
-    /// form within bounds of K. Deb's program NSGA-II: with probability 1/2 a gene is crossed, else the first parent's.
-    /// Deviations: one child of the pair is made, either with probability 1/2 for each gene; genes count as equal from
+    /// SBX, in the form within bounds of K. Deb's program NSGA-II. Each gene is near one of the parents' genes, as near as
+    /// the two are to each other \[Deb1995\]. A gene is crossed with probability 1/2, else it is the first parent's.
+    /// Deviations: one child of the pair is made, either with probability 1/2 for each gene. Genes count as equal from
     /// 1e-14 of their range on, not from 1e-14.
     SimulatedBinary {
         /// The distribution index eta, 0 to 1000: the larger, the nearer to the parents.

@@ -18,18 +18,18 @@ const FARTHEST: f64 = 1e120;
 /// A (mu/rho + lambda) or (mu/rho, lambda) evolution strategy over unbounded real genes, with step sizes that are
 /// inherited, mixed and mutated as the genes are.
 ///
-/// Every child draws rho different parents of the mu best, takes their step sizes and genes by recombination,
-/// multiplies its step sizes by e^(tau N), and then adds normal numbers of these standard deviations to its genes.
-/// Individuals are ranked by fitness, equals by index (parents before offspring), failed ones last.
+/// Every child draws rho different parents of the mu best and recombines their step sizes and genes. It multiplies its step
+/// sizes by e^(tau N), and then adds normal numbers of these standard deviations to its genes. Individuals are ranked by
+/// fitness, equals by index (parents before offspring), failed ones last.
 ///
-/// Child `i` of the offspring of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`):
-/// its parents (by as many swaps of the list of all), the parents of its step sizes and of its genes where
-/// recombination is discrete, then a row of normal numbers: of all step sizes in common, of each step size if there are
-/// several, of each gene. Individuals of generation 0 are normal around the mean with the first step size, from (seed,
-/// [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// Child `i` of the offspring of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The
+/// draws are its parents (as swaps in a list) and, for discrete recombination, the parents of its step sizes and genes. A
+/// row of normal numbers follows: the common one of all step sizes, one for each of several step sizes, one for each gene.
+/// Individuals of generation 0 are normal around the mean with the first step size, from (seed, [`Domain::InitialGenome`],
+/// trial 0, `i`, 0).
 ///
-/// Source: \[Beyer2002\]. Deviations: generation 0 has as many individuals as every other, the best mu of which are the
-/// first parents, so mu is at most lambda; step sizes stay between a smallest one and 1e100.
+/// Source: \[Beyer2002\]. Deviations: generation 0 has as many individuals as every other, and its mu best are the first
+/// parents, so mu is at most lambda. Step sizes stay between a smallest one and 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -45,7 +45,7 @@ pub struct EvolutionStrategy {
     config: EvolutionStrategyConfig,
     seed: u64,
     generation: u32,
-    /// The selected individuals, best first \[mu\]; none in generation 0.
+    /// The selected individuals, best first \[mu\]. Empty in generation 0.
     parents: Vec<Individual>,
     /// The step sizes of those that wait for their fitness [individuals x step sizes].
     steps: Vec<f64>,
@@ -57,9 +57,9 @@ pub struct EvolutionStrategy {
 struct Individual {
     genes: Vec<f64>,
     steps: Vec<f64>,
-    /// What it was selected by, where it keeps that; else the worst.
+    /// The fitness of its selection where it is kept, else the worst.
     fitness: Fitness,
-    /// Its index in the generation that it was selected from; none of a parent that was not evaluated in it.
+    /// Its index in the generation of its selection, `None` for a parent that was not evaluated in it.
     origin: Option<u32>,
 }
 
@@ -67,7 +67,7 @@ impl EvolutionStrategy {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`EvolutionStrategyConfig::validate`].
+    /// The errors of [`EvolutionStrategyConfig::validate`].
     pub fn new(config: EvolutionStrategyConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let genes = config.mean.len();
@@ -98,8 +98,7 @@ impl EvolutionStrategy {
         &self.steps
     }
 
-    /// The fitness that the current parents keep, best first \[mu\]; empty in generation 0, and if not
-    /// [`Survival::Plus`].
+    /// The fitness that the current parents keep, best first \[mu\]. Empty in generation 0 and without [`Survival::Plus`].
     pub fn parent_fitness(&self) -> Vec<Fitness> {
         let kept = if self.config.survival == Survival::Plus { self.parents.as_slice() } else { &[] };
         kept.iter().map(|parent| parent.fitness).collect()
@@ -241,7 +240,7 @@ impl Strategy<f64> for EvolutionStrategy {
         Some(self)
     }
 
-    /// The mean step size of the parents, before the first generation is told the first step size.
+    /// The mean step size of the parents, in generation 0 the first step size.
     fn diagnostics(&self) -> Vec<f64> {
         let steps = || self.parents.iter().flat_map(|parent| &parent.steps);
         let mean = steps().sum::<f64>() / steps().count().max(1) as f64;

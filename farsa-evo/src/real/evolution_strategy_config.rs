@@ -1,4 +1,4 @@
-//! What an evolution strategy needs to know.
+//! The configuration of an evolution strategy.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use farsa_num::Scalar;
 use crate::error::{EvoError, check_setting};
 use crate::population::Population;
 
-/// The largest size of a gene or a step size of a configuration; genes grow no further than by steps of this.
+/// The largest size of a gene or a step size of a configuration. Genes grow no further than by steps of this size.
 pub(crate) const LARGEST: f64 = 1e100;
 
 /// Which individuals are selected from, \[Beyer2002\].
@@ -16,17 +16,17 @@ pub(crate) const LARGEST: f64 = 1e100;
 pub enum Survival {
     /// (mu, lambda): the offspring alone.
     Comma,
-    /// (mu + lambda): parents and offspring; parents keep the fitness that they had.
+    /// (mu + lambda), parents and offspring. Parents keep their fitness.
     Plus,
     /// (mu + lambda) where the parents are evaluated again in every generation.
     PlusEvaluatedAgain,
 }
 
-/// How the genes, or the step sizes, of rho parents become those of a child, \[Beyer2002\].
+/// The recombination of the genes, or the step sizes, of rho parents, \[Beyer2002\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recombination {
-    /// Those of the first parent that is drawn.
+    /// No recombination. The values are those of the first drawn parent.
     None,
     /// The mean of all rho parents.
     Intermediate,
@@ -34,7 +34,7 @@ pub enum Recombination {
     Discrete,
 }
 
-/// How many step sizes an individual has, and how fast they change, \[Beyer2002\].
+/// The number of step sizes of an individual and their learning rates, \[Beyer2002\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StepSizes {
@@ -64,7 +64,7 @@ impl StepSizes {
         Self::PerGene { tau_0: 1.0 / Scalar::sqrt(2.0 * n), tau: 1.0 / Scalar::sqrt(2.0 * Scalar::sqrt(n)) }
     }
 
-    /// Step sizes of an individual of so many genes.
+    /// Step sizes of an individual with the given number of genes.
     pub(crate) fn count(self, genes: usize) -> usize {
         match self {
             Self::One { .. } => 1,
@@ -73,8 +73,7 @@ impl StepSizes {
     }
 }
 
-/// What an [`EvolutionStrategy`](crate::real::EvolutionStrategy) needs to know; a plain value that is checked where it is
-/// used.
+/// The configuration of [`EvolutionStrategy`](crate::real::EvolutionStrategy).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvolutionStrategyConfig {
@@ -86,25 +85,24 @@ pub struct EvolutionStrategyConfig {
     pub parents: usize,
     /// The number of offspring lambda of a generation.
     pub offspring: usize,
-    /// The mixing number rho: of how many different parents a child is made, 1 to mu; of no effect without
-    /// recombination.
+    /// The mixing number rho, the number of different parents of a child, 1 to mu. No effect without recombination.
     pub mixing: usize,
     /// Which individuals are selected from.
     pub survival: Survival,
-    /// How the genes of the parents are mixed.
+    /// Recombination of genes.
     pub recombination: Recombination,
-    /// How the step sizes of the parents are mixed.
+    /// Recombination of step sizes.
     pub step_recombination: Recombination,
-    /// How many step sizes there are, and how they change.
+    /// Number and learning rates of step sizes.
     pub step_sizes: StepSizes,
     /// The step size that is never undercut, in the unit of the genes, 1e-100 to 1e100.
     pub smallest_step: f64,
 }
 
 impl EvolutionStrategyConfig {
-    /// A (15/15, 100) strategy that begins around `mean` \[genes\] with this step size: intermediate recombination of
-    /// genes and step sizes, one step size for each gene. Its learning rates are those of \[Beyer2002\]; (15, 100) is
-    /// the classical choice of its authors, the smallest step of 1e-12 ours.
+    /// A (15/15, 100) strategy that begins around `mean` \[genes\] with this step size. It has intermediate recombination
+    /// of genes and step sizes, and one step size for each gene. Its learning rates are those of \[Beyer2002\]. (15, 100)
+    /// is the classical choice of its authors, the smallest step of 1e-12 is ours.
     pub fn new(mean: Vec<f64>, initial_step: f64) -> Self {
         let step_sizes = StepSizes::per_gene(mean.len());
         Self {
@@ -158,7 +156,7 @@ impl EvolutionStrategyConfig {
         }
     }
 
-    /// How many of the individuals that are evaluated are parents, from generation 1 on.
+    /// Number of evaluated individuals that are parents, from generation 1 on.
     pub(crate) fn asked_parents(&self) -> usize {
         self.asked() - self.offspring
     }

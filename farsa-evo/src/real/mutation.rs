@@ -1,11 +1,11 @@
-//! How genes change from parent to child.
+//! Mutation of real genes.
 
 use farsa_num::{Stream, exp, ln};
 
 use crate::error::{EvoError, check_rate, check_setting};
 use crate::real::bounds::reflect;
 
-/// How real genes are mutated: normal numbers are added; what is out of bounds is reflected.
+/// The mutation of real genes, which adds normal numbers and reflects genes that leave the bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RealMutation {
@@ -16,15 +16,15 @@ pub enum RealMutation {
         /// The standard deviation, as a share of the gene's range, 0 to 1.
         sigma: f64,
     },
-    /// Each individual has a step size of its own, which it inherits from its first parent times e^(tau N), N standard
-    /// normal, before its genes are mutated with it \[Beyer2002\]. Deviations: one step size, not one for each gene; it
-    /// is a share of the range, and at most 1.
+    /// Each individual has a step size. It inherits that of its first parent times e^(tau N), N standard normal, and its
+    /// genes are then mutated with it \[Beyer2002\]. Deviations: there is one step size, not one for each gene. It is a
+    /// share of the range, and at most 1.
     SelfAdaptive {
-        /// The probability, 0 to 1, that a gene is mutated; 1 in the source.
+        /// The probability, 0 to 1, that a gene is mutated. 1 in the source.
         rate: f64,
         /// The first step size, as a share of the gene's range, from `smallest` to 1.
         initial: f64,
-        /// The learning rate tau, 0 to 10; 1 / sqrt(genes) in the source.
+        /// The learning rate tau, 0 to 10. 1 / sqrt(genes) in the source.
         tau: f64,
         /// The step size that is never undercut, above 0 to 1.
         smallest: f64,
@@ -48,7 +48,7 @@ impl RealMutation {
         }
     }
 
-    /// Whether step sizes are part of the state, and the least they may be.
+    /// The smallest step size, if step sizes are part of the state.
     pub(crate) fn smallest(self) -> Option<f64> {
         match self {
             Self::Gaussian { .. } => None,
@@ -64,7 +64,7 @@ impl RealMutation {
         }
     }
 
-    /// The step size of a child; a constant one draws nothing.
+    /// The step size of a child. A constant one draws nothing.
     pub(crate) fn next_step(self, step: f64, stream: &mut Stream) -> f64 {
         match self {
             Self::Gaussian { sigma, .. } => sigma,
@@ -75,7 +75,7 @@ impl RealMutation {
         }
     }
 
-    /// Mutates genes \[genes\] with a step size; `factors` \[genes, or none\] multiply the rate.
+    /// Mutates genes \[genes\] with a step size. `factors` \[genes, or empty\] multiply the rate.
     pub(crate) fn apply(self, genes: &mut [f64], step: f64, bounds: &[[f64; 2]], factors: &[f64], stream: &mut Stream) {
         let (Self::Gaussian { rate, .. } | Self::SelfAdaptive { rate, .. }) = self;
         let factors = factors.iter().copied().chain(core::iter::repeat(1.0));
@@ -90,7 +90,7 @@ impl RealMutation {
 
 /// A step towards one end of a gene's range or the other, more often small than large, that never leaves the range.
 ///
-/// Source: K. Deb's program NSGA-II, `mutation.c`, as \[Deb2002\] uses it; no deviation.
+/// Source: K. Deb's program NSGA-II, `mutation.c`, as \[Deb2002\] uses it. No deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PolynomialMutation {
     /// The probability that a gene is mutated.
@@ -125,7 +125,7 @@ impl PolynomialMutation {
     }
 }
 
-/// A number of 0 to 1, but for rounding, raised to a power above 0.
+/// Raises a number of 0 to 1, up to rounding, to a power above 0.
 fn raised(x: f64, power: f64) -> f64 {
     if x > 0.0 { exp(power * ln(x)) } else { 0.0 }
 }
@@ -134,8 +134,8 @@ fn raised(x: f64, power: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The density of steps from the middle of a range is (eta + 1) (1 - |step|)^eta / 2 before the range cuts it, so a step is
-    /// farther than s with probability (1 - s)^(eta + 1), here less what lies beyond the half.
+    /// The density of steps from the middle of a range is (eta + 1) (1 - |step|)^eta / 2 before the range cuts it. A step
+    /// is therefore farther than s with probability (1 - s)^(eta + 1), here without the part beyond the half.
     #[test]
     fn steps_are_as_long_as_the_source_says() {
         let mutation = PolynomialMutation { rate: 0.5, eta: 4.0 };

@@ -15,31 +15,31 @@ use crate::real::selection::{Selection, Selector};
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
-/// What a [`RealGa`](crate::real::RealGa) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`RealGa`](crate::real::RealGa).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RealGaConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100; equal ends freeze a gene.
+    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
     pub bounds: Vec<[f64; 2]>,
     /// Number of individuals of a generation.
     pub population: usize,
-    /// Number of the best that go on unchanged, as individuals 0 and on; 0 to population - 1.
+    /// Number of the best that stay unchanged, as the first individuals, 0 to population - 1.
     pub elites: usize,
-    /// How parents are chosen.
+    /// The selection of parents.
     pub selection: Selection,
-    /// How the genes of two parents are mixed.
+    /// The crossover of two parents.
     pub crossover: Crossover,
-    /// The probability, 0 to 1, that a child has two parents; of no effect for [`Crossover::None`].
+    /// The probability, 0 to 1, that a child has two parents. No effect for [`Crossover::None`].
     pub crossover_rate: f64,
-    /// How genes change from parent to child.
+    /// The mutation of genes.
     pub mutation: RealMutation,
-    /// What the mutation rate of each gene is multiplied by \[genes\], 0 to 1e6; empty for 1 everywhere.
+    /// The factor of the mutation rate of each gene \[genes\], 0 to 1e6. Empty for 1 everywhere.
     pub rate_factors: Vec<f64>,
 }
 
 impl RealGaConfig {
-    /// 100 individuals with one elite, tournaments of two, simulated binary crossover of index 2 with probability 0.9,
-    /// and Gaussian mutation of one gene in a genome by a tenth of its range. The choice is ours.
+    /// 100 individuals with one elite and tournaments of two. Simulated binary crossover of index 2 has probability 0.9.
+    /// Gaussian mutation changes one gene in a genome by a tenth of its range. The choice is ours.
     pub fn new(bounds: Vec<[f64; 2]>) -> Self {
         let mutation = RealMutation::Gaussian { rate: 1.0 / bounds.len().max(1) as f64, sigma: 0.1 };
         Self {
@@ -82,16 +82,16 @@ impl RealGaConfig {
 
 /// A generational genetic algorithm over real genes within bounds: selection, crossover, mutation, elites.
 ///
-/// Individuals are ranked by fitness, equals by index, the lower first, failed ones last. The `elites` best go on
-/// unchanged, best first; every other individual is a child, made of one parent or two. All are evaluated again in
-/// every generation. What crossover or mutation puts out of bounds is reflected back at them.
+/// Individuals are ranked by fitness, equals by index, the lower first, failed ones last. The `elites` best stay unchanged,
+/// best first. Every other individual is a child of one parent or two. All are evaluated again in every generation. Genes
+/// out of bounds are reflected at them.
 ///
-/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`): its first
-/// parent, whether there is a second, the second, the crossover, its step size, its mutation, gene after gene.
+/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The draws are
+/// its first parent, the decision for a second, the second, the crossover, its step size and its mutation, gene after gene.
 /// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Sources: those of [`Selection`](crate::real::Selection), [`Crossover`] and [`RealMutation`](crate::real::RealMutation). How they
-/// are put together is ours.
+/// Sources: see [`Selection`](crate::real::Selection), [`Crossover`] and [`RealMutation`](crate::real::RealMutation). Their
+/// combination is ours.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -108,7 +108,7 @@ pub struct RealGa {
     selector: Selector,
     seed: u64,
     generation: u32,
-    /// The first and the second parent of each individual, the same where there is one; empty in generation 0.
+    /// The first and the second parent of each individual, equal where there is one. Empty in generation 0.
     parents: Vec<[u32; 2]>,
     /// The step size of each individual, as a share of the range.
     steps: Vec<f64>,
@@ -119,7 +119,7 @@ impl RealGa {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`RealGaConfig::validate`].
+    /// The errors of [`RealGaConfig::validate`].
     pub fn new(config: RealGaConfig, seed: u64) -> Result<Self, EvoError> {
         let selector = config.selector()?;
         let mut population = Population::new(config.population, config.bounds.len())?;
@@ -146,7 +146,7 @@ impl RealGa {
         &self.steps
     }
 
-    /// Makes a child of individuals in this order, best first; answers with its parents and its step size.
+    /// Makes a child of individuals in this order, best first, and returns its parents and its step size.
     fn make(&self, genes: &mut [f64], order: &[usize], stream: &mut Stream) -> ([u32; 2], f64) {
         let RealGaConfig { crossover, mutation, bounds, rate_factors, .. } = &self.config;
         let select = |stream: &mut Stream| order.get(self.selector.draw(stream)).copied().unwrap_or_default();

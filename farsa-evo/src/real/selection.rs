@@ -1,4 +1,4 @@
-//! How parents are chosen.
+//! Selection of parents.
 
 use alloc::vec::Vec;
 
@@ -6,7 +6,7 @@ use farsa_num::Stream;
 
 use crate::error::{EvoError, check_setting};
 
-/// How the parents of a child are chosen; each is chosen anew, so that an individual may be chosen again.
+/// The selection of parents. Each is drawn independently, so an individual may be selected twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Selection {
@@ -33,7 +33,7 @@ pub enum Selection {
 pub(crate) struct Selector {
     selection: Selection,
     population: usize,
-    /// For [`Selection::Rank`]: the probability of each rank and all before it; else empty.
+    /// For [`Selection::Rank`] the cumulative probability of each rank, else empty.
     summed: Vec<f64>,
 }
 
@@ -81,7 +81,7 @@ impl Selector {
 mod tests {
     use super::*;
 
-    /// How often each of five ranks is drawn in a hundred thousand, as a share.
+    /// The share of each of five ranks in a hundred thousand draws.
     fn shares(selection: Selection) -> [f64; 5] {
         let selector = Selector::new(selection, 5).unwrap();
         let mut stream = Stream::from_seed(3);

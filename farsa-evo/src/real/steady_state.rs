@@ -12,27 +12,27 @@ use crate::real::mutation::RealMutation;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
-/// What a [`SteadyState`] needs to know; a plain value that is checked where it is used.
+/// The configuration of [`SteadyState`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyStateConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100; equal ends freeze a gene.
+    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
     pub bounds: Vec<[f64; 2]>,
     /// Number of individuals, parents and offspring together: even. In the source `popsize`.
     pub population: usize,
-    /// The probability, 0 to 1, that a gene is mutated; 1 in the source.
+    /// The probability, 0 to 1, that a gene is mutated. 1 in the source.
     pub rate: f64,
     /// The standard deviation of mutation, as a share of the gene's range, 0 to 1. In the source `mutation`, in the
     /// gene's unit.
     pub sigma: f64,
-    /// Stochasticity: the largest amount, in the unit of fitness, that is added to or taken from the fitness of an
-    /// individual before it is ranked; 0 to 1e100, 0 for none.
+    /// Stochasticity, the largest amount that is added to or subtracted from the fitness of an individual before it is
+    /// ranked. In the unit of fitness, 0 to 1e100, 0 for none.
     pub noise: f64,
 }
 
 impl SteadyStateConfig {
-    /// The 20 individuals of \[Nolfi2021\], of which every gene is mutated, without noise. Its standard deviation is
-    /// 0.02, in the unit of the genes; here it is 0.02 of the range.
+    /// The 20 individuals of \[Nolfi2021\], of which every gene is mutated, without noise. Its standard deviation is 0.02
+    /// in the unit of the genes, and 0.02 of the range here.
     pub const fn new(bounds: Vec<[f64; 2]>) -> Self {
         Self { bounds, population: 20, rate: 1.0, sigma: 0.02, noise: 0.0 }
     }
@@ -51,21 +51,21 @@ impl SteadyStateConfig {
     }
 }
 
-/// A (mu + mu) strategy over real genes within bounds: every generation the better half of all stays where it is, and
-/// each of them makes one mutated child, the best in the place of the best of the worse half, and so on.
+/// A (mu + mu) strategy over real genes within bounds. In every generation the better half stays where it is, and each of
+/// them makes one mutated child. The child of the best replaces the best of the worse half, and so on.
 ///
-/// All are evaluated again in every generation, as trials vary. With noise, individuals are ranked by their fitness
-/// plus a number that is uniform between -noise and noise, which lowers the pressure of selection; champions are those
-/// of the fitness itself. Equals are ranked by index, the lower first, failed ones last, with noise too.
+/// All are evaluated again in every generation, because trials vary. With noise, individuals are ranked by their fitness
+/// plus a number that is uniform between -noise and noise, which lowers the selection pressure. Champions are those of the
+/// fitness itself. Equals are ranked by index, the lower first, failed ones last.
 ///
-/// The child in the place of individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial
-/// 0, `i`, `g`), the noise of individual `i` of generation `g` from (seed, [`Domain::Mutation`], trial 1, `i`, `g`).
-/// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// The child at the index `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The
+/// noise of individual `i` of generation `g` draws from (seed, [`Domain::Mutation`], trial 1, `i`, `g`). Individuals of
+/// generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Source: the program `sss.py` of evorobotpy2 \[Nolfi2021\]; the noise is after the Stochastic Steady State of
-/// \[Pagliuca2018\], of which we did not have the details: there it is a share of the largest fitness that is possible.
-/// Deviations: genes begin uniform within bounds and are reflected at them (the source has no bounds, and begins with
-/// what its network proposes); sigma is a share of the range; mutation may leave out genes.
+/// Source: the program `sss.py` of evorobotpy2 \[Nolfi2021\]. The noise follows the Stochastic Steady State of
+/// \[Pagliuca2018\], where it is a share of the largest possible fitness. Its details were not available. Deviations: genes
+/// begin uniform within bounds and are reflected at them, where the source has no bounds and begins with the proposal of
+/// its network. Sigma is a share of the range, and mutation may leave out genes.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -81,7 +81,7 @@ pub struct SteadyState {
     config: SteadyStateConfig,
     seed: u64,
     generation: u32,
-    /// The parent of each individual, itself for one that stayed; empty in generation 0.
+    /// The parent of each individual, itself for one that stayed. Empty in generation 0.
     parents: Vec<u32>,
     population: Population<f64>,
 }
@@ -90,7 +90,7 @@ impl SteadyState {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`SteadyStateConfig::validate`].
+    /// The errors of [`SteadyStateConfig::validate`].
     pub fn new(config: SteadyStateConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let mut population = Population::new(config.population, config.bounds.len())?;

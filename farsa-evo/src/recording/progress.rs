@@ -1,4 +1,4 @@
-//! How far a record has come, and what it takes of the next generation.
+//! The state of a record, and the encoding of the next generation.
 
 use alloc::vec::Vec;
 
@@ -14,11 +14,11 @@ use crate::strategy::Strategy;
 /// The bytes of a generation, and the state to be saved after it, if one is due.
 pub(crate) type Taken = (Vec<u8>, Option<Vec<u8>>);
 
-/// Bytes of saved states after which they are saved half as often, and again after as many more: so a record of many generations of
-/// many genes stays a few times this.
+/// Bytes of saved states after which the interval doubles, and again for every such amount. The record of a long search of
+/// many genes is therefore limited to a few times this size.
 const ROOM: u64 = 1 << 28;
 
-/// How far a record has come.
+/// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Progress {
     pub(crate) shape: Shape,
@@ -32,10 +32,10 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of a strategy that has not been told anything.
+    /// Starts with a strategy at generation 0.
     ///
     /// # Errors
-    /// Those of [`Record::new`](crate::Record::new).
+    /// The errors of [`Record::new`](crate::Record::new).
     pub(crate) fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         if strategy.generation() != 0 {
             return Err(EvoError::AlreadyTold { generation: strategy.generation() });
@@ -57,10 +57,10 @@ impl Progress {
         }
     }
 
-    /// Tells a strategy the fitness of its generation, and takes it down.
+    /// Reports fitness to a strategy and encodes it.
     ///
     /// # Errors
-    /// Those of [`Record::tell`](crate::Record::tell).
+    /// The errors of [`Record::tell`](crate::Record::tell).
     pub(crate) fn fitness<G: Gene>(
         self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -70,10 +70,10 @@ impl Progress {
         self.take(strategy, fitness, fitness.iter().map(|fitness| fitness.get()), |strategy| strategy.tell(fitness))
     }
 
-    /// Tells a strategy the scores of its generation, and takes them down.
+    /// Reports scores to a strategy and encodes them.
     ///
     /// # Errors
-    /// Those of [`Record::tell_scores`](crate::Record::tell_scores).
+    /// The errors of [`Record::tell_scores`](crate::Record::tell_scores).
     pub(crate) fn scores<G: Gene>(
         self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -125,12 +125,12 @@ impl Progress {
         Ok((frame, strategy.snapshot().filter(|strategy| kept && due(strategy)).map(|strategy| strategy.save())))
     }
 
-    /// After how many generations a state is kept where a strategy asks for one after so many.
+    /// The interval of states for a strategy with a [`Snapshot::snapshot_interval`](crate::Snapshot::snapshot_interval).
     fn spacing(self, asked: u32) -> u64 {
         u64::from(asked.max(1)) << (self.states / ROOM).min(31)
     }
 
-    /// Whether as many bytes of frames have been added since the last state, with the next, as a state is likely to take.
+    /// Returns true if the frames since the last state, with the next, are as long as a state is likely to be.
     fn due(self) -> bool {
         let Self { shape, generations, saved, state, .. } = self;
         let since = (generations - saved) as usize + 1;
@@ -138,7 +138,7 @@ impl Progress {
     }
 }
 
-/// Tells a strategy, which must then be at the next generation: else it could be told for ever.
+/// Checks that a strategy is at the next generation, so that replaying terminates.
 pub(crate) fn next<G: Gene, S: Strategy<G> + ?Sized>(
     strategy: &mut S,
     told: impl FnOnce(&mut S) -> Result<(), EvoError>,

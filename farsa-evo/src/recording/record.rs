@@ -1,4 +1,4 @@
-//! What a strategy was told: enough to rebuild every genome of a search.
+//! Records, which rebuild every genome of a search.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,15 +14,15 @@ use crate::score_shape::ScoreShape;
 use crate::scores::Scores;
 use crate::strategy::Strategy;
 
-/// What a strategy was told in every generation, in the form that it depends on.
+/// The reported fitness of every generation, in the form that the strategy depends on.
 ///
-/// A strategy is a pure function of its configuration, its seed and what it was told. Telling a fresh one the same again
-/// therefore makes the same genomes, bit for bit, without evaluating anything. Of a hundred individuals a generation takes
-/// some hundred bytes where only their order counts, and eight hundred where values do.
+/// A strategy is a pure function of its configuration, its seed and the reported fitness. Replaying the recorded fitness
+/// into a new instance therefore reconstructs the same genomes, bit for bit, without evaluations. A generation of a hundred
+/// individuals takes about a hundred bytes where only their order counts, and eight hundred where values do.
 ///
-/// So that a long search is rebuilt quickly, the record also keeps the state of a strategy that can save it
-/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record, or as the strategy asks for because
-/// it takes long to be told again: half as often once such states take 256 MiB, and again for each 256 MiB more.
+/// For a fast reconstruction, the record also stores states of a strategy with a [`Snapshot`](crate::Snapshot). It stores
+/// them as often as they at most double its size, or as often as the strategy requires because it is slow to replay. The
+/// required interval doubles for every 256 MiB of states.
 ///
 /// ```
 /// use farsa_evo::{Fitness, Record, Strategy};
@@ -52,8 +52,7 @@ pub struct Record {
     frames: Vec<u8>,
     /// Saved states, the earliest first.
     keyframes: Vec<Keyframe>,
-    /// Their bytes, one after the other's: an allocation for each of them, small and kept for ever, would lie between those of a
-    /// generation and leave more memory unused than it takes.
+    /// Their bytes, one after the other. Separate allocations would fragment the memory of the generations.
     states: Vec<u8>,
 }
 
@@ -66,11 +65,11 @@ struct Keyframe {
 }
 
 impl Record {
-    /// The record of a strategy that has not been told anything.
+    /// Starts the record of a strategy at generation 0.
     ///
     /// # Errors
-    /// [`EvoError::AlreadyTold`]; [`EvoError::UnevenPopulations`]; [`EvoError::NoSnapshot`] for a strategy of which genomes
-    /// are recorded and that cannot save its state: nothing could make it go on.
+    /// [`EvoError::AlreadyTold`] or [`EvoError::UnevenPopulations`]. [`EvoError::NoSnapshot`] for a strategy that requires
+    /// recorded genomes and cannot save its state, because it could not be resumed.
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         Progress::new(strategy).map(|progress| Self::empty(progress.shape))
     }
@@ -79,7 +78,7 @@ impl Record {
         Self { shape, frames: Vec::new(), keyframes: Vec::new(), states: Vec::new() }
     }
 
-    /// How far it has come.
+    /// The state of the record.
     pub(super) fn progress(&self) -> Progress {
         let state = self.keyframes.len().checked_sub(1).and_then(|last| self.state(last)).map_or(0, <[u8]>::len);
         let saved = self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
@@ -87,7 +86,7 @@ impl Record {
         Progress { shape: self.shape, generations: self.generations(), saved, state, states }
     }
 
-    /// Records the same search from here on, for a record that goes on elsewhere.
+    /// Returns a writer that continues this record.
     pub fn writer(&self) -> RecordWriter {
         RecordWriter::going_on(self.progress())
     }
@@ -104,12 +103,12 @@ impl Record {
         self.keyframes.push(Keyframe { generation: self.generations(), end: self.states.len() });
     }
 
-    /// Tells a strategy the fitness \[individuals\] of its generation, and records it.
+    /// Reports the fitness \[individuals\] of a generation to a strategy and records it.
     ///
     /// # Errors
-    /// [`EvoError::OtherRecord`] for a strategy that is not at the end of this record, or that names another number of
-    /// champions than it has populations; [`EvoError::NoSuchIndividual`] for a champion that is not of its population;
-    /// [`EvoError::Stuck`]; and those of [`Strategy::tell`]. Nothing is recorded then.
+    /// [`EvoError::OtherRecord`] for a strategy that is not at the end of this record, or with another number of champions
+    /// than populations. [`EvoError::NoSuchIndividual`] for a champion outside its population. [`EvoError::Stuck`] and the
+    /// errors of [`Strategy::tell`]. Nothing is recorded then.
     pub fn tell<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -120,10 +119,10 @@ impl Record {
         Ok(())
     }
 
-    /// Tells a strategy the scores of its generation, and records them.
+    /// Reports the scores of a generation to a strategy and records them.
     ///
     /// # Errors
-    /// Those of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
+    /// The errors of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
     pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -142,7 +141,7 @@ impl Record {
         }
     }
 
-    /// Whether this is a record for a strategy like this one.
+    /// Checks that the record fits a strategy.
     ///
     /// # Errors
     /// [`EvoError::OtherRecord`].
@@ -150,7 +149,7 @@ impl Record {
         self.shape.check_strategy(strategy)
     }
 
-    /// Number of generations that were told, which is that of the generation that waits for its fitness.
+    /// Number of recorded generations, which is also the number of the current generation.
     pub fn generations(&self) -> u32 {
         (self.frames.len() / self.shape.frame().max(1)) as u32
     }
@@ -176,12 +175,12 @@ impl Record {
         frame.split_at_checked(self.shape.populations * self.shape.width())
     }
 
-    /// The best individual of a population in a generation that was told, counted through all populations.
+    /// The best individual of a population in a recorded generation, counted through all populations.
     pub fn champion(&self, population: usize, generation: u32) -> Option<usize> {
         self.shape.indices(self.frame(generation)?.0).nth(population)
     }
 
-    /// The individuals of a generation that was told, best first, equals by index; none where genomes are recorded.
+    /// The individuals of a recorded generation, best first, equals by index. `None` where genomes are recorded.
     pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
         match self.shape.recorded {
             Kept::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
@@ -190,7 +189,7 @@ impl Record {
         }
     }
 
-    /// What makes a strategy of this kind do what it did: the scores, or a fitness of the same order.
+    /// The scores of a generation, or a fitness of the same order.
     fn told(&self, generation: u32) -> Option<Scores> {
         let (_, bytes) = self.frame(generation)?;
         match self.shape.recorded {
@@ -207,14 +206,14 @@ impl Record {
         }
     }
 
-    /// Brings a strategy, fresh or at an earlier generation of this record, to the generation with this number, as it was
-    /// before it was told its fitness.
+    /// Advances a strategy, new or at an earlier generation of this record, to the given generation before its fitness is
+    /// reported.
     ///
     /// # Errors
-    /// [`EvoError::NoSuchGeneration`] for one that lies ahead of the record or behind the strategy, [`EvoError::OtherRecord`]
-    /// for a strategy of another kind or size, [`EvoError::GenomesOnly`] where genomes are recorded,
-    /// [`EvoError::StateContent`] for a saved state of another generation, [`EvoError::Stuck`], and whatever the strategy
-    /// refuses.
+    /// [`EvoError::NoSuchGeneration`] for a generation beyond the record or before that of the strategy,
+    /// [`EvoError::OtherRecord`] for a strategy of another kind or size. [`EvoError::GenomesOnly`] where genomes are
+    /// recorded, [`EvoError::StateContent`] for a saved state of another generation, [`EvoError::Stuck`], and the errors of
+    /// the strategy.
     pub fn rebuild<G: Gene>(
         &self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -246,11 +245,11 @@ impl Record {
         Ok(())
     }
 
-    /// The genomes of a generation that was told [individuals x genes], with the help of a strategy as
-    /// [`rebuild`](Self::rebuild) wants it.
+    /// Returns the genomes of a recorded generation [individuals x genes], with a strategy as for
+    /// [`rebuild`](Self::rebuild).
     ///
     /// # Errors
-    /// Those of [`rebuild`](Self::rebuild).
+    /// The errors of [`rebuild`](Self::rebuild).
     pub fn genomes<G: Gene>(
         &self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -270,18 +269,19 @@ impl Record {
         Ok(population)
     }
 
-    /// What stands for a generation that was told, for a file that grows by it; [`push`](Self::push) takes it back.
+    /// The entry of a recorded generation, for a file that grows by it. [`push`](Self::push) reads it.
     pub fn entry(&self, generation: u32) -> Option<RecordEntry<'_>> {
         let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
         let place = self.keyframes.binary_search_by_key(&(generation + 1), |keyframe| keyframe.generation);
         Some(RecordEntry { frame, state: place.ok().and_then(|place| self.state(place)) })
     }
 
-    /// Adds a generation as [`entry`](Self::entry) gave it, after those that there are; a strategy is told nothing.
+    /// Appends a generation from its [`entry`](Self::entry), without a strategy.
     ///
     /// # Errors
-    /// [`EvoError::StateLength`] for an entry of another size, [`EvoError::LastGeneration`], and those of a generation that no
-    /// strategy was told: [`EvoError::NoSuchIndividual`], [`EvoError::SelectedTwice`], [`EvoError::NanFitness`]. Nothing is added then.
+    /// [`EvoError::StateLength`] for an entry of another size and [`EvoError::LastGeneration`].
+    /// [`EvoError::NoSuchIndividual`], [`EvoError::SelectedTwice`] and [`EvoError::NanFitness`] for impossible generations.
+    /// Nothing is added then.
     pub fn push(&mut self, entry: RecordEntry<'_>) -> Result<(), EvoError> {
         let (expected, found) = (self.shape.frame(), entry.frame.len());
         if found != expected {
@@ -296,7 +296,7 @@ impl Record {
         Ok(())
     }
 
-    /// Refuses a generation that no strategy was told.
+    /// Checks that a frame is a possible generation.
     fn believe(&self, frame: &[u8]) -> Result<(), EvoError> {
         let Shape { recorded, populations, individuals, .. } = self.shape;
         let (champions, bytes) = frame.split_at_checked(populations * self.shape.width()).unwrap_or_default();
@@ -326,7 +326,7 @@ impl Record {
         Ok(())
     }
 
-    /// Forgets all generations from this one on.
+    /// Discards all generations from this one on.
     pub fn truncate(&mut self, generations: u32) {
         self.frames.truncate((generations as usize).saturating_mul(self.shape.frame()));
         self.keyframes.retain(|keyframe| keyframe.generation <= generations);

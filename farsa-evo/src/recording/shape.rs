@@ -1,4 +1,4 @@
-//! What a record was made for, and how much it keeps of a generation.
+//! The sizes and content of a record.
 
 use alloc::vec::Vec;
 
@@ -15,14 +15,14 @@ use crate::strategy::{RecordKind, Strategy};
 pub(crate) struct Shape {
     pub(crate) recorded: Kept,
     pub(crate) populations: usize,
-    /// Of all populations.
+    /// Individuals of all populations.
     pub(crate) individuals: usize,
     pub(crate) genes: usize,
-    /// Of a gene.
+    /// Bytes of a gene.
     pub(crate) gene_bytes: usize,
 }
 
-/// What is kept of a generation: [`RecordKind`], and for scores of more than one number how many.
+/// The content of a record, [`RecordKind`], with the shape of scores of more than one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Recorded"))]
@@ -51,14 +51,14 @@ impl Shape {
         Self { recorded, populations, individuals: genomes.len(), genes: genomes.genome_len(), gene_bytes: G::BYTES }
     }
 
-    /// Whether every population has as many individuals, at least one.
+    /// Checks that all populations have the same number of individuals, at least one.
     pub(crate) fn check(self) -> Result<(), EvoError> {
         let Self { populations, individuals, .. } = self;
         let even = populations > 0 && individuals.is_multiple_of(populations);
         if even { Ok(()) } else { Err(EvoError::UnevenPopulations { populations, individuals }) }
     }
 
-    /// Whether this can be the shape of a record that is read.
+    /// Checks the shape of a record that is read.
     #[cfg(feature = "serde")]
     pub(crate) fn check_read(self) -> Result<(), EvoError> {
         Population::check(self.individuals, self.genes)?;
@@ -75,7 +75,7 @@ impl Shape {
         self.check()
     }
 
-    /// Whether a record of this shape is one for a strategy like this one.
+    /// Checks that a record of this shape fits a strategy.
     ///
     /// # Errors
     /// [`EvoError::OtherRecord`].
@@ -97,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// Whether this is the number of an individual of a population.
+    /// Checks that this is the number of an individual of a population.
     pub(crate) fn has(self, population: usize, individual: usize) -> bool {
         individual < self.individuals && individual / (self.individuals / self.populations) == population
     }

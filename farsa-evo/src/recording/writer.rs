@@ -1,4 +1,4 @@
-//! Records of searches that are written elsewhere.
+//! Records that are written generation by generation.
 
 use alloc::vec::Vec;
 
@@ -9,7 +9,7 @@ use crate::recording::progress::{Progress, Taken};
 use crate::scores::Scores;
 use crate::strategy::Strategy;
 
-/// What stands in a [`Record`](crate::Record) for one generation.
+/// The entry of a [`Record`](crate::Record) for one generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordEntry<'r> {
     /// The champion of each population, then what was recorded.
@@ -18,11 +18,11 @@ pub struct RecordEntry<'r> {
     pub state: Option<&'r [u8]>,
 }
 
-/// Records a search of which each generation is written elsewhere, such as to a file that grows: it takes the same memory
-/// however many generations there are.
+/// Records a search whose generations are written one by one, such as to a file. Its memory does not depend on the number
+/// of generations.
 ///
-/// Its entries are those that a [`Record`](crate::Record) of the same search would keep; [`Record::push`](crate::Record::push)
-/// puts them together again, and [`Record::writer`](crate::Record::writer) goes on from there.
+/// Its entries are those of a [`Record`](crate::Record) of the same search. [`Record::push`](crate::Record::push) reads
+/// them, and [`Record::writer`](crate::Record::writer) continues a record.
 ///
 /// ```
 /// use farsa_evo::{Fitness, Record, RecordWriter, Strategy};
@@ -44,10 +44,10 @@ pub struct RecordWriter {
 }
 
 impl RecordWriter {
-    /// For a strategy that has not been told anything.
+    /// Starts with a strategy at generation 0.
     ///
     /// # Errors
-    /// Those of [`Record::new`](crate::Record::new).
+    /// The errors of [`Record::new`](crate::Record::new).
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         Progress::new(strategy).map(Self::going_on)
     }
@@ -57,10 +57,10 @@ impl RecordWriter {
         Self { progress, last: None }
     }
 
-    /// Tells a strategy the fitness \[individuals\] of its generation, and records it.
+    /// Reports the fitness \[individuals\] of a generation to a strategy and records it.
     ///
     /// # Errors
-    /// Those of [`Record::tell`](crate::Record::tell). Nothing is recorded then.
+    /// The errors of [`Record::tell`](crate::Record::tell). Nothing is recorded then.
     pub fn tell<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -71,10 +71,10 @@ impl RecordWriter {
         Ok(())
     }
 
-    /// Tells a strategy the scores of its generation, and records them.
+    /// Reports the scores of a generation to a strategy and records them.
     ///
     /// # Errors
-    /// Those of [`Record::tell_scores`](crate::Record::tell_scores). Nothing is recorded then.
+    /// The errors of [`Record::tell_scores`](crate::Record::tell_scores). Nothing is recorded then.
     pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -90,13 +90,13 @@ impl RecordWriter {
         self.last = Some(taken);
     }
 
-    /// The generation that was told last; none before the first.
+    /// The latest recorded generation, `None` before the first.
     pub fn entry(&self) -> Option<RecordEntry<'_>> {
         let (frame, state) = self.last.as_ref()?;
         Some(RecordEntry { frame, state: state.as_deref() })
     }
 
-    /// Number of generations that were told, those before this writer included.
+    /// Number of recorded generations, including those before this writer.
     pub fn generations(&self) -> u32 {
         self.progress.generations
     }

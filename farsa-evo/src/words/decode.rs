@@ -1,9 +1,9 @@
-//! From genes to the numbers they stand for.
+//! Linear decoding of genes to parameters.
 
 use crate::error::EvoError;
 use crate::words::mutation::check_gene_bits;
 
-/// What a run of neighbouring genes stands for: gene 0 is the low end, the largest gene the high end, linear between.
+/// The range of consecutive genes. Gene 0 is the low end, the largest gene the high end, linear between.
 ///
 /// The largest gene is 65535, of genes of fewer bits 2^bits - 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl GeneRange {
         }
     }
 
-    /// The same range of genes that have only so many bits, 1 to 16.
+    /// Returns the range for genes of the given number of bits, 1 to 16.
     ///
     /// ```
     /// use farsa_evo::words::GeneRange;
@@ -56,7 +56,8 @@ impl GeneRange {
 
     /// The value of one gene, `low + (high - low) * gene / largest`, computed in f64 and rounded to f32 at the end.
     ///
-    /// Never outside the range, exact at both ends, and never falling with the gene; the high end for genes of more bits.
+    /// It is never outside the range, exact at both ends, and never falls with the gene. A gene beyond the largest decodes
+    /// to the high end.
     pub fn decode(self, gene: u16) -> f32 {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
         let value = (low + (high - low) * f64::from(gene) / f64::from(self.largest)) as f32;
@@ -101,8 +102,8 @@ impl TryFrom<SavedRange> for GeneRange {
 
 /// Decodes `genes` \[parameters\] into `out` \[parameters\], range after range, without allocating.
 ///
-/// 16 bits a parameter unless a range says otherwise, linear as in \[Ferrauto2010\]. Deviation: the source does not say whether the high end is
-/// reached; here it is (65535 steps, not 65536).
+/// Parameters have 16 bits unless a range has fewer, linear as in \[Ferrauto2010\]. Deviation: the source does not define
+/// the value of the largest gene. It is the high end here, so a range has 65535 steps, not 65536.
 ///
 /// ```
 /// use farsa_evo::words::{GeneRange, decode};
@@ -116,7 +117,7 @@ impl TryFrom<SavedRange> for GeneRange {
 /// ```
 ///
 /// # Errors
-/// [`EvoError::Lengths`] when the ranges do not describe exactly the genes or `out` has another length; `out` is then
+/// [`EvoError::Lengths`] when the ranges do not describe exactly the genes or `out` has another length. `out` is then
 /// unchanged.
 pub fn decode(genes: &[u16], ranges: &[GeneRange], out: &mut [f32]) -> Result<(), EvoError> {
     let described = ranges.iter().fold(0_usize, |sum, range| sum.saturating_add(range.count));

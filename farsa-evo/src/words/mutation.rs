@@ -4,7 +4,7 @@ use farsa_num::{Stream, ln};
 
 use crate::error::EvoError;
 
-/// Whether genes can have so many bits.
+/// Checks the number of bits of a gene.
 ///
 /// # Errors
 /// [`EvoError::GeneBits`] outside 1 to 16.
@@ -12,7 +12,7 @@ pub(crate) const fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
     if 1 <= bits && bits <= u16::BITS { Ok(()) } else { Err(EvoError::GeneBits { bits }) }
 }
 
-/// What happens to a bit that mutation hits.
+/// The change of a bit that mutation hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mutation {
@@ -25,9 +25,9 @@ pub enum Mutation {
 
 /// Mutation of every bit of a genome, independently and with the same probability.
 ///
-/// Each bit is hit as in \[Ferrauto2010\], but the draws are spent on the bits that flip, not on every bit: the gap to
-/// the next one is geometrically distributed (skip sampling). Deviation: [`Mutation::Resample`] at rate p is drawn as
-/// flips at rate p / 2, the same distribution.
+/// Each bit is hit as in \[Ferrauto2010\], but only the bits that flip draw random numbers. The gap to the next flip is
+/// geometrically distributed (skip sampling). Deviation: [`Mutation::Resample`] at rate p is drawn as flips at rate p / 2,
+/// which has the same distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BitMutation {
     /// ln(1 - p) of the probability p that a bit flips.
@@ -49,12 +49,12 @@ impl BitMutation {
             Mutation::Resample => 0.5 * rate,
             Mutation::Flip => rate,
         };
-        // 1 - p loses the digits of a small p; the series does not.
+        // 1 - p loses the digits of a small p, the series does not.
         let log_keep = if p < 1e-8 { -p - 0.5 * p * p } else { ln(1.0 - p) };
         Ok(Self { log_keep, gene_bits: u64::from(u16::BITS) })
     }
 
-    /// The same mutation of genes that have only so many bits, 1 to 16; the others stay as they are.
+    /// Returns the mutation for genes of the given number of bits, 1 to 16. The other bits stay.
     ///
     /// # Errors
     /// [`EvoError::GeneBits`].
@@ -78,7 +78,7 @@ impl BitMutation {
     }
 }
 
-/// Draws every bit of `genes` \[genes\] anew, two genes from each number, the lower half first.
+/// Draws every bit of `genes` \[genes\], two genes from each number, the lower half first.
 pub fn randomize(genes: &mut [u16], stream: &mut Stream) {
     for pair in genes.chunks_mut(2) {
         let word = stream.next_u32();
@@ -121,7 +121,7 @@ mod tests {
         Stream::new(11, Domain::Mutation, 0, individual, 1)
     }
 
-    /// Flips of each bit position, and of neighbouring pairs together, over `runs` genomes of three genes.
+    /// Flips of each bit position, and of neighboring pairs together, over `runs` genomes of three genes.
     fn flips(runs: u32, mut mutate: impl FnMut(&mut [u16], &mut Stream)) -> (Vec<f64>, f64) {
         let mut counts = vec![0.0; 48];
         let mut pairs = 0.0;
@@ -156,7 +156,7 @@ mod tests {
                 for total in [skipped.iter().sum::<f64>(), naive.iter().sum()] {
                     assert!(within(total, 48.0 * n, p), "{mutation:?} {rate}: {total}");
                 }
-                // Neighbours are independent. Overlapping pairs vary up to three times as much as separate ones.
+                // Neighbors are independent. Overlapping pairs vary up to three times as much as separate ones.
                 for pairs in [skipped_pairs, naive_pairs] {
                     let sigma = (3.0 * 47.0 * n * p * p * (1.0 - p * p)).sqrt();
                     assert!((pairs - 47.0 * n * p * p).abs() <= 5.0 * sigma, "{mutation:?} {rate}: {pairs} pairs");
@@ -169,7 +169,7 @@ mod tests {
     fn tiny_rates_are_not_lost() {
         let mutation = BitMutation::new(Mutation::Flip, 1e-12).unwrap();
         assert_eq!(mutation.log_keep, -1e-12 - 0.5e-24);
-        // The two formulas agree where they meet.
+        // The two formulas agree at the boundary.
         let [series, log] =
             [0.999_999e-8, 1.000_001e-8].map(|rate| BitMutation::new(Mutation::Flip, rate).unwrap().log_keep);
         assert!((series / log - 0.999_998).abs() < 1e-7, "{series} {log}");

@@ -17,7 +17,7 @@ use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_b
 /// Number of individuals of a search of one parent and one mutant.
 pub(crate) const PARENT_AND_MUTANT: usize = 2;
 
-/// What a [`OnePlusOne`](crate::words::OnePlusOne) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`OnePlusOne`](crate::words::OnePlusOne).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OnePlusOneConfig {
@@ -27,17 +27,17 @@ pub struct OnePlusOneConfig {
     pub gene_bits: u32,
     /// Probability, 0 to 1, that mutation hits a bit of the mutant of generation 0.
     pub first_rate: f64,
-    /// What the probability falls by from generation to generation, 0 to 1.
+    /// The decrease of the probability from generation to generation, 0 to 1.
     pub rate_step: f64,
     /// The probability below which it does not fall, 0 to the first.
     pub last_rate: f64,
-    /// What happens to a bit that is hit.
+    /// The change of a bit that mutation hits.
     pub mutation: Mutation,
 }
 
 impl OnePlusOneConfig {
-    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits: half of all
-    /// bits flip at first, 1 % fewer every generation, down to 2 %.
+    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits. Half of all bits
+    /// flip at first, 1 % fewer every generation, down to 2 %.
     pub const fn new(genes: usize) -> Self {
         Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
     }
@@ -72,10 +72,10 @@ impl OnePlusOneConfig {
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
 ///
-/// [`ask`](Strategy::ask) gives the parent (individual 0) and its mutant (individual 1). The parent is evaluated again
-/// every generation, and its fitness is the mean over all its evaluations, that as a mutant included; the mutant takes its
-/// place when its own first evaluation is at least as good. A failed evaluation makes that mean the worst there is, so
-/// that a parent that failed once gives way to any mutant.
+/// [`ask`](Strategy::ask) returns the parent (individual 0) and its mutant (individual 1). The parent is evaluated again
+/// every generation, and its fitness is the mean over all its evaluations, including those as a mutant. The mutant replaces
+/// it when its first evaluation is at least as good. A failed evaluation makes that mean the worst possible, so any mutant
+/// replaces a parent that failed once.
 ///
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
@@ -91,10 +91,9 @@ impl OnePlusOneConfig {
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
 ///
-/// Individual 0 of a generation is the parent, individual 1 its mutant. The first parent is drawn from the stream (seed,
-/// [`Domain::InitialGenome`], trial 0, individual 0, generation 0), as individual 0 of a
-/// [`TruncationGa`](crate::words::TruncationGa) is; the mutant of a generation draws from (seed, [`Domain::Mutation`], trial 0,
-/// individual 1, its generation).
+/// The first parent is drawn from the stream (seed, [`Domain::InitialGenome`], trial 0, individual 0, generation 0), like
+/// individual 0 of a [`TruncationGa`](crate::words::TruncationGa). The mutant of a generation draws from (seed,
+/// [`Domain::Mutation`], trial 0, individual 1, its generation).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<OnePlusOneConfig>"))]
@@ -106,7 +105,7 @@ pub struct OnePlusOne {
     survivor: usize,
     /// The parent's fitness summed over its evaluations so far.
     sum: Fitness,
-    /// The parent's evaluations so far, 0 for the first parent before the first generation is told.
+    /// The number of evaluations of the parent, 0 for the first parent before the first generation is reported.
     evaluations: u32,
     population: Population,
 }
@@ -115,7 +114,7 @@ impl OnePlusOne {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`OnePlusOneConfig::validate`].
+    /// The errors of [`OnePlusOneConfig::validate`].
     pub fn new(config: OnePlusOneConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let mut parent = vec![0; config.genes];
@@ -136,19 +135,19 @@ impl OnePlusOne {
         self.seed
     }
 
-    /// Whether the parent of the current generation was the mutant of the one before.
+    /// Returns true if the parent of the current generation was the mutant of the previous one.
     pub fn replaced(&self) -> bool {
         self.survivor == 1
     }
 
-    /// The mean fitness of the current parent over its evaluations so far, and their number; none before the first
-    /// generation is told.
+    /// The mean fitness of the current parent over its evaluations, and their number. `None` before the first generation is
+    /// reported.
     pub fn parent_fitness(&self) -> Option<(Fitness, u32)> {
         (self.evaluations > 0).then(|| (mean(self.sum, self.evaluations), self.evaluations))
     }
 
-    /// The two values that the next [`tell`](Strategy::tell) of this fitness \[2\] will compare: the mean over the
-    /// parent's evaluations, the new evaluation included, and the mutant's fitness.
+    /// Returns the two values that the next [`tell`](Strategy::tell) of this fitness \[2\] compares. They are the mean over
+    /// the parent's evaluations, including the new one, and the mutant's fitness.
     ///
     /// # Errors
     /// [`EvoError::FitnessCount`].
@@ -159,7 +158,7 @@ impl OnePlusOne {
         Ok([mean(self.grown(parent), self.evaluations.saturating_add(1)), mutant])
     }
 
-    /// The sum of the parent's fitness with one more evaluation; infinities of both signs make a failure.
+    /// The sum of the parent's fitness with one more evaluation. Infinities of both signs make a failure.
     fn grown(&self, parent: Fitness) -> Fitness {
         Fitness::nan_as_failed(self.sum.get() + parent.get())
     }
@@ -290,7 +289,7 @@ mod tests {
         let told = [parent, mutant].map(Fitness::nan_as_failed);
         let champions = search.champions(&search.ranked_by(&told));
         search.tell(&told).unwrap();
-        // Who is champion lives on.
+        // The champion stays.
         assert_eq!(champions, [usize::from(search.replaced())]);
         search.replaced()
     }

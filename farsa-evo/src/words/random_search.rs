@@ -13,11 +13,11 @@ use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 use crate::words::mutation::randomize;
 
-/// Random search: every genome of every generation is drawn anew, and the best of all is remembered.
+/// Random search. Every genome of every generation is drawn independently, and the best is kept.
 ///
-/// What an evolution finds beyond this, with the same number of evaluations, is owed to selection. Generation 0 is that of a
-/// [`TruncationGa`](crate::words::TruncationGa) of the same seed. (For random search that keeps its best in the population,
-/// take a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::Mutation::Resample).)
+/// It is the baseline of selection at the same number of evaluations. Generation 0 is that of a
+/// [`TruncationGa`](crate::words::TruncationGa) of the same seed. (For random search with its best in the population, take
+/// a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::words::Mutation::Resample).)
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -64,7 +64,7 @@ impl RandomSearch {
         Ok(Self { seed, generation: 0, best: None, population })
     }
 
-    /// The best individual told so far, the earliest among equals; none before the first generation is told.
+    /// The best individual so far, the earliest among equals. `None` before the first generation is reported.
     pub fn best(&self) -> Option<BestIndividual> {
         self.best
     }
@@ -177,7 +177,7 @@ mod tests {
         }
         let fitness = Fitness::nan_as_failed(3.0);
         assert_eq!(search.best(), Some(BestIndividual { generation: 1, individual: 0, fitness }));
-        // What a state says of a generation to come is refused with the last one that was.
+        // A state with the best of a later generation is invalid, one with the best of the latest is valid.
         let mut state = search.save();
         state[4..8].copy_from_slice(&9_u32.to_le_bytes());
         assert_eq!(search.restore(&state), Err(EvoError::NoSuchGeneration { generation: 9, latest: 2 }));

@@ -13,10 +13,10 @@ use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_bits};
 
-/// What a [`TruncationGa`](crate::words::TruncationGa) needs to know; a plain value that is checked where it is used.
+/// The configuration of [`TruncationGa`](crate::words::TruncationGa).
 ///
-/// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the word for the
-/// mutation: what was saved before there was a choice is still read, and written as before.
+/// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the name of the
+/// mutation. Configurations from before this option have the same form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "SavedConfig", into = "SavedConfig"))]
@@ -27,17 +27,17 @@ pub struct GaConfig {
     pub gene_bits: u32,
     /// Number of individuals of a generation.
     pub population: usize,
-    /// Number of individuals that are selected; each makes population / parents copies.
+    /// Number of selected individuals. Each makes population / parents copies.
     pub parents: usize,
     /// Probability, 0 to 1, that mutation hits a bit.
     pub mutation_rate: f64,
-    /// What happens to a bit that is hit.
+    /// The change of a bit that mutation hits.
     pub mutation: Mutation,
 }
 
 impl GaConfig {
-    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits: the best 20 of 100 make five copies each, one
-    /// unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
+    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits. The best 20 of 100 make five copies
+    /// each, one unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
     pub const fn new(genes: usize) -> Self {
         let (gene_bits, mutation) = (u16::BITS, Mutation::Resample);
         Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
@@ -64,7 +64,7 @@ impl GaConfig {
         self.bit_mutation().map(|_| ())
     }
 
-    /// Copies that each parent makes; of a valid configuration only.
+    /// Copies of each parent, for a valid configuration.
     pub(crate) fn copies(&self) -> usize {
         self.population / self.parents
     }
@@ -106,17 +106,17 @@ impl From<GaConfig> for SavedConfig {
 /// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
 /// multiple of its parents.
 ///
-/// Each generation the `parents` best individuals make `population / parents` copies each: the first unchanged, the
-/// others mutated. Parents are ranked by fitness, equals by index, the lower first; failed individuals are selected
-/// only when too few succeeded. With as many parents as individuals nothing is ever mutated.
+/// Each generation the `parents` best individuals make `population / parents` copies each, the first unchanged, the others
+/// mutated. Parents are ranked by fitness, equals by index, the lower first. Failed individuals are selected only when too
+/// few succeeded. With as many parents as individuals nothing is mutated.
 ///
-/// Child `i` of a generation descends from the parent of rank `i / copies` of the generation before, `copies` being
-/// population / parents; it is unchanged when `i % copies == 0` and mutated otherwise, with the numbers of the stream
-/// (seed, [`Domain::Mutation`], trial 0, individual `i`, generation of the child). Individual `i` of generation 0 is
-/// drawn from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// Child `i` of a generation descends from the parent of rank `i / copies` of the previous generation, where `copies` is
+/// population / parents. It is unchanged when `i % copies == 0`. Otherwise it is mutated with the numbers of the stream
+/// (seed, [`Domain::Mutation`], trial 0, individual `i`, generation of the child). Individual `i` of generation 0 is drawn
+/// from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
-/// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: everyone is
-/// evaluated again in every generation, the unchanged copies too, and ties go to the lower index; the source says
+/// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: all individuals
+/// are evaluated again in every generation, also the unchanged copies, and ties go to the lower index. The source defines
 /// neither.
 ///
 /// ```
@@ -142,7 +142,7 @@ pub struct TruncationGa {
     /// Which of several populations of a search this is: the trial of its streams.
     number: u32,
     generation: u32,
-    /// The individuals selected from the generation before, best first \[parents\]; empty in generation 0.
+    /// The individuals selected from the previous generation, best first \[parents\]. Empty in generation 0.
     selected: Vec<u32>,
     population: Population,
 }
@@ -151,7 +151,7 @@ impl TruncationGa {
     /// An evolution at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`GaConfig::validate`].
+    /// The errors of [`GaConfig::validate`].
     pub fn new(config: GaConfig, seed: u64) -> Result<Self, EvoError> {
         Self::numbered(config, seed, 0)
     }
@@ -178,7 +178,7 @@ impl TruncationGa {
         self.seed
     }
 
-    /// The individuals selected from the generation before the current one, best first \[parents\]; empty in generation 0.
+    /// The individuals selected from the previous generation, best first \[parents\]. Empty in generation 0.
     pub fn selected(&self) -> &[u32] {
         &self.selected
     }

@@ -1,41 +1,41 @@
-//! What each word of a genome stands for, both ways.
+//! Encoding and decoding of parameters as integer genes.
 
 use alloc::vec::Vec;
 
 use crate::error::EvoError;
 use crate::words::decode::GeneRange;
 
-/// How the bits of a word number the values of a gene.
+/// The code of the bits of a gene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum WordCode {
     /// The binary number that they are.
     #[default]
     Plain,
-    /// The reflected binary code \[Gray1953\]: neighbouring values differ by one bit.
+    /// The reflected binary code \[Gray1953\]. The codes of neighboring values differ by one bit.
     Gray,
 }
 
-/// What one parameter is made of.
+/// The encoding of one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum WordGene {
-    /// A word of a genome: 0 stands for the low end, the largest number of its bits for the high end, linear between.
+    /// An integer gene. 0 is the low end, the largest number of its bits the high end, linear between.
     Word {
-        /// Bits that count, the lowest of the word, 1 to 16; the others mean nothing.
+        /// Number of bits, the lowest ones of the gene, 1 to 16. The others are ignored.
         bits: u32,
         /// The low end, in the unit of the parameter.
         low: f32,
         /// The high end, not below the low one.
         high: f32,
-        /// How the bits number the values.
+        /// The code of the bits.
         code: WordCode,
     },
     /// No word: the parameter is always this.
     Frozen(f32),
 }
 
-/// The parameters that a genome of words stands for, each with bits, range and code of its own, or frozen; and back.
+/// The parameters that a genome of integers encodes, each with its bits, range and code, or frozen. It decodes and encodes.
 ///
 /// Where a range has 16 bits and the plain code, the values are those of [`decode`](crate::words::decode).
 ///
@@ -82,7 +82,7 @@ impl WordMap {
         Ok(Self { genes, ranges, words })
     }
 
-    /// What the parameters are made of \[parameters\].
+    /// The encoding of the parameters \[parameters\].
     pub fn genes(&self) -> &[WordGene] {
         &self.genes
     }
@@ -97,10 +97,10 @@ impl WordMap {
         self.genes.len()
     }
 
-    /// Writes what words \[words\] stand for into a row of parameters \[parameters\], without allocating.
+    /// Decodes integer genes \[words\] into a row of parameters \[parameters\], without allocation.
     ///
     /// # Errors
-    /// [`EvoError::Lengths`]; the row is then unchanged.
+    /// [`EvoError::Lengths`]. The row is then unchanged.
     pub fn decode(&self, words: &[u16], parameters: &mut [f32]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let mut words = words.iter().copied();
@@ -113,14 +113,15 @@ impl WordMap {
         Ok(())
     }
 
-    /// Writes words \[words\] whose values are nearest to a row of parameters \[parameters\]; what is out of range becomes its
-    /// end. Bits that do not count are 0, and values of frozen parameters mean nothing.
+    /// Encodes a row of parameters \[parameters\] as the nearest integer genes \[words\]. A parameter out of range becomes
+    /// its end. Ignored bits are 0, and values of frozen parameters are ignored.
     ///
-    /// Parameters that were decoded from words are decoded from these again; the words are the same, but for bits that do not
-    /// count, unless a range has fewer numbers than words.
+    /// Decoding the result of an encoding of decoded parameters returns the same parameters. The genes are the same too,
+    /// except for ignored bits and for ranges with fewer numbers than genes.
     ///
     /// # Errors
-    /// [`EvoError::Lengths`]; [`EvoError::Setting`] for a NaN where there is a word; the words are then unchanged.
+    /// [`EvoError::Lengths`], or [`EvoError::Setting`] for a NaN of a parameter that is not frozen. The genes are then
+    /// unchanged.
     pub fn encode(&self, parameters: &[f32], words: &mut [u16]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let pairs = || self.genes.iter().zip(&self.ranges).zip(parameters).filter(|((_, range), _)| range.count() > 0);
@@ -163,7 +164,7 @@ fn nearest(range: GeneRange, largest: u16, [low, high]: [f32; 2], parameter: f32
     if width <= 0.0 {
         return 0;
     }
-    // Rounded, so one beside it may be nearer.
+    // The estimate is rounded, so a neighbor may be nearer.
     let about = ((f64::from(parameter) - f64::from(low)) / width * f64::from(largest)) as u16;
     let candidates = about.saturating_sub(1)..=about.saturating_add(2).min(largest);
     let distance = |number: u16| (f64::from(range.decode(number)) - f64::from(parameter)).abs();
@@ -182,7 +183,7 @@ impl TryFrom<Vec<WordGene>> for WordMap {
     /// The map of these genes.
     ///
     /// # Errors
-    /// Those of [`WordMap::new`].
+    /// The errors of [`WordMap::new`].
     fn try_from(genes: Vec<WordGene>) -> Result<Self, EvoError> {
         Self::new(genes)
     }

@@ -52,7 +52,7 @@ fn mirrored_strategies_conform() {
 fn what_has_to_be_recorded_is_said() {
     let pgpe =
         |fitness| Pgpe::new(PgpeConfig { fitness, ..PgpeConfig::new(mean(2), 0.3, 2) }, 0).unwrap().record_kind();
-    assert_eq!([PgpeFitness::CentredRanks, PgpeFitness::Raw].map(pgpe), [RecordKind::Order, RecordKind::Values]);
+    assert_eq!([PgpeFitness::CenteredRanks, PgpeFitness::Raw].map(pgpe), [RecordKind::Order, RecordKind::Values]);
     assert_eq!(Snes::new(SnesConfig::new(mean(2), 1.0), 0).unwrap().record_kind(), RecordKind::Order);
     assert_eq!(Xnes::new(XnesConfig::new(mean(2), 1.0), 0).unwrap().record_kind(), RecordKind::Order);
     assert_eq!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().record_kind(), RecordKind::Order);
@@ -211,7 +211,7 @@ proptest! {
         let config = PgpeConfig {
             mean: mean.clone(), sigma: sizes[0], pairs, step_size: sizes[1], max_speed: sizes[2], momentum: decays[0],
             sigma_learning_rate: rate, sigma_max_change: decays[1],
-            fitness: if choice { PgpeFitness::Raw } else { PgpeFitness::CentredRanks },
+            fitness: if choice { PgpeFitness::Raw } else { PgpeFitness::CenteredRanks },
         };
         let fresh = || Pgpe::new(config.clone(), seed).unwrap();
         survives(fresh(), fresh(), &values);

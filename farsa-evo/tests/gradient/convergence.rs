@@ -72,7 +72,7 @@ fn mirrored_strategies_come_near_the_optimum() {
             let mut search = OpenAiEs::new(config, seed).unwrap();
             assert!(best(&mut search, 40_000, sphere) > -0.1, "{optimizer:?}");
         }
-        for fitness in [PgpeFitness::CentredRanks, PgpeFitness::Raw] {
+        for fitness in [PgpeFitness::CenteredRanks, PgpeFitness::Raw] {
             let config = PgpeConfig { fitness, ..PgpeConfig::new(start(), 0.5, 20) };
             let mut search = Pgpe::new(config, seed).unwrap();
             assert!(best(&mut search, 40_000, sphere) > -0.1, "{fitness:?}");

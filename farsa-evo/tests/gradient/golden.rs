@@ -31,7 +31,7 @@ fn strategies_keep_their_bits() {
         digest(Xnes::new(XnesConfig::new(start(), 0.3), 2010).unwrap()),
         digest(OpenAiEs::new(open_ai(Optimizer::ADAM), 2017).unwrap()),
         digest(OpenAiEs::new(open_ai(Optimizer::MOMENTUM), 2017).unwrap()),
-        digest(Pgpe::new(pgpe(PgpeFitness::CentredRanks), 2020).unwrap()),
+        digest(Pgpe::new(pgpe(PgpeFitness::CenteredRanks), 2020).unwrap()),
         digest(Pgpe::new(pgpe(PgpeFitness::Raw), 2020).unwrap()),
         digest(Ars::new(ars(7), 2018).unwrap()),
         digest(Ars::new(ars(3), 2018).unwrap()),

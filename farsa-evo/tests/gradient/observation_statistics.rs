@@ -55,7 +55,7 @@ fn rows_are_normalised() {
     let statistics = from_rows(&rows, 3);
     let mut normal = ObservationStatistics::new(3).unwrap();
     for mut row in rows {
-        statistics.normalise(&mut row, 2.5);
+        statistics.normalize(&mut row, 2.5);
         assert!(row.iter().all(|x| x.abs() <= 2.5));
         normal.push(&row);
     }
@@ -63,14 +63,14 @@ fn rows_are_normalised() {
     assert!(normal.variance().all(|variance| (variance - 1.0).abs() < 0.1), "{normal:?}");
 
     let mut row = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
-    statistics.normalise(&mut row, 10.0);
+    statistics.normalize(&mut row, 10.0);
     assert_eq!(row[..2], [10.0, -10.0]);
     assert!(row[2].is_nan());
     let mut row = [f32::INFINITY, 7.0, -7.0];
-    ObservationStatistics::new(3).unwrap().normalise(&mut row, 10.0);
+    ObservationStatistics::new(3).unwrap().normalize(&mut row, 10.0);
     assert_eq!(row, [0.0; 3]);
     let mut row = [1e9, 0.0, 0.0];
-    statistics.normalise(&mut row, f32::NAN);
+    statistics.normalize(&mut row, f32::NAN);
     assert!(row[0] > 1e6);
 }
 

@@ -184,7 +184,7 @@ fn the_strategy_of_openai_follows_its_paper() {
 #[test]
 fn pgpe_follows_its_paper() {
     let pairs = 6;
-    for fitness in [PgpeFitness::CentredRanks, PgpeFitness::Raw] {
+    for fitness in [PgpeFitness::CenteredRanks, PgpeFitness::Raw] {
         let config = PgpeConfig { fitness, ..PgpeConfig::new(start(), 0.4, pairs) };
         let (speed, alpha) = (0.4 * 5.0_f64.sqrt() / 15.0, 0.2 * 5.0_f64.sqrt() / 15.0);
         assert!((config.max_speed - speed).abs() < 1e-15 && (config.step_size - alpha).abs() < 1e-15);

@@ -12,7 +12,7 @@ use farsa_num::{Domain, Stream};
 const THRESHOLD: ArchiveRule = ArchiveRule::Threshold { first: 0.4, most: 2, patience: 3 };
 
 fn config(archive: ArchiveRule) -> NoveltyConfig {
-    NoveltyConfig { neighbours: 4, archive, ..NoveltyConfig::new(2) }
+    NoveltyConfig { neighbors: 4, archive, ..NoveltyConfig::new(2) }
 }
 
 fn words() -> Result<TruncationGa, EvoError> {
@@ -184,7 +184,7 @@ fn impossible_configurations_are_refused() {
     };
     let base = NoveltyConfig::new(2);
     assert_eq!(refused(NoveltyConfig::new(0)), ("the number of descriptor values", 0.0));
-    assert_eq!(refused(NoveltyConfig { neighbours: 0, ..base }), ("the number of neighbours", 0.0));
+    assert_eq!(refused(NoveltyConfig { neighbors: 0, ..base }), ("the number of neighbours", 0.0));
     let rule = |archive| NoveltyConfig { archive, ..base };
     assert_eq!(refused(rule(ArchiveRule::Random { rate: 1.5 })), ("the rate of the archive", 1.5));
     let threshold = |first, patience| ArchiveRule::Threshold { first, most: 4, patience };

@@ -157,7 +157,7 @@ impl<C: Controller> Controller for NormalisedController<C> {
             // One observation has no deviation.
             if before.count() >= 2 {
                 own.copy_from_slice(x);
-                before.normalise(own, LIMIT);
+                before.normalize(own, LIMIT);
                 normalised = true;
             }
         }

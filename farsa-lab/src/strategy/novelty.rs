@@ -29,7 +29,7 @@ pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
         let ranges = start.wanted_descriptors("novelty-search")?;
         let units: Vec<f64> = ranges.iter().map(|[low, high]| high - low).collect();
         let novelty = NoveltyConfig {
-            neighbours: start.settings.count(NEIGHBOURS)?,
+            neighbors: start.settings.count(NEIGHBOURS)?,
             archive: ArchiveRule::Random { rate: start.settings.number(RATE)? },
             ..NoveltyConfig::new(ranges.len())
         };

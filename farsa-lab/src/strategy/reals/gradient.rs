@@ -84,7 +84,7 @@ pub(in crate::strategy) static PGPE: SimpleStrategy = SimpleStrategy {
             step_size: 0.5 * max_speed,
             sigma_learning_rate: settings.number(SIGMA_RATE)?,
             sigma_max_change: settings.number(SIGMA_CHANGE)?,
-            fitness: if raw { PgpeFitness::Raw } else { PgpeFitness::CentredRanks },
+            fitness: if raw { PgpeFitness::Raw } else { PgpeFitness::CenteredRanks },
             ..plain
         };
         start.reals(|seed| Pgpe::new(config.clone(), seed))
