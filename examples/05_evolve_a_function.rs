@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         record.tell(&mut evolution, &values)?;
         let random = evaluate(guesses.ask(), &ranges)?;
         guesses.tell(&random)?;
-        let summary = Statistics::from_fitness(&values).ok_or(EvoError::NoIndividuals)?;
+        let summary = Statistics::from_fitness(&values).ok_or(EvoError::NoBest { generation: 0 })?;
         guessed = Statistics::from_fitness(&random).map_or(guessed, |random| guessed.max(random.best));
         if generation % generations.div_ceil(10) == 0 || generation + 1 == generations {
             println!(
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let summary = last.ok_or("no generations")?;
     // The record rebuilds any generation without evaluating anything.
     let rebuilt = record.genomes(&mut fresh()?, generations - 1)?;
-    let champion = rebuilt.get(summary.best_index).ok_or(EvoError::NoIndividuals)?;
+    let champion = rebuilt.get(summary.best_index).ok_or(EvoError::NoBest { generation: 0 })?;
     let mut x = [0.0; VARIABLES];
     decode(champion, &ranges, &mut x)?;
     println!("the champion stands at {x:.3?}");

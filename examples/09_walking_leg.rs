@@ -108,7 +108,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for generation in 0..generations {
         let walked: Result<Vec<_>, _> = evolution.ask().iter().map(&mut walk).collect();
         let fitness: Vec<Fitness> = walked?.iter().map(|walked| Fitness::nan_as_failed(walked.0)).collect();
-        let summary = Statistics::from_fitness(&fitness).ok_or(EvoError::NoIndividuals)?;
+        let summary = Statistics::from_fitness(&fitness).ok_or(EvoError::NoBest { generation: 0 })?;
         if generation % generations.div_ceil(8) == 0 || generation + 1 == generations {
             let (velocity, footfalls) = walk(evolution.ask().get(summary.best_index).unwrap_or_default())?;
             println!("generation {generation:>3}: mean velocity {velocity:.3}, {footfalls} footfalls");

@@ -47,20 +47,20 @@ impl<G: Gene> Champion<G> {
     /// population. Among equals the earliest stays.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`]. The best individual so far is then unchanged.
+    /// [`EvoError::Shape`]. The best individual so far is then unchanged.
     pub fn keep(
         best: &mut Option<Self>,
         generation: u32,
         population: &Population<G>,
         fitness: &[Fitness],
     ) -> Result<(), EvoError> {
-        let counts = EvoError::FitnessCount { expected: population.len(), found: fitness.len() };
+        let counts = || EvoError::fitness_count(population.len(), fitness.len());
         if fitness.len() != population.len() {
-            return Err(counts);
+            return Err(counts());
         }
         let individual = Statistics::from_fitness(fitness).map_or(0, |summary| summary.best_index);
         let (Some(&fitness), Some(genome)) = (fitness.get(individual), population.get(individual)) else {
-            return Err(counts);
+            return Err(counts());
         };
         if best.as_ref().is_none_or(|best| fitness > best.fitness) {
             *best = Some(Self { generation, individual, fitness, genome: genome.to_vec() });

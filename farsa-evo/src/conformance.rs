@@ -20,18 +20,12 @@ use crate::strategy::{RecordKind, Strategy};
 /// The check covers these rules:
 ///
 /// - `ask` returns the same genomes twice. A second strategy with the same fitness returns the same genomes and
-/// [`diagnostics`](Strategy::diagnostics), also through a [`Record`] and through a saved state after every generation.
-///
+///   [`diagnostics`](Strategy::diagnostics), also through a [`Record`] and through a saved state after every generation.
 /// - A wrong number of values, or scores of another shape, is an error and changes nothing.
-///
 /// - Generations are counted, and each population has a champion.
-///
 /// - With [`RecordKind::Order`], other values of the same order change nothing.
-///
 /// - A generation in which some or all evaluations failed does not stop the search.
-///
 /// - The members of a [`Collection`](crate::Collection) are evaluated individuals with their scores.
-///
 /// - With [`Opponents`](crate::Opponents), all individuals have the same number of opponents, one of each other population.
 ///
 /// ```

@@ -31,14 +31,14 @@ impl Population {
     /// Checks that [`Population::new`] accepts these sizes.
     pub(crate) fn check(individuals: usize, genome_len: usize) -> Result<(), EvoError> {
         if individuals == 0 {
-            return Err(EvoError::NoIndividuals);
+            return Err(EvoError::no_individuals());
         }
         if genome_len == 0 {
-            return Err(EvoError::NoGenes);
+            return Err(EvoError::no_genes());
         }
         match individuals.checked_mul(genome_len) {
             Some(total) if total <= MAX_GENES => Ok(()),
-            _ => Err(EvoError::TooLarge { population: individuals, genes: genome_len }),
+            _ => Err(EvoError::too_large(individuals, genome_len)),
         }
     }
 }
@@ -47,7 +47,7 @@ impl<G: Gene> Population<G> {
     /// `individuals` genomes of `genome_len` genes, all zero.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::TooLarge`].
+    /// [`EvoError::Config`].
     pub fn new(individuals: usize, genome_len: usize) -> Result<Self, EvoError> {
         Population::check(individuals, genome_len)?;
         Ok(Self { genome_len, genes: vec![G::default(); individuals * genome_len] })
@@ -146,10 +146,10 @@ mod tests {
 
     #[test]
     fn sizes_are_checked() {
-        assert_eq!(Population::<f64>::new(0, 5), Err(EvoError::NoIndividuals));
-        assert_eq!(Population::<f64>::new(5, 0), Err(EvoError::NoGenes));
+        assert_eq!(Population::<f64>::new(0, 5), Err(EvoError::no_individuals()));
+        assert_eq!(Population::<f64>::new(5, 0), Err(EvoError::no_genes()));
         for (population, genes) in [(usize::MAX, 2), (Population::MAX_GENES, 2), (1, Population::MAX_GENES + 1)] {
-            assert_eq!(Population::<u16>::new(population, genes), Err(EvoError::TooLarge { population, genes }));
+            assert_eq!(Population::<u16>::new(population, genes), Err(EvoError::too_large(population, genes)));
         }
     }
 }

@@ -10,12 +10,12 @@ impl ScoreShape {
     /// Refuses another shape than this one.
     ///
     /// # Errors
-    /// [`EvoError::ScoreShape`].
-    pub const fn check(self, found: Self) -> Result<(), EvoError> {
+    /// [`EvoError::Shape`].
+    pub fn check(self, found: Self) -> Result<(), EvoError> {
         if self.objectives == found.objectives && self.measures == found.measures {
             Ok(())
         } else {
-            Err(EvoError::ScoreShape { expected: self, found })
+            Err(EvoError::score_shape(self, found))
         }
     }
 }
@@ -53,14 +53,14 @@ impl Scores {
     /// NaN, an infinite measure or an objective of minus infinity is a failed evaluation.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for a shape without objectives, [`EvoError::ScoreCount`] for a last row that is not whole.
+    /// [`EvoError::OutOfRange`] for a shape without objectives, [`EvoError::Shape`] for a last row that is not whole.
     pub fn nan_as_failed(shape: ScoreShape, mut values: Vec<f64>) -> Result<Self, EvoError> {
         if shape.objectives == 0 {
-            return Err(EvoError::Setting { name: "the number of objectives", value: 0.0, allowed: "1 or more" });
+            return Err(EvoError::OutOfRange { field: "the number of objectives", value: 0.0, allowed: "1 or more" });
         }
         let (width, found) = (shape.width(), values.len());
         if !found.is_multiple_of(width) {
-            return Err(EvoError::ScoreCount { width, found });
+            return Err(EvoError::score_count(width, found));
         }
         for row in values.chunks_exact_mut(width) {
             let (objectives, measures) = row.split_at_mut(shape.objectives);
@@ -142,11 +142,11 @@ impl Scores {
     /// Checks the shape of the scores and the number of individuals.
     ///
     /// # Errors
-    /// [`EvoError::ScoreShape`], [`EvoError::FitnessCount`].
+    /// [`EvoError::Shape`].
     pub fn check(&self, shape: ScoreShape, individuals: usize) -> Result<(), EvoError> {
         shape.check(self.shape)?;
         let (expected, found) = (individuals, self.len());
-        if found == expected { Ok(()) } else { Err(EvoError::FitnessCount { expected, found }) }
+        if found == expected { Ok(()) } else { Err(EvoError::fitness_count(expected, found)) }
     }
 
     fn row(&self, individual: usize) -> (&[f64], &[f64]) {
@@ -192,14 +192,14 @@ mod tests {
     #[test]
     fn what_is_not_whole_is_refused() {
         let shape = ScoreShape::new(2, 1);
-        assert_eq!(Scores::new(shape, vec![0.0; 4]), Err(EvoError::ScoreCount { width: 3, found: 4 }));
+        assert_eq!(Scores::new(shape, vec![0.0; 4]), Err(EvoError::score_count(3, 4)));
         assert_eq!(Scores::new(shape, vec![0.0, 1.0, f64::NAN]), Err(EvoError::NanFitness));
         let none = Scores::new(ScoreShape::new(0, 3), Vec::new());
-        assert!(matches!(none, Err(EvoError::Setting { name: "the number of objectives", value: 0.0, .. })));
+        assert!(matches!(none, Err(EvoError::OutOfRange { field: "the number of objectives", value: 0.0, .. })));
         let told = Scores::new(shape, vec![0.0; 6]).unwrap();
-        let fewer = EvoError::ScoreShape { expected: ScoreShape::FITNESS, found: shape };
+        let fewer = EvoError::score_shape(ScoreShape::FITNESS, shape);
         assert_eq!(told.check(ScoreShape::FITNESS, 2), Err(fewer));
-        assert_eq!(told.check(shape, 3), Err(EvoError::FitnessCount { expected: 3, found: 2 }));
+        assert_eq!(told.check(shape, 3), Err(EvoError::fitness_count(3, 2)));
         assert_eq!((told.objectives(2), told.measures(2), told.is_failed(2)), (&[][..], &[][..], false));
     }
 

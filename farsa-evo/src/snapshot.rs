@@ -15,7 +15,7 @@ pub trait Snapshot {
     /// same bytes.
     ///
     /// # Errors
-    /// [`EvoError::StateLength`] and [`EvoError::StateContent`]. The strategy is then unchanged.
+    /// [`EvoError::State`]. The strategy is then unchanged.
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError>;
 
     /// The largest number of generations between two states of a [`Record`](crate::Record), at least 1, for strategies that
@@ -45,13 +45,13 @@ impl<'s> StateReader<'s> {
         if found == expected {
             Ok(Self { rest: state, total: found })
         } else {
-            Err(EvoError::StateLength { expected, found })
+            Err(EvoError::state_length(expected, found))
         }
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N], EvoError> {
-        let short = EvoError::StateLength { expected: self.total - self.rest.len() + N, found: self.total };
-        let (first, rest) = self.rest.split_first_chunk::<N>().ok_or(short)?;
+        let short = || EvoError::state_length(self.total - self.rest.len() + N, self.total);
+        let (first, rest) = self.rest.split_first_chunk::<N>().ok_or_else(short)?;
         self.rest = rest;
         Ok(*first)
     }
@@ -71,8 +71,7 @@ impl<'s> StateReader<'s> {
     /// A finite number.
     pub(crate) fn real(&mut self) -> Result<f64, EvoError> {
         let x = self.take().map(f64::from_le_bytes)?;
-        let refused = EvoError::StateContent { what: "a finite number", found: x.to_bits() };
-        if x.is_finite() { Ok(x) } else { Err(refused) }
+        if x.is_finite() { Ok(x) } else { Err(EvoError::state_content("a finite number", x.to_bits())) }
     }
 
     /// A row of finite numbers.
@@ -86,7 +85,7 @@ impl<'s> StateReader<'s> {
             for gene in genome {
                 *gene = self.take().map(u16::from_le_bytes)?;
                 if *gene > largest {
-                    return Err(EvoError::StateContent { what: "a gene", found: (*gene).into() });
+                    return Err(EvoError::state_content("a gene", (*gene).into()));
                 }
             }
         }

@@ -46,8 +46,8 @@ pub trait Strategy<G: Gene = u16> {
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`]. [`EvoError::ScoreShape`] from a strategy that requires
-    /// scores. The strategy is then unchanged.
+    /// [`EvoError::Shape`] for a wrong number of values, or if the strategy requires scores. [`EvoError::LastGeneration`]. The
+    /// strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
     /// The number of objectives and measures that it requires of each individual, by default one objective.
@@ -59,7 +59,7 @@ pub trait Strategy<G: Gene = u16> {
     /// the next one. Scores of one objective are passed on as fitness.
     ///
     /// # Errors
-    /// [`EvoError::ScoreShape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
+    /// [`EvoError::Shape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
     /// unchanged.
     fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
         ScoreShape::FITNESS.check(scores.shape())?;
@@ -231,7 +231,7 @@ pub trait Collection {
 /// The number of the next generation, if `fitness` has one value for each of `population` individuals.
 pub(crate) fn next_generation(generation: u32, population: usize, fitness: &[Fitness]) -> Result<u32, EvoError> {
     if fitness.len() != population {
-        return Err(EvoError::FitnessCount { expected: population, found: fitness.len() });
+        return Err(EvoError::fitness_count(population, fitness.len()));
     }
     generation.checked_add(1).ok_or(EvoError::LastGeneration)
 }

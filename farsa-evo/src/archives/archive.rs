@@ -86,8 +86,7 @@ impl<C: Cells> Archive<C> {
     /// Builds an empty archive of genomes with the given number of genes.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`] for no cells, [`EvoError::TooLarge`] for more genes or measures
-    /// of all cells than [`Population::MAX_GENES`].
+    /// [`EvoError::Config`] for no genes, no cells, or more genes or measures of all cells than [`Population::MAX_GENES`].
     pub fn new(cells: C, genes: usize) -> Result<Self, EvoError> {
         Population::check(cells.cells(), genes)?;
         Population::check(cells.cells(), cells.measures())?;
@@ -130,14 +129,14 @@ impl<C: Cells> Archive<C> {
     /// elite. An objective of NaN or minus infinity, or measures that are not finite, are not added.
     ///
     /// # Errors
-    /// [`EvoError::Lengths`] for another number of genes or measures.
+    /// [`EvoError::Shape`] for another number of genes or measures.
     pub fn add(&mut self, genes: &[f64], objective: f64, measures: &[f64]) -> Result<Addition, EvoError> {
         if genes.len() != self.genes {
-            return Err(EvoError::Lengths { genes: genes.len(), ranges: self.genes, out: self.genes });
+            return Err(EvoError::lengths(genes.len(), self.genes, self.genes));
         }
         if measures.len() != self.cells.measures() {
             let d = self.cells.measures();
-            return Err(EvoError::Lengths { genes: measures.len(), ranges: d, out: d });
+            return Err(EvoError::lengths(measures.len(), d, d));
         }
         Ok(self.insert(genes, objective, measures, [0, 0]))
     }
@@ -231,7 +230,7 @@ impl<C: Cells> Archive<C> {
             check_within(&genes, bounds)?;
             let added = read.insert(genes.as_slice(), objective, &measures, [generation, individual]);
             if added != Addition::New || read.filled.last() != Some(&cell) {
-                return Err(EvoError::StateContent { what: "the cell of an elite", found: cell.into() });
+                return Err(EvoError::state_content("the cell of an elite", cell.into()));
             }
         }
         Ok(read)

@@ -49,8 +49,7 @@ impl CvtCells {
     /// be at least as many points as cells, and ten for each cell are enough.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`] for no ranges, [`EvoError::NoIndividuals`] for no cells, [`EvoError::TooLarge`],
-    /// [`EvoError::Setting`].
+    /// [`EvoError::Config`] for no ranges, no cells or too many, [`EvoError::OutOfRange`] for other numbers.
     pub fn new(cells: usize, bounds: &[[f64; 2]], points: usize, seed: u64) -> Result<Self, EvoError> {
         check_bounds(cells, bounds)?;
         check_setting(points >= cells, "the number of points", points as f64, "as many as cells, or more")?;
@@ -65,13 +64,13 @@ impl CvtCells {
     /// The cells of these centroids [cells x d], each coordinate of magnitude up to 10^100.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`] for d = 0, [`EvoError::NoIndividuals`] for no centroids, [`EvoError::ScoreCount`] for a last one
-    /// that is not whole, [`EvoError::TooLarge`], [`EvoError::Setting`].
+    /// [`EvoError::Config`] for d = 0, no centroids or too many. [`EvoError::Shape`] for an incomplete last one.
+    /// [`EvoError::OutOfRange`] for a coordinate.
     pub fn from_centroids(centroids: Vec<f64>, d: usize) -> Result<Self, EvoError> {
-        let cells = centroids.len().checked_div(d).ok_or(EvoError::NoGenes)?;
+        let cells = centroids.len().checked_div(d).ok_or_else(EvoError::no_genes)?;
         Population::check(cells, d)?;
         if centroids.len() != cells * d {
-            return Err(EvoError::ScoreCount { width: d, found: centroids.len() });
+            return Err(EvoError::score_count(d, centroids.len()));
         }
         for &x in &centroids {
             check_setting((-LARGEST..=LARGEST).contains(&x), "a coordinate of a centroid", x, "-1e100 to 1e100")?;
@@ -200,12 +199,12 @@ mod tests {
     #[test]
     fn impossible_cells_are_refused() {
         let new = |cells, points| CvtCells::new(cells, &[[0.0, 1.0]], points, 1).unwrap_err();
-        assert_eq!(new(0, 10), EvoError::NoIndividuals);
-        assert!(matches!(new(11, 10), EvoError::Setting { name: "the number of points", value: 10.0, .. }));
-        assert_eq!(CvtCells::new(1, &[], 10, 1), Err(EvoError::NoGenes));
+        assert_eq!(new(0, 10), EvoError::no_individuals());
+        assert!(matches!(new(11, 10), EvoError::OutOfRange { field: "the number of points", value: 10.0, .. }));
+        assert_eq!(CvtCells::new(1, &[], 10, 1), Err(EvoError::no_genes()));
         let from = |centroids: &[f64], d| CvtCells::from_centroids(centroids.to_vec(), d).unwrap_err();
-        assert_eq!((from(&[], 2), from(&[1.0], 0)), (EvoError::NoIndividuals, EvoError::NoGenes));
-        assert_eq!(from(&[1.0, 2.0, 3.0], 2), EvoError::ScoreCount { width: 2, found: 3 });
-        assert!(matches!(from(&[1.0, f64::NAN], 1), EvoError::Setting { name: "a coordinate of a centroid", .. }));
+        assert_eq!((from(&[], 2), from(&[1.0], 0)), (EvoError::no_individuals(), EvoError::no_genes()));
+        assert_eq!(from(&[1.0, 2.0, 3.0], 2), EvoError::score_count(2, 3));
+        assert!(matches!(from(&[1.0, f64::NAN], 1), EvoError::OutOfRange { field: "a coordinate of a centroid", .. }));
     }
 }

@@ -46,7 +46,7 @@ impl GridCells {
     /// Builds a grid over these ranges \[d\], low to high, with the given number of parts of each \[d\].
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`] for no ranges, [`EvoError::Setting`], [`EvoError::TooLarge`].
+    /// [`EvoError::Config`] for no ranges or too many cells, [`EvoError::OutOfRange`] for other numbers.
     pub fn new(bounds: Vec<[f64; 2]>, parts: Vec<usize>) -> Result<Self, EvoError> {
         check_bounds(1, &bounds)?;
         let (found, wanted) = (parts.len(), bounds.len());
@@ -140,9 +140,9 @@ mod tests {
     fn impossible_grids_are_refused() {
         let refused =
             |bounds: &[[f64; 2]], parts: &[usize]| GridCells::new(bounds.to_vec(), parts.to_vec()).unwrap_err();
-        assert_eq!(refused(&[], &[]), EvoError::NoGenes);
+        assert_eq!(refused(&[], &[]), EvoError::no_genes());
         let setting = |error| match error {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         };
         assert_eq!(setting(refused(&[[0.0, 1.0]], &[3, 4])), ("the number of divided ranges", 2.0));
@@ -150,6 +150,6 @@ mod tests {
         assert_eq!(setting(refused(&[[0.0, f64::NAN]], &[3])).0, "the high end of a gene");
         assert_eq!(setting(refused(&[[0.0, 1.0]], &[0])), ("the number of parts of a range", 0.0));
         let many = refused(&[[0.0, 1.0]; 9], &[usize::MAX; 9]);
-        assert_eq!(many, EvoError::TooLarge { population: usize::MAX, genes: 1 });
+        assert_eq!(many, EvoError::too_large(usize::MAX, 1));
     }
 }

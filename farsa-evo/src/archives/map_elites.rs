@@ -51,7 +51,7 @@ impl MapElitesConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`] for no emitters, [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`].
+    /// [`EvoError::Config`] for no emitters or wrong sizes, [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_bounds(self.population(), &self.bounds)?;
         self.emitters.iter().try_for_each(|emitter| emitter.check(&self.bounds))?;

@@ -59,7 +59,7 @@ impl NoveltyConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::Setting`].
+    /// [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let (d, k) = (self.measures, self.neighbors);
         check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
@@ -126,7 +126,7 @@ impl<S> NoveltySearch<S> {
     /// A search that drives a strategy, with an empty archive.
     ///
     /// # Errors
-    /// The errors of [`NoveltyConfig::validate`]. [`EvoError::AlreadyTold`] or [`EvoError::ScoreShape`] for an inner
+    /// The errors of [`NoveltyConfig::validate`]. [`EvoError::Record`] or [`EvoError::Shape`] for an inner
     /// strategy that is past generation 0 or requires scores.
     pub fn new<G: Gene>(config: NoveltyConfig, inner: S, seed: u64) -> Result<Self, EvoError>
     where
@@ -134,7 +134,7 @@ impl<S> NoveltySearch<S> {
     {
         config.validate()?;
         if inner.generation() != 0 {
-            return Err(EvoError::AlreadyTold { generation: inner.generation() });
+            return Err(EvoError::not_at_start(inner.generation()));
         }
         ScoreShape::FITNESS.check(inner.score_shape())?;
         let threshold = match config.archive {
@@ -148,14 +148,14 @@ impl<S> NoveltySearch<S> {
     /// The same where each measure is divided by a unit \[d\], such as its range, before distances are taken.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for another number of units, or one outside 1e-100 to 1e100. [`EvoError::AlreadyTold`] after
+    /// [`EvoError::OutOfRange`] for another number of units, or one outside 1e-100 to 1e100. [`EvoError::Record`] after
     /// generation 0.
     pub fn with_units<G: Gene>(self, units: &[f64]) -> Result<Self, EvoError>
     where
         S: Strategy<G>,
     {
         if self.inner.generation() != 0 {
-            return Err(EvoError::AlreadyTold { generation: self.inner.generation() });
+            return Err(EvoError::not_at_start(self.inner.generation()));
         }
         let found = units.len();
         check_setting(found == self.units.len(), "the number of units", found as f64, "one for each descriptor value")?;
@@ -313,15 +313,15 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         let size = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
         let length = size(StateReader::new(state, state.len())?.u64()?);
-        let short = EvoError::StateLength { expected: length.saturating_add(28), found: state.len() };
-        let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or(short)?;
+        let short = || EvoError::state_length(length.saturating_add(28), state.len());
+        let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or_else(short)?;
         let mut header = StateReader::new(own, own.len())?;
         let (idle, threshold, behaviors) = (header.u32()?, header.real()?, size(header.u64()?));
         let numbers = behaviors.saturating_mul(self.config.measures);
         let mut reader = StateReader::new(own, numbers.saturating_mul(8).saturating_add(20))?;
         let _ = (reader.u32()?, reader.real()?, reader.u64()?);
         if !(THRESHOLDS[0]..=THRESHOLDS[1]).contains(&threshold) {
-            return Err(EvoError::StateContent { what: "a threshold of novelty", found: threshold.to_bits() });
+            return Err(EvoError::state_content("a threshold of novelty", threshold.to_bits()));
         }
         let mut archive = vec![0.0; numbers];
         reader.reals(&mut archive)?;

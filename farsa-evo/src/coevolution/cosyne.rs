@@ -75,7 +75,7 @@ impl CosyneConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { population, parents, offspring, range, mutation_rate, mutation_scale, .. } = *self;
         Population::check(population, self.genes())?;
@@ -335,7 +335,7 @@ impl Snapshot for Cosyne {
         for _ in 0..if generation == 0 { 0 } else { self.population.as_slice().len() } {
             let origin = reader.u32()?;
             if origin as usize >= size {
-                return Err(EvoError::NoSuchIndividual { individual: origin as usize, population: size });
+                return Err(EvoError::no_such_individual(origin as usize, size));
             }
             origins.push(origin);
         }

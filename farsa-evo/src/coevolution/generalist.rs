@@ -433,7 +433,7 @@ impl Snapshot for GeneralistCoevolution {
                     *origin = reader.u32()?;
                     if *origin as usize / size != number {
                         let (individual, population) = (*origin as usize, SIDES * size);
-                        return Err(EvoError::NoSuchIndividual { individual, population });
+                        return Err(EvoError::no_such_individual(individual, population));
                     }
                 }
             }

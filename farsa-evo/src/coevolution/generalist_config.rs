@@ -39,8 +39,7 @@ impl GeneralistConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`],
-    /// [`EvoError::GeneBits`] or [`EvoError::Rate`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, members, newcomers, opponents, iterations, .. } = *self;
         Population::check(members, genes)?;

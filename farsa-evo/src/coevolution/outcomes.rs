@@ -50,16 +50,16 @@ impl Outcomes {
     /// failed evaluation.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`] for no opponents or no values, [`EvoError::FitnessCount`] if the last individual has fewer
-    /// values than there are opponents, [`EvoError::TooLarge`].
+    /// [`EvoError::Config`] for no opponents, no values or too many. [`EvoError::Shape`] if the last individual has fewer values
+    /// than there are opponents.
     pub fn new(opponents: usize, values: Vec<f64>) -> Result<Self, EvoError> {
         if opponents == 0 || values.is_empty() {
-            return Err(EvoError::NoIndividuals);
+            return Err(EvoError::no_individuals());
         }
         let individuals = values.len().div_ceil(opponents);
         Population::check(individuals, opponents)?;
         if individuals * opponents != values.len() {
-            return Err(EvoError::FitnessCount { expected: individuals * opponents, found: values.len() });
+            return Err(EvoError::fitness_count(individuals * opponents, values.len()));
         }
         Ok(Self { opponents, values: values.into_iter().map(Fitness::nan_as_failed).collect() })
     }
@@ -93,7 +93,7 @@ impl Outcomes {
     /// do not count.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for none, or more than there are.
+    /// [`EvoError::OutOfRange`] for none, or more than there are.
     pub fn differing_opponents(&self, count: usize, stream: &mut Stream) -> Result<Vec<usize>, EvoError> {
         let possible = (1..=self.opponents).contains(&count);
         check_setting(possible, "the number of opponents", count as f64, "1 to all opponents")?;
@@ -119,7 +119,7 @@ impl Outcomes {
     /// many as there are members. Worse newcomers replace worse members.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for as many newcomers as individuals, or more.
+    /// [`EvoError::OutOfRange`] for as many newcomers as individuals, or more.
     pub fn replacements(&self, newcomers: usize) -> Result<Vec<Replacement>, EvoError> {
         let all = self.individuals();
         check_setting(newcomers < all, "the number of newcomers", newcomers as f64, "0 to all individuals but one")?;

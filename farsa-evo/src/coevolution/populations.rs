@@ -82,19 +82,15 @@ impl Populations<TruncationGa, u16> {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::FewPopulations`], [`EvoError::UnequalPopulations`], [`EvoError::TooLarge`] and those of
-    /// [`GaConfig::validate`].
+    /// [`EvoError::Config`] for fewer than two populations, unequal sizes or too many genes. [`EvoError::Shape`] for genomes of
+    /// unequal lengths. The errors of `search`.
     pub fn truncation(configs: &[GaConfig], seed: u64) -> Result<Self, EvoError> {
         let [GaConfig { population: first, .. }, _, ..] = *configs else {
-            return Err(EvoError::FewPopulations { populations: configs.len() });
+            return Err(EvoError::few_populations(configs.len()));
         };
         configs.iter().try_for_each(GaConfig::validate)?;
         if let Some(population) = configs.iter().position(|config| config.population != first) {
-            return Err(EvoError::UnequalPopulations {
-                first,
-                population,
-                individuals: configs[population].population,
-            });
+            return Err(EvoError::unequal_populations(first, population, configs[population].population));
         }
         let longest = configs.iter().map(|config| config.genes).max().unwrap_or(0);
         Population::check(first.saturating_mul(configs.len()), longest)?;
@@ -118,11 +114,11 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
     /// drawn from the stream (`seed`, [`Domain::General`], trial 0, `p`, generation 0).
     ///
     /// # Errors
-    /// [`EvoError::FewPopulations`] for fewer than two, [`EvoError::UnequalPopulations`] and [`EvoError::Lengths`] for searches
-    /// of unequal sizes, [`EvoError::TooLarge`], and those of `search`.
+    /// [`EvoError::Config`] for fewer than two, [`EvoError::Config`] or [`EvoError::Shape`] for searches
+    /// of unequal sizes, [`EvoError::Config`], and those of `search`.
     pub fn new(populations: usize, seed: u64, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Self, EvoError> {
         if populations < 2 {
-            return Err(EvoError::FewPopulations { populations });
+            return Err(EvoError::few_populations(populations));
         }
         let first = search(seed)?;
         let (size, genes) = (first.ask().len(), first.ask().genome_len());
@@ -134,10 +130,10 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
             let member = search(u64::from(stream.next_u32()) | u64::from(stream.next_u32()) << 32)?;
             let (individuals, length) = (member.ask().len(), member.ask().genome_len());
             if individuals != size {
-                return Err(EvoError::UnequalPopulations { first: size, population: number, individuals });
+                return Err(EvoError::unequal_populations(size, number, individuals));
             }
             if length != genes {
-                return Err(EvoError::Lengths { genes: length, ranges: genes, out: genes });
+                return Err(EvoError::lengths(length, genes, genes));
             }
             members.push(member);
         }
@@ -312,21 +308,19 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
         for member in &mut self.members {
             let expected = StateReader::new(rest, rest.len())?.u64()?;
             let expected = usize::try_from(expected).unwrap_or(usize::MAX);
-            let short = EvoError::StateLength { expected, found: rest.len() };
+            let short = || EvoError::state_length(expected, rest.len());
             let own = rest.get(8..).and_then(|rest| rest.split_at_checked(expected));
-            let (own, behind) = own.ok_or(short)?;
+            let (own, behind) = own.ok_or_else(short)?;
             member.restore(own)?;
             rest = behind;
         }
         if !rest.is_empty() {
-            return Err(EvoError::StateLength { expected: state.len() - rest.len(), found: state.len() });
+            return Err(EvoError::state_length(state.len() - rest.len(), state.len()));
         }
         let generation = self.generation();
         match self.members.iter().find(|member| member.generation() != generation) {
             None => Ok(()),
-            Some(other) => {
-                Err(EvoError::StateContent { what: "the generation of a population", found: other.generation().into() })
-            }
+            Some(other) => Err(EvoError::state_content("the generation of a population", other.generation().into())),
         }
     }
 }
@@ -425,12 +419,12 @@ mod tests {
     #[test]
     fn what_does_not_go_together_is_refused() {
         let search = |seed| CmaEs::new(CmaEsConfig::new(vec![0.0; 4], 0.5), seed);
-        assert_eq!(Populations::new(1, 5, search), Err(EvoError::FewPopulations { populations: 1 }));
+        assert_eq!(Populations::new(1, 5, search), Err(EvoError::few_populations(1)));
         let sized = |seed| {
             let population = if seed == 5 { 10 } else { 12 };
             CmaEs::new(CmaEsConfig { population, ..CmaEsConfig::new(vec![0.0; 4], 0.5) }, seed)
         };
-        let unequal = EvoError::UnequalPopulations { first: 10, population: 1, individuals: 12 };
+        let unequal = EvoError::unequal_populations(10, 1, 12);
         assert_eq!(Populations::new(2, 5, sized), Err(unequal));
         let long = |seed| {
             CmaEs::new(
@@ -438,11 +432,11 @@ mod tests {
                 seed,
             )
         };
-        assert_eq!(Populations::new(2, 5, long), Err(EvoError::Lengths { genes: 5, ranges: 4, out: 4 }));
+        assert_eq!(Populations::new(2, 5, long), Err(EvoError::lengths(5, 4, 4)));
         let mut all = searches();
         let before = all.clone();
         let expected = all.ask().len();
-        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::FitnessCount { expected, found: 6 }));
+        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::fitness_count(expected, 6)));
         assert_eq!(all, before);
     }
 
@@ -497,14 +491,14 @@ mod tests {
     #[test]
     fn truncation_populations_of_unequal_sizes_are_refused() {
         let [a, b, c] = configs();
-        assert_eq!(Populations::truncation(&[a], 1), Err(EvoError::FewPopulations { populations: 1 }));
+        assert_eq!(Populations::truncation(&[a], 1), Err(EvoError::few_populations(1)));
         let other = GaConfig { population: 9, ..c };
-        let unequal = EvoError::UnequalPopulations { first: 6, population: 2, individuals: 9 };
+        let unequal = EvoError::unequal_populations(6, 2, 9);
         assert_eq!(Populations::truncation(&[a, b, other], 1), Err(unequal));
-        assert_eq!(Populations::truncation(&[a, GaConfig { genes: 0, ..b }], 1), Err(EvoError::NoGenes));
+        assert_eq!(Populations::truncation(&[a, GaConfig { genes: 0, ..b }], 1), Err(EvoError::no_genes()));
         let mut all = Populations::truncation(&[a, b], 1).unwrap();
         let before = all.clone();
-        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::FitnessCount { expected: 12, found: 6 }));
+        assert_eq!(all.tell(&told(0, 6)), Err(EvoError::fitness_count(12, 6)));
         assert_eq!(all, before);
     }
 }

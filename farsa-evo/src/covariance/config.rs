@@ -53,8 +53,8 @@ impl CmaEsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`] or [`EvoError::Setting`]. [`EvoError::TooLarge`] for more genes
-    /// of a population, or elements of the covariance matrix, than [`Population::MAX_GENES`].
+    /// [`EvoError::Config`] for no genes, no individuals, or more genes of a population or elements of the covariance matrix
+    /// than [`Population::MAX_GENES`]. [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         let genes = self.mean.len();
         check_start(&self.mean, self.sigma, self.population)?;
@@ -112,7 +112,7 @@ impl SeparableCmaEsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::NoIndividuals`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         check_start(&self.mean, self.sigma, self.population)
     }

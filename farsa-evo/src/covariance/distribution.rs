@@ -260,7 +260,7 @@ pub(crate) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
 pub(crate) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f64; 2]) -> Result<(), EvoError> {
     reader.reals(row)?;
     let wrong = row.iter().find(|x| !(limits[0]..=limits[1]).contains(*x));
-    wrong.map_or(Ok(()), |x| Err(EvoError::StateContent { what: "a number within its limits", found: x.to_bits() }))
+    wrong.map_or(Ok(()), |x| Err(EvoError::state_content("a number within its limits", x.to_bits())))
 }
 
 /// The weighted sum of rows for each of many sums [sums x n], the rows taken in blocks that stay in the cache.

@@ -51,7 +51,7 @@ impl CmaEsRestartsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// The errors of [`CmaEsConfig::validate`]. [`EvoError::TooLarge`] if the largest run, of 512 times as many individuals
+    /// The errors of [`CmaEsConfig::validate`]. [`EvoError::Config`] if the largest run, of 512 times as many individuals
     /// as the first, has more genes than [`Population::MAX_GENES`].
     pub fn validate(&self) -> Result<(), EvoError> {
         self.first.validate()?;
@@ -312,7 +312,7 @@ impl Snapshot for CmaEsRestarts {
             *word = front.u32()?;
         }
         let [generation, large, number, blocks, small, iterations, block, remembered] = words;
-        let wrong = |what, found: u32| Err(EvoError::StateContent { what, found: found.into() });
+        let wrong = |what, found: u32| Err(EvoError::state_content(what, found.into()));
         if !large.is_power_of_two() || large > MOST_BLOCKS {
             return wrong("the blocks of a large run", large);
         }
@@ -342,7 +342,7 @@ impl Snapshot for CmaEsRestarts {
         let [large_spent, small_spent, latest, evaluated, most] = counts;
         let sigma = reader.real()?;
         if !(STEP_SIZES[0]..=STEP_SIZES[1]).contains(&sigma) {
-            return Err(EvoError::StateContent { what: "a step size", found: sigma.to_bits() });
+            return Err(EvoError::state_content("a step size", sigma.to_bits()));
         }
         let mut row = |length: usize| (0..length).map(|_| reader.fitness()).collect::<Result<Vec<_>, _>>();
         let (told, best, median) = (row(told)?, row(remembered)?, row(remembered)?);

@@ -6,9 +6,9 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use super::mirrored::Mirrored;
-use super::settings::{at_least, point, positive};
+use super::settings::{point, positive};
 use super::utilities::{rewards, scaled};
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
@@ -40,14 +40,11 @@ impl ArsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.directions.saturating_mul(2), self.mean.len())?;
-        at_least("top_directions", self.top_directions, 1, "1 to the number of directions")?;
-        if self.top_directions > self.directions {
-            let (name, allowed) = ("top_directions", "1 to the number of directions");
-            return Err(EvoError::Setting { name, value: self.top_directions as f64, allowed });
-        }
+        let within = (1..=self.directions).contains(&self.top_directions);
+        check_setting(within, "top_directions", self.top_directions as f64, "1 to the number of directions")?;
         point("mean", &self.mean)?;
         positive("step_size", self.step_size)?;
         positive("noise", self.noise)

@@ -51,10 +51,10 @@ impl ObservationStatistics {
     /// Statistics without observations, for the given number of channels.
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for none, or more than [`Population::MAX_GENES`].
+    /// [`EvoError::OutOfRange`] for none, or more than [`Population::MAX_GENES`].
     pub fn new(channels: usize) -> Result<Self, EvoError> {
         if channels == 0 || channels > Population::MAX_GENES {
-            return Err(EvoError::Setting { name: "channels", value: channels as f64, allowed: "1 to 2^28" });
+            return Err(EvoError::OutOfRange { field: "channels", value: channels as f64, allowed: "1 to 2^28" });
         }
         Ok(Self { count: 0, mean: vec![0.0; channels], squares: vec![0.0; channels] })
     }
@@ -62,11 +62,10 @@ impl ObservationStatistics {
     /// The statistics whose state was [saved](Snapshot::save), of as many channels as that has.
     ///
     /// # Errors
-    /// [`EvoError::StateLength`] and [`EvoError::StateContent`] for bytes that are no such state.
+    /// [`EvoError::State`] for bytes that are no such state.
     pub fn from_saved(state: &[u8]) -> Result<Self, EvoError> {
         let channels = state.len().saturating_sub(8) / 16;
-        let mut statistics =
-            Self::new(channels).map_err(|_| EvoError::StateLength { expected: 24, found: state.len() })?;
+        let mut statistics = Self::new(channels).map_err(|_| EvoError::state_length(24, state.len()))?;
         statistics.restore(state)?;
         Ok(statistics)
     }
@@ -119,19 +118,19 @@ impl ObservationStatistics {
     /// \[channels\].
     ///
     /// # Errors
-    /// [`EvoError::Setting`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
+    /// [`EvoError::OutOfRange`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
     /// above 1e250, or more than 2^64 - 1 observations. Nothing is added then.
     pub fn add(&mut self, count: u64, mean: &[f64], squares: &[f64]) -> Result<(), EvoError> {
         for channels in [mean.len(), squares.len()] {
             if channels != self.channels() {
                 let (value, allowed) = (channels as f64, "the number that the statistics have");
-                return Err(EvoError::Setting { name: "channels", value, allowed });
+                return Err(EvoError::OutOfRange { field: "channels", value, allowed });
             }
         }
         point("mean", mean)?;
         squares.iter().try_for_each(|x| check_range("squares", *x, [0.0, LARGEST_SQUARES], "0 to 1e250"))?;
         let (before, added) = (self.count as f64, count as f64);
-        let too_many = EvoError::Setting { name: "count", value: before + added, allowed: "up to 2^64 - 1" };
+        let too_many = EvoError::OutOfRange { field: "count", value: before + added, allowed: "up to 2^64 - 1" };
         let total = self.count.checked_add(count).ok_or(too_many)?;
         if count == 0 {
             return Ok(());
@@ -188,7 +187,7 @@ impl Snapshot for ObservationStatistics {
         let mean = super::settings::read_point(&mut reader, channels)?;
         let squares = super::settings::read(&mut reader, channels, "a sum of squares", [0.0, LARGEST_SQUARES])?;
         if count == 0 && mean.iter().chain(&squares).any(|x| *x != 0.0) {
-            return Err(EvoError::StateContent { what: "a number of observations", found: count });
+            return Err(EvoError::state_content("a number of observations", count));
         }
         (self.count, self.mean, self.squares) = (count, mean, squares);
         Ok(())

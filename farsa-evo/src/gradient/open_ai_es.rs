@@ -43,7 +43,7 @@ impl OpenAiEsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.pairs.saturating_mul(2), self.mean.len())?;
         point("mean", &self.mean)?;

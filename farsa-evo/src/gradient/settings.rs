@@ -58,7 +58,7 @@ pub(super) fn read(
     reader.reals(&mut row)?;
     let [low, high] = range;
     let wrong = row.iter().find(|x| !(low..=high).contains(*x));
-    wrong.map_or(Ok(()), |x| Err(EvoError::StateContent { what, found: x.to_bits() }))?;
+    wrong.map_or(Ok(()), |x| Err(EvoError::state_content(what, x.to_bits())))?;
     Ok(row)
 }
 

@@ -47,7 +47,7 @@ impl SnesConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.population, self.mean.len())?;
         at_least("population", self.population, 2, "2 or more")?;

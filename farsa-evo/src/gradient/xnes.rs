@@ -57,13 +57,13 @@ impl XnesConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.population, self.mean.len())?;
         at_least("population", self.population, 2, "2 or more")?;
         let genes = self.mean.len();
         if genes > MOST_GENES {
-            return Err(EvoError::Setting { name: "genes", value: genes as f64, allowed: "1 to 1024" });
+            return Err(EvoError::OutOfRange { field: "genes", value: genes as f64, allowed: "1 to 1024" });
         }
         point("mean", &self.mean)?;
         positive("sigma", self.sigma)?;
@@ -79,10 +79,10 @@ impl XnesConfig {
 /// It learns scales and correlations, for up to some hundred genes: a generation takes time in proportion to the cube
 /// of their number. Only the order of fitness counts.
 ///
-/// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its table
-/// 1. A genome is mu + sigma B s, and B is multiplied from the right by the exponential of a symmetric matrix without
-/// trace. Deviations: sums go through the individuals by index. Means stay within 1e100 of zero and sigma within 1e-100 to
-/// 1e100. B does not change where an element would pass 1e100.
+/// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its table 1.
+/// A genome is mu + sigma B s. B is multiplied from the right by the exponential of a symmetric matrix without trace.
+/// Deviations: sums go through the individuals by index. Means stay within 1e100 of zero and sigma within 1e-100 to 1e100. B
+/// does not change where an element would pass 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;

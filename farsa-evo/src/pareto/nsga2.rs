@@ -50,8 +50,7 @@ impl Nsga2Config {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::Setting`]. [`EvoError::TooLarge`] for genomes or
-    /// objectives.
+    /// [`EvoError::Config`] for sizes, [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_bounds(self.population, &self.bounds)?;
         check_setting(self.objectives > 0, "the number of objectives", self.objectives as f64, "1 or more")?;
@@ -258,17 +257,17 @@ impl Nsga2 {
             let distance = reader.fitness()?.get();
             let last = standing.last().map_or(0, |last: &Standing| last.front);
             if front < last || front > last + 1 || standing.is_empty() && front > 0 {
-                return Err(EvoError::StateContent { what: "the front of a parent", found: front.into() });
+                return Err(EvoError::state_content("the front of a parent", front.into()));
             }
             if distance < 0.0 {
-                return Err(EvoError::StateContent { what: "a crowding distance", found: distance.to_bits() });
+                return Err(EvoError::state_content("a crowding distance", distance.to_bits()));
             }
             let [born, individual] = origin;
             if born >= generation {
-                return Err(EvoError::NoSuchGeneration { generation: born, latest: generation - 1 });
+                return Err(EvoError::no_such_generation(born, generation - 1));
             }
             if individual as usize >= size {
-                return Err(EvoError::NoSuchIndividual { individual: individual as usize, population: size });
+                return Err(EvoError::no_such_individual(individual as usize, size));
             }
             standing.push(Standing { front, distance });
             origins.push(origin);

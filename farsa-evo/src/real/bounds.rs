@@ -48,7 +48,7 @@ pub(crate) fn check_within(population: &Population<f64>, bounds: &[[f64; 2]]) ->
     for genes in population {
         for (&gene, &[low, high]) in genes.iter().zip(bounds) {
             if !(low..=high).contains(&gene) {
-                return Err(EvoError::StateContent { what: "a gene within its bounds", found: gene.to_bits() });
+                return Err(EvoError::state_content("a gene within its bounds", gene.to_bits()));
             }
         }
     }

@@ -291,7 +291,7 @@ impl Snapshot for EvolutionStrategy {
         for _ in 0..if generation == 0 { 0 } else { self.config.parents } {
             let origin = Some(reader.u32()?).filter(|origin| *origin != u32::MAX);
             if let Some(individual) = origin.map(|origin| origin as usize).filter(|origin| *origin >= size) {
-                return Err(EvoError::NoSuchIndividual { individual, population: size });
+                return Err(EvoError::no_such_individual(individual, size));
             }
             let fitness = reader.fitness()?;
             let mut parent = Individual { genes: vec![0.0; genes], steps: vec![0.0; width], fitness, origin };
@@ -311,7 +311,7 @@ impl EvolutionStrategy {
     fn read_rows(&self, reader: &mut StateReader, steps: &mut [f64], genes: &mut [f64]) -> Result<(), EvoError> {
         reader.reals(steps)?;
         reader.reals(genes)?;
-        let wrong = |what, found: &f64| Err(EvoError::StateContent { what, found: found.to_bits() });
+        let wrong = |what, found: &f64| Err(EvoError::state_content(what, found.to_bits()));
         if let Some(step) = steps.iter().find(|step| !(self.config.smallest_step..=LARGEST).contains(*step)) {
             return wrong("a step size", step);
         }

@@ -122,13 +122,12 @@ impl EvolutionStrategyConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::NoParents`],
-    /// [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { parents, offspring, mixing, initial_step, smallest_step, .. } = *self;
         Population::check(offspring, self.mean.len())?;
         if parents == 0 {
-            return Err(EvoError::NoParents);
+            return Err(EvoError::no_parents());
         }
         check_setting(parents <= offspring, "the number of parents", parents as f64, "1 to the number of offspring")?;
         Population::check(self.asked(), self.mean.len())?;

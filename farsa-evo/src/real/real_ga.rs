@@ -57,7 +57,7 @@ impl RealGaConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         self.selector().map(|_| ())
     }
@@ -261,7 +261,7 @@ impl Snapshot for RealGa {
         for _ in 0..if generation == 0 { 0 } else { size } {
             let pair = [reader.u32()?, reader.u32()?];
             if let Some(wrong) = pair.into_iter().find(|parent| *parent as usize >= size) {
-                return Err(EvoError::NoSuchIndividual { individual: wrong as usize, population: size });
+                return Err(EvoError::no_such_individual(wrong as usize, size));
             }
             parents.push(pair);
         }
@@ -269,7 +269,7 @@ impl Snapshot for RealGa {
         if let Some(smallest) = self.config.mutation.smallest() {
             reader.reals(&mut steps)?;
             if let Some(wrong) = steps.iter().find(|step| !(smallest..=1.0).contains(*step)) {
-                return Err(EvoError::StateContent { what: "a step size", found: wrong.to_bits() });
+                return Err(EvoError::state_content("a step size", wrong.to_bits()));
             }
         }
         let mut population = Population::new(size, self.population.genome_len())?;

@@ -40,7 +40,7 @@ impl SteadyStateConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::Setting`].
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { population, rate, sigma, noise, .. } = *self;
         check_bounds(population, &self.bounds)?;
@@ -202,7 +202,7 @@ impl Snapshot for SteadyState {
         for _ in 0..if generation == 0 { 0 } else { size } {
             let parent = reader.u32()?;
             if parent as usize >= size {
-                return Err(EvoError::NoSuchIndividual { individual: parent as usize, population: size });
+                return Err(EvoError::no_such_individual(parent as usize, size));
             }
             parents.push(parent);
         }

@@ -38,12 +38,12 @@ impl Progress {
     /// The errors of [`Record::new`](crate::Record::new).
     pub(crate) fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         if strategy.generation() != 0 {
-            return Err(EvoError::AlreadyTold { generation: strategy.generation() });
+            return Err(EvoError::not_at_start(strategy.generation()));
         }
         let shape = Shape::from_strategy(strategy);
         shape.check()?;
         if shape.recorded == Kept::Genomes && strategy.snapshot().is_none() {
-            return Err(EvoError::NoSnapshot);
+            return Err(EvoError::no_snapshot());
         }
         Ok(Self { shape, generations: 0, saved: 0, state: 0, states: 0 })
     }
@@ -94,20 +94,20 @@ impl Progress {
         let Self { shape, generations, .. } = self;
         shape.check_strategy(strategy)?;
         if strategy.generation() != generations {
-            return Err(EvoError::OtherRecord { what: "generations", recorded: generations as usize });
+            return Err(EvoError::other_record("generations", generations as usize));
         }
         let (expected, found) = (shape.individuals, fitness.len());
         if found != expected {
-            return Err(EvoError::FitnessCount { expected, found });
+            return Err(EvoError::fitness_count(expected, found));
         }
         let mut frame = Vec::with_capacity(shape.frame());
         let champions = strategy.champions(&strategy.ranked_by(fitness));
         if champions.len() != shape.populations {
-            return Err(EvoError::OtherRecord { what: "champions", recorded: shape.populations });
+            return Err(EvoError::other_record("champions", shape.populations));
         }
         for (population, champion) in champions.into_iter().enumerate() {
             if !shape.has(population, champion) {
-                return Err(EvoError::NoSuchIndividual { individual: champion, population: shape.individuals });
+                return Err(EvoError::no_such_individual(champion, shape.individuals));
             }
             shape.push_index(&mut frame, champion);
         }
@@ -146,7 +146,7 @@ pub(crate) fn next<G: Gene, S: Strategy<G> + ?Sized>(
     let generation = strategy.generation();
     told(strategy)?;
     let found = strategy.generation();
-    if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
+    if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::stuck(generation, found)) }
 }
 
 #[cfg(test)]

@@ -68,8 +68,8 @@ impl Record {
     /// Starts the record of a strategy at generation 0.
     ///
     /// # Errors
-    /// [`EvoError::AlreadyTold`] or [`EvoError::UnevenPopulations`]. [`EvoError::NoSnapshot`] for a strategy that requires
-    /// recorded genomes and cannot save its state, because it could not be resumed.
+    /// [`EvoError::Record`] for a strategy past generation 0, or one that requires recorded genomes and cannot save its state.
+    /// [`EvoError::Config`] for populations of unequal sizes.
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         Progress::new(strategy).map(|progress| Self::empty(progress.shape))
     }
@@ -106,9 +106,9 @@ impl Record {
     /// Reports the fitness \[individuals\] of a generation to a strategy and records it.
     ///
     /// # Errors
-    /// [`EvoError::OtherRecord`] for a strategy that is not at the end of this record, or with another number of champions
-    /// than populations. [`EvoError::NoSuchIndividual`] for a champion outside its population. [`EvoError::Stuck`] and the
-    /// errors of [`Strategy::tell`]. Nothing is recorded then.
+    /// [`EvoError::Record`] for a strategy that is not at the end of this record, that has another number of champions than
+    /// populations, or that does not advance. [`EvoError::State`] for a champion outside its population. The errors of
+    /// [`Strategy::tell`]. Nothing is recorded then.
     pub fn tell<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -144,7 +144,7 @@ impl Record {
     /// Checks that the record fits a strategy.
     ///
     /// # Errors
-    /// [`EvoError::OtherRecord`].
+    /// [`EvoError::Record`].
     pub fn check<G: Gene>(&self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
         self.shape.check_strategy(strategy)
     }
@@ -210,10 +210,9 @@ impl Record {
     /// reported.
     ///
     /// # Errors
-    /// [`EvoError::NoSuchGeneration`] for a generation beyond the record or before that of the strategy,
-    /// [`EvoError::OtherRecord`] for a strategy of another kind or size. [`EvoError::GenomesOnly`] where genomes are
-    /// recorded, [`EvoError::StateContent`] for a saved state of another generation, [`EvoError::Stuck`], and the errors of
-    /// the strategy.
+    /// [`EvoError::Record`] for a generation beyond the record or before that of the strategy, for a strategy of another kind or
+    /// size, and where genomes are recorded. [`EvoError::State`] for a saved state of another generation. The errors of the
+    /// strategy.
     pub fn rebuild<G: Gene>(
         &self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -222,7 +221,7 @@ impl Record {
         self.check(strategy)?;
         let latest = self.generations();
         if generation > latest || generation < strategy.generation() {
-            return Err(EvoError::NoSuchGeneration { generation, latest });
+            return Err(EvoError::no_such_generation(generation, latest));
         }
         let usable = |keyframe: &Keyframe| keyframe.generation <= generation;
         let keyframe = self.keyframes.iter().enumerate().rev().find(|(_, keyframe)| usable(keyframe));
@@ -232,11 +231,11 @@ impl Record {
             snapshot.restore(state)?;
             let found = strategy.generation();
             if found != keyframe.generation {
-                return Err(EvoError::StateContent { what: "the generation of a saved state", found: found.into() });
+                return Err(EvoError::state_content("the generation of a saved state", found.into()));
             }
         }
         while strategy.generation() < generation {
-            let told = self.told(strategy.generation()).ok_or(EvoError::GenomesOnly)?;
+            let told = self.told(strategy.generation()).ok_or_else(EvoError::genomes_only)?;
             next(strategy, |strategy| match told.shape() {
                 ScoreShape::FITNESS => strategy.tell(&told.fitness()),
                 _ => strategy.tell_scores(&told),
@@ -260,11 +259,11 @@ impl Record {
             return Ok(strategy.ask().clone());
         }
         let latest = self.generations();
-        let (_, bytes) = self.frame(generation).ok_or(EvoError::NoSuchGeneration { generation, latest })?;
+        let (_, bytes) = self.frame(generation).ok_or_else(|| EvoError::no_such_generation(generation, latest))?;
         let mut population = Population::new(self.shape.individuals, self.shape.genes)?;
         for (gene, bytes) in population.as_mut_slice().iter_mut().zip(bytes.chunks_exact(G::BYTES)) {
             let found = || bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
-            *gene = G::from_bytes(bytes).ok_or_else(|| EvoError::StateContent { what: "a gene", found: found() })?;
+            *gene = G::from_bytes(bytes).ok_or_else(|| EvoError::state_content("a gene", found()))?;
         }
         Ok(population)
     }
@@ -279,13 +278,12 @@ impl Record {
     /// Appends a generation from its [`entry`](Self::entry), without a strategy.
     ///
     /// # Errors
-    /// [`EvoError::StateLength`] for an entry of another size and [`EvoError::LastGeneration`].
-    /// [`EvoError::NoSuchIndividual`], [`EvoError::SelectedTwice`] and [`EvoError::NanFitness`] for impossible generations.
-    /// Nothing is added then.
+    /// [`EvoError::State`] for an entry of another size or an impossible generation, [`EvoError::NanFitness`],
+    /// [`EvoError::LastGeneration`]. Nothing is added then.
     pub fn push(&mut self, entry: RecordEntry<'_>) -> Result<(), EvoError> {
         let (expected, found) = (self.shape.frame(), entry.frame.len());
         if found != expected {
-            return Err(EvoError::StateLength { expected, found });
+            return Err(EvoError::state_length(expected, found));
         }
         self.generations().checked_add(1).ok_or(EvoError::LastGeneration)?;
         self.believe(entry.frame)?;
@@ -302,7 +300,7 @@ impl Record {
         let (champions, bytes) = frame.split_at_checked(populations * self.shape.width()).unwrap_or_default();
         for (population, champion) in self.shape.indices(champions).enumerate() {
             if !self.shape.has(population, champion) {
-                return Err(EvoError::NoSuchIndividual { individual: champion, population: individuals });
+                return Err(EvoError::no_such_individual(champion, individuals));
             }
         }
         match recorded {
@@ -310,8 +308,8 @@ impl Record {
                 let mut seen = vec![false; individuals];
                 for individual in self.shape.indices(bytes) {
                     match seen.get_mut(individual) {
-                        None => return Err(EvoError::NoSuchIndividual { individual, population: individuals }),
-                        Some(true) => return Err(EvoError::SelectedTwice { individual }),
+                        None => return Err(EvoError::no_such_individual(individual, individuals)),
+                        Some(true) => return Err(EvoError::selected_twice(individual)),
                         Some(seen) => *seen = true,
                     }
                 }
@@ -382,14 +380,14 @@ impl TryFrom<RawRecord> for Record {
         }
         let whole = frames.len().is_multiple_of(shape.frame());
         if !whole || u32::try_from(frames.len() / shape.frame()).is_err() {
-            return Err(EvoError::StateLength { expected: shape.frame(), found: frames.len() });
+            return Err(EvoError::state_length(shape.frame(), frames.len()));
         }
         record.frames = frames;
         record.frames.chunks_exact(shape.frame()).try_for_each(|frame| record.believe(frame))?;
         let rising = record.keyframes.windows(2).all(|pair| pair[0].generation < pair[1].generation);
         let last = record.keyframes.last().map_or(0, |keyframe| keyframe.generation);
         if !rising || last > record.generations() {
-            return Err(EvoError::StateContent { what: "the generation of a saved state", found: last.into() });
+            return Err(EvoError::state_content("the generation of a saved state", last.into()));
         }
         Ok(record)
     }

@@ -55,7 +55,7 @@ impl Shape {
     pub(crate) fn check(self) -> Result<(), EvoError> {
         let Self { populations, individuals, .. } = self;
         let even = populations > 0 && individuals.is_multiple_of(populations);
-        if even { Ok(()) } else { Err(EvoError::UnevenPopulations { populations, individuals }) }
+        if even { Ok(()) } else { Err(EvoError::uneven_populations(populations, individuals)) }
     }
 
     /// Checks the shape of a record that is read.
@@ -63,12 +63,12 @@ impl Shape {
     pub(crate) fn check_read(self) -> Result<(), EvoError> {
         Population::check(self.individuals, self.genes)?;
         if ![u16::BYTES, f64::BYTES].contains(&self.gene_bytes) {
-            return Err(EvoError::StateContent { what: "the bytes of a gene", found: self.gene_bytes as u64 });
+            return Err(EvoError::state_content("the bytes of a gene", self.gene_bytes as u64));
         }
         if let Kept::Scores(shape) = self.recorded {
             if shape.objectives == 0 || shape == ScoreShape::FITNESS {
                 let found = shape.objectives as u64;
-                return Err(EvoError::StateContent { what: "a number of objectives", found });
+                return Err(EvoError::state_content("a number of objectives", found));
             }
             Population::check(self.individuals, shape.width())?;
         }
@@ -78,10 +78,10 @@ impl Shape {
     /// Checks that a record of this shape fits a strategy.
     ///
     /// # Errors
-    /// [`EvoError::OtherRecord`].
+    /// [`EvoError::Record`].
     pub(crate) fn check_strategy<G: Gene>(self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
         let (ours, theirs) = (self, Self::from_strategy(strategy));
-        let other = |what, recorded| Err(EvoError::OtherRecord { what, recorded });
+        let other = |what, recorded| Err(EvoError::other_record(what, recorded));
         if ours.populations != theirs.populations {
             other("populations", ours.populations)
         } else if ours.individuals != theirs.individuals {

@@ -21,12 +21,12 @@ impl GeneRange {
     /// `count` genes that range from `low` to `high`, in the unit of the parameter.
     ///
     /// # Errors
-    /// [`EvoError::Range`] when an end is not finite or `low > high`.
-    pub const fn new(count: usize, low: f32, high: f32) -> Result<Self, EvoError> {
+    /// [`EvoError::Config`] when an end is not finite or `low > high`.
+    pub fn new(count: usize, low: f32, high: f32) -> Result<Self, EvoError> {
         if low.is_finite() && high.is_finite() && low <= high {
             Ok(Self { count, low, high, largest: u16::MAX })
         } else {
-            Err(EvoError::Range { low, high })
+            Err(EvoError::range(low, high))
         }
     }
 
@@ -41,8 +41,8 @@ impl GeneRange {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::GeneBits`].
-    pub const fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
+    /// [`EvoError::Config`].
+    pub fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
         match check_gene_bits(bits) {
             Ok(()) => Ok(Self { largest: u16::MAX >> (u16::BITS - bits), ..self }),
             Err(error) => Err(error),
@@ -117,12 +117,12 @@ impl TryFrom<SavedRange> for GeneRange {
 /// ```
 ///
 /// # Errors
-/// [`EvoError::Lengths`] when the ranges do not describe exactly the genes or `out` has another length. `out` is then
+/// [`EvoError::Shape`] when the ranges do not describe exactly the genes or `out` has another length. `out` is then
 /// unchanged.
 pub fn decode(genes: &[u16], ranges: &[GeneRange], out: &mut [f32]) -> Result<(), EvoError> {
     let described = ranges.iter().fold(0_usize, |sum, range| sum.saturating_add(range.count));
     if described != genes.len() || out.len() != genes.len() {
-        return Err(EvoError::Lengths { genes: genes.len(), ranges: described, out: out.len() });
+        return Err(EvoError::lengths(genes.len(), described, out.len()));
     }
     let mut pairs = genes.iter().zip(out);
     for range in ranges {
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!([0, 1].map(|gene| one.decode(gene)), [-2.0, 6.0]);
         assert_eq!(range.with_gene_bits(16).unwrap(), range);
         for bits in [0, 17] {
-            assert_eq!(range.with_gene_bits(bits), Err(EvoError::GeneBits { bits }));
+            assert_eq!(range.with_gene_bits(bits), Err(EvoError::gene_bits(bits)));
         }
     }
 
@@ -175,7 +175,7 @@ mod tests {
         for (genes, out) in [(2, 3), (3, 2), (4, 4)] {
             let mut values = [7.0; 4];
             let result = decode(&[1; 4][..genes], &ranges, &mut values[..out]);
-            assert_eq!(result, Err(EvoError::Lengths { genes, ranges: 3, out }));
+            assert_eq!(result, Err(EvoError::lengths(genes, 3, out)));
             assert_eq!(values, [7.0; 4]);
         }
     }
@@ -185,7 +185,7 @@ mod tests {
         for (low, high) in
             [(1.0, 0.0), (0.0, f32::INFINITY), (f32::NEG_INFINITY, 0.0), (f32::NAN, 0.0), (0.0, f32::NAN)]
         {
-            assert!(matches!(GeneRange::new(1, low, high), Err(EvoError::Range { .. })));
+            assert!(matches!(GeneRange::new(1, low, high), Err(EvoError::Config { field: "range", .. })));
         }
     }
 

@@ -7,9 +7,9 @@ use crate::error::EvoError;
 /// Checks the number of bits of a gene.
 ///
 /// # Errors
-/// [`EvoError::GeneBits`] outside 1 to 16.
-pub(crate) const fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
-    if 1 <= bits && bits <= u16::BITS { Ok(()) } else { Err(EvoError::GeneBits { bits }) }
+/// [`EvoError::Config`] outside 1 to 16.
+pub(crate) fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
+    if (1..=u16::BITS).contains(&bits) { Ok(()) } else { Err(EvoError::gene_bits(bits)) }
 }
 
 /// The change of a bit that mutation hits.
@@ -40,10 +40,10 @@ impl BitMutation {
     /// Mutation that hits each bit with probability `rate`, 0 to 1.
     ///
     /// # Errors
-    /// [`EvoError::Rate`] when `rate` is NaN or outside 0 to 1.
+    /// [`EvoError::Config`] when `rate` is NaN or outside 0 to 1.
     pub fn new(mutation: Mutation, rate: f64) -> Result<Self, EvoError> {
         if !(0.0..=1.0).contains(&rate) {
-            return Err(EvoError::Rate { rate });
+            return Err(EvoError::rate(rate));
         }
         let p = match mutation {
             Mutation::Resample => 0.5 * rate,
@@ -57,7 +57,7 @@ impl BitMutation {
     /// Returns the mutation for genes of the given number of bits, 1 to 16. The other bits stay.
     ///
     /// # Errors
-    /// [`EvoError::GeneBits`].
+    /// [`EvoError::Config`].
     pub fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
         check_gene_bits(bits)?;
         Ok(Self { gene_bits: u64::from(bits), ..self })
@@ -215,16 +215,19 @@ mod tests {
         let mutation = BitMutation::new(Mutation::Flip, p).unwrap();
         assert_eq!(mutation.with_gene_bits(16).unwrap(), mutation);
         for bits in [0, 17, u32::MAX] {
-            assert_eq!(mutation.with_gene_bits(bits), Err(EvoError::GeneBits { bits }));
+            assert_eq!(mutation.with_gene_bits(bits), Err(EvoError::gene_bits(bits)));
         }
     }
 
     #[test]
     fn what_is_no_probability_is_refused() {
         for rate in [-0.1, 1.1, f64::INFINITY] {
-            assert_eq!(BitMutation::new(Mutation::Flip, rate), Err(EvoError::Rate { rate }));
+            assert_eq!(BitMutation::new(Mutation::Flip, rate), Err(EvoError::rate(rate)));
         }
-        assert!(matches!(BitMutation::new(Mutation::Resample, f64::NAN), Err(EvoError::Rate { .. })));
+        assert!(matches!(
+            BitMutation::new(Mutation::Resample, f64::NAN),
+            Err(EvoError::Config { field: "mutation_rate", .. })
+        ));
     }
 
     #[test]

@@ -45,8 +45,7 @@ impl OnePlusOneConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::GeneBits`], [`EvoError::Rate`] or
-    /// [`EvoError::RisingRate`].
+    /// [`EvoError::Config`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, gene_bits, first_rate, rate_step, last_rate, .. } = *self;
         Population::check(PARENT_AND_MUTANT, genes)?;
@@ -55,7 +54,7 @@ impl OnePlusOneConfig {
             BitMutation::new(self.mutation, rate)?;
         }
         if last_rate > first_rate {
-            return Err(EvoError::RisingRate { first: first_rate, last: last_rate });
+            return Err(EvoError::rising_rate(first_rate, last_rate));
         }
         Ok(())
     }
@@ -150,10 +149,10 @@ impl OnePlusOne {
     /// the parent's evaluations, including the new one, and the mutant's fitness.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`].
+    /// [`EvoError::Shape`].
     pub fn judged(&self, fitness: &[Fitness]) -> Result<[Fitness; 2], EvoError> {
         let &[parent, mutant] = fitness else {
-            return Err(EvoError::FitnessCount { expected: PARENT_AND_MUTANT, found: fitness.len() });
+            return Err(EvoError::fitness_count(PARENT_AND_MUTANT, fitness.len()));
         };
         Ok([mean(self.grown(parent), self.evaluations.saturating_add(1)), mutant])
     }
@@ -244,11 +243,11 @@ impl Snapshot for OnePlusOne {
         let (generation, survivor, sum) = (reader.u32()?, reader.u32()?, reader.fitness()?);
         let evaluations = reader.u32()?;
         if survivor > 1 || (generation == 0 && survivor > 0) {
-            return Err(EvoError::StateContent { what: "a survivor", found: survivor.into() });
+            return Err(EvoError::state_content("a survivor", survivor.into()));
         }
         // The parent is evaluated once in every generation.
         if evaluations > generation || (evaluations == 0) != (generation == 0) {
-            return Err(EvoError::StateContent { what: "a number of evaluations", found: evaluations.into() });
+            return Err(EvoError::state_content("a number of evaluations", evaluations.into()));
         }
         let mut population = self.population.clone();
         reader.genes(&mut population, largest(self.config.gene_bits))?;
@@ -336,13 +335,13 @@ mod tests {
             change(&mut config);
             OnePlusOne::new(config, 0).unwrap_err()
         };
-        assert_eq!(refused(|c| c.genes = 0), EvoError::NoGenes);
-        assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::TooLarge { population: 2, genes: usize::MAX });
-        assert_eq!(refused(|c| c.gene_bits = 17), EvoError::GeneBits { bits: 17 });
-        assert_eq!(refused(|c| c.first_rate = 1.5), EvoError::Rate { rate: 1.5 });
-        assert_eq!(refused(|c| c.rate_step = -0.01), EvoError::Rate { rate: -0.01 });
-        assert!(matches!(refused(|c| c.last_rate = f64::NAN), EvoError::Rate { .. }));
-        assert_eq!(refused(|c| c.last_rate = 0.6), EvoError::RisingRate { first: 0.5, last: 0.6 });
+        assert_eq!(refused(|c| c.genes = 0), EvoError::no_genes());
+        assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::too_large(2, usize::MAX));
+        assert_eq!(refused(|c| c.gene_bits = 17), EvoError::gene_bits(17));
+        assert_eq!(refused(|c| c.first_rate = 1.5), EvoError::rate(1.5));
+        assert_eq!(refused(|c| c.rate_step = -0.01), EvoError::rate(-0.01));
+        assert!(matches!(refused(|c| c.last_rate = f64::NAN), EvoError::Config { field: "mutation_rate", .. }));
+        assert_eq!(refused(|c| c.last_rate = 0.6), EvoError::rising_rate(0.5, 0.6));
     }
 
     #[test]
@@ -351,7 +350,7 @@ mod tests {
         let before = search.clone();
         for found in [0, 1, 3] {
             let told = alloc::vec![Fitness::WORST; found];
-            assert_eq!(search.tell(&told), Err(EvoError::FitnessCount { expected: 2, found }));
+            assert_eq!(search.tell(&told), Err(EvoError::fitness_count(2, found)));
         }
         assert_eq!(search, before);
     }

@@ -57,7 +57,7 @@ impl RandomSearch {
     /// A search by generations of `population` genomes of `genes` genes, at its first.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::TooLarge`].
+    /// [`EvoError::Config`].
     pub fn new(genes: usize, population: usize, seed: u64) -> Result<Self, EvoError> {
         let mut population = Population::new(population, genes)?;
         draw(seed, 0, &mut population);
@@ -129,11 +129,11 @@ impl Snapshot for RandomSearch {
         if generation > 0 {
             let found = (reader.u32()?, reader.u64()?, reader.fitness()?);
             if found.0 >= generation {
-                return Err(EvoError::NoSuchGeneration { generation: found.0, latest: generation - 1 });
+                return Err(EvoError::no_such_generation(found.0, generation - 1));
             }
             let (individual, population) = (usize::try_from(found.1).unwrap_or(usize::MAX), self.population.len());
             if individual >= population {
-                return Err(EvoError::NoSuchIndividual { individual, population });
+                return Err(EvoError::no_such_individual(individual, population));
             }
             best = Some(BestIndividual { generation: found.0, individual, fitness: found.2 });
         }
@@ -180,7 +180,7 @@ mod tests {
         // A state with the best of a later generation is invalid, one with the best of the latest is valid.
         let mut state = search.save();
         state[4..8].copy_from_slice(&9_u32.to_le_bytes());
-        assert_eq!(search.restore(&state), Err(EvoError::NoSuchGeneration { generation: 9, latest: 2 }));
+        assert_eq!(search.restore(&state), Err(EvoError::no_such_generation(9, 2)));
     }
 
     #[test]

@@ -46,19 +46,18 @@ impl GaConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::NoParents`],
-    /// [`EvoError::TooManyParents`], [`EvoError::UnevenCopies`], [`EvoError::Rate`] or [`EvoError::GeneBits`].
+    /// [`EvoError::Config`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, population, parents, .. } = *self;
         Population::check(population, genes)?;
         if parents == 0 {
-            return Err(EvoError::NoParents);
+            return Err(EvoError::no_parents());
         }
         if parents > population {
-            return Err(EvoError::TooManyParents { population, parents });
+            return Err(EvoError::too_many_parents(population, parents));
         }
         if !population.is_multiple_of(parents) {
-            return Err(EvoError::UnevenCopies { population, parents });
+            return Err(EvoError::uneven_copies(population, parents));
         }
         check_gene_bits(self.gene_bits)?;
         self.bit_mutation().map(|_| ())
@@ -256,14 +255,14 @@ impl Snapshot for TruncationGa {
             let parent = reader.u32()?;
             let (individual, population) = (parent as usize, self.config.population);
             if individual >= population {
-                return Err(EvoError::NoSuchIndividual { individual, population });
+                return Err(EvoError::no_such_individual(individual, population));
             }
             selected.push(parent);
         }
         let mut sorted = selected.clone();
         sorted.sort_unstable();
         if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(EvoError::SelectedTwice { individual: twice[0] as usize });
+            return Err(EvoError::selected_twice(twice[0] as usize));
         }
         let mut population = Population::new(self.config.population, self.config.genes)?;
         reader.genes(&mut population, largest(self.config.gene_bits))?;
@@ -303,14 +302,14 @@ mod tests {
 
     #[test]
     fn impossible_configurations_are_refused() {
-        assert_eq!(refused(|c| c.genes = 0), EvoError::NoGenes);
-        assert_eq!(refused(|c| c.population = 0), EvoError::NoIndividuals);
-        assert_eq!(refused(|c| c.parents = 0), EvoError::NoParents);
-        assert_eq!(refused(|c| c.parents = 101), EvoError::TooManyParents { population: 100, parents: 101 });
-        assert_eq!(refused(|c| c.parents = 30), EvoError::UnevenCopies { population: 100, parents: 30 });
-        assert_eq!(refused(|c| c.mutation_rate = 1.5), EvoError::Rate { rate: 1.5 });
-        assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Rate { .. }));
-        assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::TooLarge { population: 100, genes: usize::MAX });
+        assert_eq!(refused(|c| c.genes = 0), EvoError::no_genes());
+        assert_eq!(refused(|c| c.population = 0), EvoError::no_individuals());
+        assert_eq!(refused(|c| c.parents = 0), EvoError::no_parents());
+        assert_eq!(refused(|c| c.parents = 101), EvoError::too_many_parents(100, 101));
+        assert_eq!(refused(|c| c.parents = 30), EvoError::uneven_copies(100, 30));
+        assert_eq!(refused(|c| c.mutation_rate = 1.5), EvoError::rate(1.5));
+        assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Config { field: "mutation_rate", .. }));
+        assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::too_large(100, usize::MAX));
     }
 
     #[test]
@@ -319,7 +318,7 @@ mod tests {
         let before = ga.clone();
         for found in [0, 99, 101] {
             let told = alloc::vec![Fitness::WORST; found];
-            assert_eq!(ga.tell(&told), Err(EvoError::FitnessCount { expected: 100, found }));
+            assert_eq!(ga.tell(&told), Err(EvoError::fitness_count(100, found)));
         }
         assert_eq!(ga, before);
     }

@@ -67,11 +67,10 @@ impl WordMap {
     /// The map of these genes \[parameters\].
     ///
     /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::GeneBits`], [`EvoError::Range`] of ends, or of a frozen value, that are not
-    /// finite or not low to high.
+    /// [`EvoError::Config`] for no genes, bits outside 1 to 16, and ends or frozen values that are not finite or not low to high.
     pub fn new(genes: Vec<WordGene>) -> Result<Self, EvoError> {
         if genes.is_empty() {
-            return Err(EvoError::NoGenes);
+            return Err(EvoError::no_genes());
         }
         let range = |gene: &WordGene| match *gene {
             WordGene::Word { bits, low, high, .. } => GeneRange::new(1, low, high)?.with_gene_bits(bits),
@@ -100,7 +99,7 @@ impl WordMap {
     /// Decodes integer genes \[words\] into a row of parameters \[parameters\], without allocation.
     ///
     /// # Errors
-    /// [`EvoError::Lengths`]. The row is then unchanged.
+    /// [`EvoError::Shape`]. The row is then unchanged.
     pub fn decode(&self, words: &[u16], parameters: &mut [f32]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let mut words = words.iter().copied();
@@ -120,13 +119,13 @@ impl WordMap {
     /// except for ignored bits and for ranges with fewer numbers than genes.
     ///
     /// # Errors
-    /// [`EvoError::Lengths`], or [`EvoError::Setting`] for a NaN of a parameter that is not frozen. The genes are then
+    /// [`EvoError::Shape`], or [`EvoError::OutOfRange`] for a NaN of a parameter that is not frozen. The genes are then
     /// unchanged.
     pub fn encode(&self, parameters: &[f32], words: &mut [u16]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let pairs = || self.genes.iter().zip(&self.ranges).zip(parameters).filter(|((_, range), _)| range.count() > 0);
         if pairs().any(|(_, parameter)| parameter.is_nan()) {
-            return Err(EvoError::Setting { name: "a parameter", value: f64::NAN, allowed: "a number" });
+            return Err(EvoError::OutOfRange { field: "a parameter", value: f64::NAN, allowed: "a number" });
         }
         for (((gene, range), &parameter), word) in pairs().zip(words) {
             if let WordGene::Word { bits, low, high, code } = *gene {
@@ -139,7 +138,7 @@ impl WordMap {
 
     fn check(&self, words: usize, parameters: usize) -> Result<(), EvoError> {
         let fits = words == self.words && parameters == self.genes.len();
-        if fits { Ok(()) } else { Err(EvoError::Lengths { genes: words, ranges: self.words, out: parameters }) }
+        if fits { Ok(()) } else { Err(EvoError::lengths(words, self.words, parameters)) }
     }
 }
 

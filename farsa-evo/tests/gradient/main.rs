@@ -3,6 +3,8 @@
 
 mod conformance;
 mod convergence;
+#[path = "../strategies/errors.rs"]
+mod errors;
 mod golden;
 mod observation_statistics;
 mod oracle;

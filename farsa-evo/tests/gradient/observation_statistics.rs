@@ -1,5 +1,6 @@
 //! Running statistics against sums over everything.
 
+use crate::errors;
 use farsa_evo::ObservationStatistics;
 use farsa_evo::{EvoError, Snapshot};
 use farsa_num::Stream;
@@ -82,7 +83,7 @@ fn what_cannot_be_is_left_out() {
         assert!(!statistics.push(&[0.0, wrong]));
     }
     let refused = |result: Result<(), EvoError>| match result.unwrap_err() {
-        EvoError::Setting { name, value, .. } => (name, value),
+        EvoError::OutOfRange { field, value, .. } => (field, value),
         other => panic!("{other:?}"),
     };
     assert_eq!(refused(statistics.add(1, &[0.0; 3], &[0.0; 2])), ("channels", 3.0));
@@ -94,12 +95,12 @@ fn what_cannot_be_is_left_out() {
     assert_eq!(statistics.add(0, &[3.0; 2], &[0.0; 2]), Ok(()));
     assert_eq!(refused(ObservationStatistics::new(0).map(|_| ())), ("channels", 0.0));
     let state = statistics.save();
-    let expected = EvoError::StateLength { expected: 40, found: 39 };
+    let expected = errors::state_length(40, 39);
     assert_eq!(statistics.restore(&state[1..]), Err(expected));
     for (place, wrong) in [(8, f64::NAN), (16, 1e300), (24, -1.0), (32, f64::INFINITY)] {
         let mut state = state.clone();
         state[place..place + 8].copy_from_slice(&wrong.to_le_bytes());
-        assert!(matches!(statistics.restore(&state), Err(EvoError::StateContent { .. })));
+        assert!(matches!(statistics.restore(&state), Err(EvoError::State { .. })));
     }
     assert_eq!(statistics, before);
 }
@@ -119,6 +120,6 @@ fn the_largest_batches_stay_finite() {
     let state = statistics.save();
     for length in (0..24).chain([25, 39]) {
         let state: Vec<u8> = state.iter().copied().cycle().take(length).collect();
-        assert!(matches!(ObservationStatistics::from_saved(&state), Err(EvoError::StateLength { .. })), "{length}");
+        assert!(matches!(ObservationStatistics::from_saved(&state), Err(EvoError::State { .. })), "{length}");
     }
 }

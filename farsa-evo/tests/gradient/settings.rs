@@ -1,5 +1,6 @@
 //! Configurations and states that cannot be are refused with their numbers.
 
+use crate::errors;
 use farsa_evo::gradient::{
     Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, Snes, SnesConfig, Xnes, XnesConfig,
 };
@@ -8,7 +9,7 @@ use farsa_evo::{EvoError, Population, Snapshot, Strategy};
 /// The name and the number of the setting that is refused.
 fn setting<T: std::fmt::Debug>(made: Result<T, EvoError>) -> (&'static str, f64) {
     match made.unwrap_err() {
-        EvoError::Setting { name, value, .. } => (name, value),
+        EvoError::OutOfRange { field, value, .. } => (field, value),
         other => panic!("{other:?}"),
     }
 }
@@ -26,11 +27,11 @@ fn impossible_natural_evolution_strategies_are_refused() {
     assert_eq!(setting(snes(|c| c.mean_learning_rate = -1.0)), ("mean_learning_rate", -1.0));
     assert_eq!(setting(snes(|c| c.sigma_learning_rate = f64::INFINITY)), ("sigma_learning_rate", f64::INFINITY));
     assert!(setting(snes(|c| c.sigma = f64::NAN)).1.is_nan());
-    assert_eq!(snes(|c| c.mean.clear()).unwrap_err(), EvoError::NoGenes);
-    assert_eq!(Snes::new(SnesConfig::new(vec![], 1.0), 0).unwrap_err(), EvoError::NoGenes);
-    assert_eq!(snes(|c| c.population = 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(snes(|c| c.mean.clear()).unwrap_err(), errors::no_genes());
+    assert_eq!(Snes::new(SnesConfig::new(vec![], 1.0), 0).unwrap_err(), errors::no_genes());
+    assert_eq!(snes(|c| c.population = 0).unwrap_err(), errors::no_individuals());
     let population = Population::MAX_GENES;
-    assert_eq!(snes(|c| c.population = 1 << 28).unwrap_err(), EvoError::TooLarge { population, genes: 3 });
+    assert_eq!(snes(|c| c.population = 1 << 28).unwrap_err(), errors::too_large(population, 3));
 
     let xnes = |change: fn(&mut XnesConfig)| {
         let mut config = XnesConfig::new(vec![0.0; 3], 1.0);
@@ -64,9 +65,9 @@ fn impossible_mirrored_strategies_are_refused() {
     assert_eq!(adam(1.0, 0.9, 1.0), ("first_decay", 1.0));
     assert_eq!(adam(0.9, -0.5, 1.0), ("second_decay", -0.5));
     assert_eq!(adam(0.9, 0.9, 0.0), ("epsilon", 0.0));
-    assert_eq!(open_ai(|c| c.pairs = 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(open_ai(|c| c.pairs = 0).unwrap_err(), errors::no_individuals());
     let population = usize::MAX;
-    assert_eq!(open_ai(|c| c.pairs = usize::MAX).unwrap_err(), EvoError::TooLarge { population, genes: 3 });
+    assert_eq!(open_ai(|c| c.pairs = usize::MAX).unwrap_err(), errors::too_large(population, 3));
 
     let pgpe = |change: fn(&mut PgpeConfig)| {
         let mut config = PgpeConfig::new(vec![0.0; 3], 1.0, 4);
@@ -79,7 +80,7 @@ fn impossible_mirrored_strategies_are_refused() {
     assert_eq!(setting(pgpe(|c| c.momentum = 1.5)), ("momentum", 1.5));
     assert_eq!(setting(pgpe(|c| c.sigma_learning_rate = -1.0)), ("sigma_learning_rate", -1.0));
     assert_eq!(setting(pgpe(|c| c.sigma_max_change = 1.0)), ("sigma_max_change", 1.0));
-    assert_eq!(pgpe(|c| c.pairs = 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(pgpe(|c| c.pairs = 0).unwrap_err(), errors::no_individuals());
 
     let ars = |change: fn(&mut ArsConfig)| {
         let mut config = ArsConfig::new(vec![0.0; 3], 4);
@@ -90,7 +91,7 @@ fn impossible_mirrored_strategies_are_refused() {
     assert_eq!(setting(ars(|c| c.top_directions = 5)), ("top_directions", 5.0));
     assert_eq!(setting(ars(|c| c.step_size = 0.0)), ("step_size", 0.0));
     assert_eq!(setting(ars(|c| c.noise = 0.0)), ("noise", 0.0));
-    assert_eq!(ars(|c| c.directions = 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(ars(|c| c.directions = 0).unwrap_err(), errors::no_individuals());
 }
 
 /// Puts a number in place of each of a state, and looks whether it is refused and nothing changed.
@@ -102,11 +103,11 @@ fn bent<S: Strategy<f64> + Snapshot + Clone + PartialEq + std::fmt::Debug>(mut s
     for place in (4..state.len()).step_by(8) {
         let mut state = state.clone();
         state[place..place + 8].copy_from_slice(&wrong.to_le_bytes());
-        assert!(matches!(other.restore(&state), Err(EvoError::StateContent { .. })), "{place}: {wrong}");
+        assert!(matches!(other.restore(&state), Err(EvoError::State { .. })), "{place}: {wrong}");
         assert_eq!(other, strategy);
     }
     for length in [0, 3, state.len() - 1] {
-        let expected = EvoError::StateLength { expected: state.len(), found: length };
+        let expected = errors::state_length(state.len(), length);
         assert_eq!(other.restore(&state[..length]), Err(expected));
     }
     assert_eq!(other, strategy);

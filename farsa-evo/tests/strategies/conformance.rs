@@ -1,5 +1,6 @@
 //! What the check of strategies finds in one that is wrong; how often ours want their states kept.
 
+use crate::errors;
 use farsa_evo::coevolution::Populations;
 use farsa_evo::covariance::{
     CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
@@ -53,7 +54,7 @@ impl Strategy<f64> for Summing {
     }
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         if fitness.len() != 3 {
-            return Err(EvoError::FitnessCount { expected: 3, found: fitness.len() });
+            return Err(errors::fitness_count(3, fitness.len()));
         }
         self.generation += 1;
         self.total += fitness.iter().map(|fitness| fitness.get()).filter(|value| value.is_finite()).sum::<f64>();
@@ -92,7 +93,7 @@ impl Snapshot for Summing {
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         let (expected, found) = (self.save().len(), state.len());
         if expected != found {
-            return Err(EvoError::StateLength { expected, found });
+            return Err(errors::state_length(expected, found));
         }
         let real = |at: usize| f64::from_le_bytes(*state[at..].first_chunk().unwrap());
         self.generation = u32::from_le_bytes(*state.first_chunk().unwrap());
@@ -132,7 +133,7 @@ fn a_recorded_gene_that_is_no_number_is_named() {
     record.push(RecordEntry { frame: &frame, state: None }).unwrap();
     let mut genomes = |generation| record.genomes(&mut strategy, generation);
     assert_eq!(genomes(0).unwrap().as_slice(), [0.0; 6]);
-    assert_eq!(genomes(1), Err(EvoError::StateContent { what: "a gene", found: 0x7ff8_0001_0203_0405 }));
+    assert_eq!(genomes(1), Err(errors::state_content("a gene", 0x7ff8_0001_0203_0405)));
 }
 
 /// As often as telling again takes a second or some: of genes that are drawn in all, or of their cube.

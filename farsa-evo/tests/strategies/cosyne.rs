@@ -1,5 +1,6 @@
 //! Cooperative co-evolution of weights: beside a transcription of the algorithm, on known functions, and its bits.
 
+use crate::errors;
 use farsa_evo::coevolution::{Cosyne, CosyneConfig, Permutation};
 use farsa_evo::{EvoError, Fitness, RecordKind, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
@@ -171,7 +172,7 @@ fn impossible_configurations_are_refused() {
         let mut config = CosyneConfig::new(4);
         change(&mut config);
         match Cosyne::new(config, 0).unwrap_err() {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         }
     };
@@ -185,12 +186,12 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(&|c| c.mutation_rate = 1.5), ("the mutation rate", 1.5));
     assert_eq!(refused(&|c| c.mutation_scale = -0.5), ("the scale of mutation", -0.5));
     let nan = CosyneConfig { mutation_scale: f64::NAN, ..CosyneConfig::new(4) };
-    assert!(matches!(nan.validate(), Err(EvoError::Setting { name: "the scale of mutation", .. })));
-    assert_eq!(Cosyne::new(CosyneConfig::new(0), 0).unwrap_err(), EvoError::NoGenes);
+    assert!(matches!(nan.validate(), Err(EvoError::OutOfRange { field: "the scale of mutation", .. })));
+    assert_eq!(Cosyne::new(CosyneConfig::new(0), 0).unwrap_err(), errors::no_genes());
     let nobody = CosyneConfig { population: 0, ..CosyneConfig::new(4) };
-    assert_eq!(Cosyne::new(nobody, 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(Cosyne::new(nobody, 0).unwrap_err(), errors::no_individuals());
     let large = CosyneConfig { segments: vec![usize::MAX, 2], ..CosyneConfig::new(4) };
-    assert_eq!(large.validate(), Err(EvoError::TooLarge { population: 30, genes: usize::MAX }));
+    assert_eq!(large.validate(), Err(errors::too_large(30, usize::MAX)));
 }
 
 #[test]
@@ -206,7 +207,7 @@ fn a_damaged_state_is_refused() {
         assert!(search.snapshot().unwrap().restore(&damaged).is_err(), "{at}");
         assert_eq!(search, before);
     }
-    assert!(matches!(search.restore(&state[..20]), Err(EvoError::StateLength { found: 20, .. })));
+    assert!(matches!(search.restore(&state[..20]), Err(EvoError::State { .. })));
 }
 
 proptest! {

@@ -1,5 +1,6 @@
 //! Covariance matrix adaptation against a transcription of its equations, on test functions, and against bad input.
 
+use crate::errors;
 use farsa_evo::covariance::{CholeskyCmaEs, CmaEs, CmaEsConfig, SeparableCmaEs, SeparableCmaEsConfig};
 use farsa_evo::{EvoError, Fitness, RecordKind, Snapshot, Strategy, check_strategy};
 use farsa_num::Digest;
@@ -341,13 +342,13 @@ fn states_that_cannot_be_change_nothing() {
     let (before, state) = (search.clone(), search.save());
     // Generation, updates, sigma, mean, paths, age, half of C, D, B.
     assert_eq!(state.len(), 4 + 4 + 8 * (1 + 2 + 2 + 2) + 4 + 8 * (3 + 2 + 4));
-    assert_eq!(search.restore(&state[1..]), Err(EvoError::StateLength { expected: 140, found: 139 }));
+    assert_eq!(search.restore(&state[1..]), Err(errors::state_length(140, 139)));
     for (place, wrong) in
         [(8, 0.0), (8, f64::NAN), (16, f64::INFINITY), (32, 1e200), (68, 1e120), (92, -1.0), (108, 1.5)]
     {
         let mut state = state.clone();
         state[place..place + 8].copy_from_slice(&wrong.to_le_bytes());
-        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{place}");
+        assert!(matches!(search.restore(&state), Err(EvoError::State { .. })), "{place}");
         assert_eq!(search, before);
     }
     search.restore(&state).unwrap();
@@ -361,7 +362,7 @@ fn states_that_cannot_be_change_nothing() {
     for (place, wrong) in [(8, 0.0), (68, f64::NAN), (92, 0.0), (92, -1.0), (100, 1e120), (108, 0.0)] {
         let mut state = state.clone();
         state[place..place + 8].copy_from_slice(&wrong.to_le_bytes());
-        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{place}");
+        assert!(matches!(search.restore(&state), Err(EvoError::State { .. })), "{place}");
         assert_eq!(search, before);
     }
     search.restore(&state).unwrap();

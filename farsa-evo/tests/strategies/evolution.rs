@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::errors;
 use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
 use farsa_evo::{
@@ -64,11 +65,11 @@ fn rebuilds<S: Strategy + std::fmt::Debug + PartialEq>(fresh: impl Fn() -> S) {
     for generation in [0, 3, 3, 17, 59] {
         assert_eq!(record.genomes(&mut on_the_way, generation).unwrap(), evaluated[generation as usize]);
     }
-    let behind = EvoError::NoSuchGeneration { generation: 58, latest: 60 };
+    let behind = errors::no_such_generation(58, 60);
     assert_eq!(record.rebuild(&mut on_the_way, 58), Err(behind));
     record.rebuild(&mut on_the_way, 60).unwrap();
     assert_eq!(on_the_way, strategy);
-    let ahead = EvoError::NoSuchGeneration { generation: 61, latest: 60 };
+    let ahead = errors::no_such_generation(61, 60);
     assert_eq!(record.genomes(&mut fresh(), 61), Err(ahead));
     // What happened after a generation is forgotten, and happens again.
     let mut again = record.clone();
@@ -162,7 +163,7 @@ impl Snapshot for Slow {
         self.0.generation.to_le_bytes().into()
     }
     fn restore(&mut self, _: &[u8]) -> Result<(), EvoError> {
-        Err(EvoError::NoSnapshot)
+        Err(errors::no_snapshot())
     }
 }
 
@@ -173,13 +174,13 @@ fn recorded_genomes_come_back_and_are_not_told() {
     for (generation, population) in (0..).zip(&evaluated) {
         assert_eq!(&record.genomes(&mut Slow(HillClimber::new()), generation).unwrap(), population);
     }
-    assert_eq!(record.rebuild(&mut Slow(HillClimber::new()), 3), Err(EvoError::GenomesOnly));
+    assert_eq!(record.rebuild(&mut Slow(HillClimber::new()), 3), Err(errors::genomes_only()));
     assert!(record.genomes(&mut Slow(HillClimber::new()), 9).is_err());
     assert_eq!(record.order(3), None);
     assert!(record.champion(0, 8).is_some() && record.champion(0, 9).is_none());
     // Nothing could make this one go on.
     let mut lost = Slow(HillClimber { population: Population::new(3, 2).unwrap(), ..HillClimber::new() });
-    assert_eq!(Record::new(&mut lost).unwrap_err(), EvoError::NoSnapshot);
+    assert_eq!(Record::new(&mut lost).unwrap_err(), errors::no_snapshot());
 }
 
 /// A strategy of some populations that names some champions, whatever it is told.
@@ -215,15 +216,15 @@ fn what_a_strategy_says_of_itself_is_checked() {
         Record::new(&mut strategy).and_then(|mut record| record.tell(&mut strategy, &[Fitness::WORST; 6])).unwrap_err()
     };
     for populations in [0, 4, 7] {
-        assert_eq!(wrong(populations, &[]), EvoError::UnevenPopulations { populations, individuals: 6 });
+        assert_eq!(wrong(populations, &[]), errors::uneven_populations(populations, 6));
     }
-    let count = EvoError::OtherRecord { what: "champions", recorded: 2 };
-    assert_eq!((wrong(2, &[]), wrong(2, &[0, 3, 4])), (count, count));
+    let count = errors::other_record("champions", 2);
+    assert_eq!((wrong(2, &[]), wrong(2, &[0, 3, 4])), (count.clone(), count));
     for (champions, individual) in [([3, 3], 3), ([0, 6], 6), ([0, 1], 1), ([usize::MAX, 3], usize::MAX)] {
-        assert_eq!(wrong(2, &champions), EvoError::NoSuchIndividual { individual, population: 6 });
+        assert_eq!(wrong(2, &champions), errors::no_such_individual(individual, 6));
     }
     // It stays where it is, whatever it is told.
-    assert_eq!(wrong(2, &[0, 3]), EvoError::Stuck { generation: 0, found: 0 });
+    assert_eq!(wrong(2, &[0, 3]), errors::stuck(0, 0));
 }
 
 #[test]
@@ -232,19 +233,19 @@ fn a_record_is_of_one_strategy() {
     let mut evolution = TruncationGa::new(config, 4).unwrap();
     let mut record = Record::new(&mut evolution).unwrap();
     let told = [Fitness::WORST; 6];
-    assert_eq!(record.tell(&mut evolution, &told[1..]), Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    assert_eq!(record.tell(&mut evolution, &told[1..]), Err(errors::fitness_count(6, 5)));
     evolution.tell(&told).unwrap();
-    let elsewhere = EvoError::OtherRecord { what: "generations", recorded: 0 };
+    let elsewhere = errors::other_record("generations", 0);
     assert_eq!(record.tell(&mut evolution, &told), Err(elsewhere));
-    assert_eq!(Record::new(&mut evolution), Err(EvoError::AlreadyTold { generation: 1 }));
+    assert_eq!(Record::new(&mut evolution), Err(errors::not_at_start(1)));
     let other = |config| record.rebuild(&mut TruncationGa::new(config, 4).unwrap(), 0).unwrap_err();
-    assert_eq!(other(GaConfig { genes: 4, ..config }), EvoError::OtherRecord { what: "genes", recorded: 3 });
+    assert_eq!(other(GaConfig { genes: 4, ..config }), errors::other_record("genes", 3));
     let more = GaConfig { population: 8, ..config };
-    assert_eq!(other(more), EvoError::OtherRecord { what: "individuals", recorded: 6 });
+    assert_eq!(other(more), errors::other_record("individuals", 6));
     let of_values = record.check(&RandomSearch::new(3, 6, 4).unwrap()).unwrap_err();
-    assert!(matches!(of_values, EvoError::OtherRecord { what: "bytes of another kind", .. }), "{of_values}");
+    assert!(matches!(of_values, EvoError::Record { .. }), "{of_values}");
     let halves = Populations::truncation(&[GaConfig { population: 3, parents: 1, ..config }; 2], 4).unwrap();
-    assert_eq!(record.check(&halves), Err(EvoError::OtherRecord { what: "populations", recorded: 1 }));
+    assert_eq!(record.check(&halves), Err(errors::other_record("populations", 1)));
 }
 
 #[test]
@@ -388,7 +389,7 @@ fn values_are_told_as_fitness() {
     by_fitness.tell(&values.map(Fitness::nan_as_failed)).unwrap();
     assert_eq!(by_values, by_fitness);
     assert_eq!(by_values.selected(), [2, 4]);
-    assert_eq!(by_values.tell_values(&values[1..]), Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    assert_eq!(by_values.tell_values(&values[1..]), Err(errors::fitness_count(6, 5)));
 }
 
 /// With fitness that falls from generation to generation, so that the best so far is an early one.
@@ -410,7 +411,7 @@ fn the_champion_is_the_earliest_best_of_all_generations() {
     let mut best = Some(champion.clone());
     let none = [Fitness::WORST; 5];
     let refused = Champion::keep(&mut best, 5, evolution.ask(), &none);
-    assert_eq!(refused, Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    assert_eq!(refused, Err(errors::fitness_count(6, 5)));
     let fitness = [0.0, 0.0, 0.0, 0.0, 0.0, 8.0].map(Fitness::nan_as_failed);
     Champion::keep(&mut best, 5, evolution.ask(), &fitness).unwrap();
     let better = best.unwrap();

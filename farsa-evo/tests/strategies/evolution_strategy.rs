@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods)]
 
+use crate::errors;
 use farsa_evo::real::{EvolutionStrategy, EvolutionStrategyConfig, Recombination, StepSizes, Survival};
 use farsa_evo::{EvoError, Fitness, Record, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
@@ -237,7 +238,7 @@ fn impossible_configurations_are_refused() {
         let mut config = EvolutionStrategyConfig::new(vec![0.0; 3], 1.0);
         change(&mut config);
         match EvolutionStrategy::new(config, 0).unwrap_err() {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         }
     };
@@ -251,9 +252,9 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(&|c| c.step_sizes = StepSizes::PerGene { tau_0: 11.0, tau: 1.0 }), ("tau_0", 11.0));
     let base = EvolutionStrategyConfig::new(vec![0.0; 3], 1.0);
     let nobody = EvolutionStrategyConfig { parents: 0, ..base.clone() };
-    assert_eq!(EvolutionStrategy::new(nobody, 0).unwrap_err(), EvoError::NoParents);
+    assert_eq!(EvolutionStrategy::new(nobody, 0).unwrap_err(), errors::no_parents());
     let many = EvolutionStrategyConfig { offspring: usize::MAX, ..base };
-    assert_eq!(EvolutionStrategy::new(many, 0).unwrap_err(), EvoError::TooLarge { population: usize::MAX, genes: 3 });
+    assert_eq!(EvolutionStrategy::new(many, 0).unwrap_err(), errors::too_large(usize::MAX, 3));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Co-evolution with generalist selection: beside a transcription of its source, conformant, and on games.
 
+use crate::errors;
 use farsa_evo::coevolution::{GeneralistCoevolution, GeneralistConfig};
 use farsa_evo::words::Mutation;
 use farsa_evo::{EvoError, Fitness, RecordKind, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
@@ -218,7 +219,7 @@ fn it_keeps_to_what_a_strategy_is() {
     assert_eq!((search.populations(), search.record_kind()), (2, RecordKind::Values));
     assert_eq!(search.score_shape(), ScoreShape::new(5, 0));
     let expected = search.score_shape();
-    let refused = Err(EvoError::ScoreShape { expected, found: ScoreShape::FITNESS });
+    let refused = Err(errors::score_shape(expected, ScoreShape::FITNESS));
     assert_eq!(search.tell(&[Fitness::WORST; 18]), refused);
 }
 
@@ -285,23 +286,23 @@ fn impossible_configurations_are_refused_with_their_numbers() {
         GeneralistCoevolution::new(config, 1).unwrap_err()
     };
     let setting = |error| match error {
-        EvoError::Setting { name, value, .. } => (name, value),
+        EvoError::OutOfRange { field, value, .. } => (field, value),
         other => panic!("{other}"),
     };
-    assert_eq!(refused(|c| c.genes = 0), EvoError::NoGenes);
-    assert_eq!(refused(|c| c.members = 0), EvoError::NoIndividuals);
+    assert_eq!(refused(|c| c.genes = 0), errors::no_genes());
+    assert_eq!(refused(|c| c.members = 0), errors::no_individuals());
     assert_eq!(setting(refused(|c| c.newcomers = 0)), ("the number of newcomers", 0.0));
     assert_eq!(setting(refused(|c| c.newcomers = 7)), ("the number of newcomers", 7.0));
     assert_eq!(setting(refused(|c| c.newcomers = 160)), ("the number of newcomers", 160.0));
     assert_eq!(setting(refused(|c| c.opponents = 0)), ("the number of opponents", 0.0));
     assert_eq!(setting(refused(|c| c.opponents = 81)), ("the number of opponents", 81.0));
     assert_eq!(setting(refused(|c| c.iterations = 0)), ("the generations of training", 0.0));
-    assert_eq!(refused(|c| c.gene_bits = 17), EvoError::GeneBits { bits: 17 });
-    assert_eq!(refused(|c| c.mutation_rate = -0.5), EvoError::Rate { rate: -0.5 });
-    assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Rate { .. }));
-    let many = EvoError::TooLarge { population: 40_000, genes: 20_000 };
+    assert_eq!(refused(|c| c.gene_bits = 17), errors::gene_bits(17));
+    assert_eq!(refused(|c| c.mutation_rate = -0.5), errors::rate(-0.5));
+    assert!(matches!(refused(|c| c.mutation_rate = f64::NAN), EvoError::Config { field: "mutation_rate", .. }));
+    let many = errors::too_large(40_000, 20_000);
     assert_eq!(refused(|c| [c.members, c.newcomers] = [10_000; 2]), many);
-    assert!(matches!(refused(|c| c.members = usize::MAX), EvoError::TooLarge { .. }));
+    assert!(matches!(refused(|c| c.members = usize::MAX), EvoError::Config { field: "population", .. }));
 }
 
 #[test]
@@ -337,7 +338,7 @@ fn damaged_states_are_refused_whole() {
             let bent = [&state[..5], &[0xff], &state[6..]].concat();
             assert_eq!(search.restore(&bent).unwrap_err(), {
                 let found = u64::from(u16::from_le_bytes([state[4], 0xff]));
-                EvoError::StateContent { what: "a gene", found }
+                errors::state_content("a gene", found)
             });
         }
     }

@@ -4,6 +4,7 @@
 mod conformance;
 mod cosyne;
 mod covariance;
+mod errors;
 mod evolution;
 mod evolution_strategy;
 mod generalist_coevolution;

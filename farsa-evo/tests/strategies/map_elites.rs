@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::errors;
 use farsa_evo::archives::{Addition, Archive, Cells, CvtCells, Emitter, GridCells, MapElites, MapElitesConfig};
 use farsa_evo::covariance::{CmaEs, CmaEsConfig};
 use farsa_evo::{EvoError, Fitness, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
@@ -240,7 +241,7 @@ fn it_keeps_its_bits() {
 fn impossible_configurations_are_refused() {
     let error = |config: MapElitesConfig| MapElites::new(config, grid(), 0).unwrap_err();
     let refused = |emitter: Emitter| match error(MapElitesConfig { bounds: BOUNDS.to_vec(), emitters: vec![emitter] }) {
-        EvoError::Setting { name, value, .. } => (name, value),
+        EvoError::OutOfRange { field, value, .. } => (field, value),
         other => panic!("{other}"),
     };
     assert_eq!(refused(Emitter::Gaussian { batch: 5, sigma: 1.5 }), ("sigma of the Gaussian emitter", 1.5));
@@ -254,18 +255,18 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(improvement(5, &[0.5; 3], 0.0)), ("sigma of the improvement emitter", 0.0));
     let gaussian = || Emitter::Gaussian { batch: 5, sigma: 0.1 };
     let none = MapElitesConfig { bounds: BOUNDS.to_vec(), emitters: Vec::new() };
-    assert_eq!(error(none), EvoError::NoIndividuals);
-    assert_eq!(error(MapElitesConfig { bounds: Vec::new(), emitters: vec![gaussian()] }), EvoError::NoGenes);
+    assert_eq!(error(none), errors::no_individuals());
+    assert_eq!(error(MapElitesConfig { bounds: Vec::new(), emitters: vec![gaussian()] }), errors::no_genes());
     let frozen = MapElitesConfig { bounds: vec![[1.0; 2]], emitters: vec![improvement(5, &[1.0], 0.1)] };
-    assert!(matches!(error(frozen), EvoError::Setting { name: "the high end of a gene", value: 1.0, .. }));
+    assert!(matches!(error(frozen), EvoError::OutOfRange { field: "the high end of a gene", value: 1.0, .. }));
     let many = GridCells::new(vec![[0.0, 1.0]; 2], vec![1 << 14, 1 << 14]).unwrap();
     let found = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), many, 0).unwrap_err();
-    assert_eq!(found, EvoError::TooLarge { population: 1 << 28, genes: 3 });
+    assert_eq!(found, errors::too_large(1 << 28, 3));
     let mut search = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), grid(), 1).unwrap();
     let (expected, found) = (ScoreShape::new(1, 2), ScoreShape::FITNESS);
-    assert_eq!(search.tell(&[Fitness::WORST; 100]), Err(EvoError::ScoreShape { expected, found }));
+    assert_eq!(search.tell(&[Fitness::WORST; 100]), Err(errors::score_shape(expected, found)));
     let mut archive = Archive::new(grid(), 3).unwrap();
-    let lengths = |genes, ranges| Err(EvoError::Lengths { genes, ranges, out: ranges });
+    let lengths = |genes, ranges| Err(errors::lengths(genes, ranges, ranges));
     assert_eq!(archive.add(&[0.0; 2], 1.0, &[0.0; 2]), lengths(2, 3));
     assert_eq!(archive.add(&[0.0; 3], 1.0, &[0.0; 3]), lengths(3, 2));
     assert_eq!(archive.add(&[0.0; 3], f64::NAN, &[0.0; 2]), Ok(Addition::None));
@@ -300,7 +301,7 @@ fn a_damaged_state_is_refused() {
         assert!(search.restore(&damaged).is_err(), "{at}");
         assert_eq!(search, before);
     }
-    assert_eq!(search.restore(&[0; 4]), Err(EvoError::StateLength { expected: 8, found: 4 }));
+    assert_eq!(search.restore(&[0; 4]), Err(errors::state_length(8, 4)));
     search.restore(&state).unwrap();
     assert_eq!(search, before);
 }

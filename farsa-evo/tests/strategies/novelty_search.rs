@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 
+use crate::errors;
 use farsa_evo::archives::{ArchiveRule, NoveltyConfig, NoveltySearch};
 use farsa_evo::covariance::{CmaEs, CmaEsConfig};
 use farsa_evo::real::{EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig};
@@ -179,7 +180,7 @@ fn it_keeps_its_bits() {
 #[test]
 fn impossible_configurations_are_refused() {
     let refused = |config: NoveltyConfig| match NoveltySearch::new(config, words().unwrap(), 0).unwrap_err() {
-        EvoError::Setting { name, value, .. } => (name, value),
+        EvoError::OutOfRange { field, value, .. } => (field, value),
         other => panic!("{other}"),
     };
     let base = NoveltyConfig::new(2);
@@ -192,13 +193,13 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(rule(threshold(1.0, 0))), ("the patience of the archive", 0.0));
     let mut told = words().unwrap();
     told.tell(&[Fitness::WORST; 12]).unwrap();
-    assert_eq!(NoveltySearch::new(base, told, 0).unwrap_err(), EvoError::AlreadyTold { generation: 1 });
+    assert_eq!(NoveltySearch::new(base, told, 0).unwrap_err(), errors::not_at_start(1));
     let own = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
     let (expected, found) = (ScoreShape::FITNESS, ScoreShape::new(1, 2));
-    assert_eq!(NoveltySearch::new(base, own, 0).unwrap_err(), EvoError::ScoreShape { expected, found });
+    assert_eq!(NoveltySearch::new(base, own, 0).unwrap_err(), errors::score_shape(expected, found));
     let mut search = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
     let (expected, found) = (found, expected);
-    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::ScoreShape { expected, found }));
+    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(errors::score_shape(expected, found)));
 }
 
 #[test]
@@ -246,7 +247,8 @@ fn distances_are_taken_in_units() {
     }
     let fresh = || NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();
     for units in [&[1.0][..], &[1.0, 0.0], &[f64::NAN, 1.0], &[1.0, f64::INFINITY]] {
-        assert!(matches!(fresh().with_units::<u16>(units), Err(EvoError::Setting { .. })), "{units:?}");
+        assert!(matches!(fresh().with_units::<u16>(units), Err(EvoError::OutOfRange { .. })), "{units:?}");
     }
-    assert!(matches!(plain.with_units::<u16>(&[1.0, 1.0]), Err(EvoError::AlreadyTold { generation: 20 })));
+    let late = plain.with_units::<u16>(&[1.0, 1.0]).map(drop);
+    assert_eq!(late, Err(errors::not_at_start(20)));
 }

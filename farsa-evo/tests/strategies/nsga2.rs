@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods)]
 
+use crate::errors;
 use farsa_evo::coevolution::Populations;
 use farsa_evo::pareto::{Nsga2, Nsga2Config, dominates, hypervolume};
 use farsa_evo::{EvoError, Fitness, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
@@ -243,7 +244,7 @@ fn impossible_configurations_are_refused() {
         let mut config = Nsga2Config::new(vec![[0.0, 1.0]; 3], 2);
         change(&mut config);
         match Nsga2::new(config, 0).unwrap_err() {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         }
     };
@@ -255,10 +256,10 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(&|c| c.mutation_eta = -1.0), ("eta of polynomial mutation", -1.0));
     let error = |config| Nsga2::new(config, 0).unwrap_err();
     let base = Nsga2Config::new(vec![[0.0, 1.0]; 3], 2);
-    assert_eq!(error(Nsga2Config::new(Vec::new(), 2)), EvoError::NoGenes);
-    assert_eq!(error(Nsga2Config { population: 0, ..base.clone() }), EvoError::NoIndividuals);
+    assert_eq!(error(Nsga2Config::new(Vec::new(), 2)), errors::no_genes());
+    assert_eq!(error(Nsga2Config { population: 0, ..base.clone() }), errors::no_individuals());
     let many = Nsga2Config { objectives: usize::MAX, ..base };
-    assert_eq!(error(many), EvoError::TooLarge { population: 200, genes: usize::MAX });
+    assert_eq!(error(many), errors::too_large(200, usize::MAX));
 }
 
 #[test]
@@ -284,7 +285,7 @@ fn a_damaged_state_is_refused() {
         assert!(search.restore(&damaged).is_err(), "{at}");
         assert_eq!(search, before);
     }
-    assert_eq!(search.restore(&[]), Err(EvoError::StateLength { expected: 4, found: 0 }));
+    assert_eq!(search.restore(&[]), Err(errors::state_length(4, 0)));
     search.restore(&state).unwrap();
     assert_eq!(search, before);
 }
@@ -294,7 +295,7 @@ fn fitness_is_too_little() {
     let [two, _, one, _] = configs();
     let mut search = Nsga2::new(two, 1).unwrap();
     let (expected, found) = (ScoreShape::new(2, 0), ScoreShape::FITNESS);
-    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(EvoError::ScoreShape { expected, found }));
+    assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(errors::score_shape(expected, found)));
     // Of one objective it is told as any other.
     let mut search = Nsga2::new(one, 1).unwrap();
     search.tell(&[Fitness::WORST; 12]).unwrap();

@@ -1,5 +1,6 @@
 //! Selection by the outcomes of encounters: beside a transcription of its source, and on a game without a best player.
 
+use crate::errors;
 use farsa_evo::coevolution::{Outcomes, Replacement};
 use farsa_evo::{EvoError, Fitness};
 use farsa_num::Stream;
@@ -125,14 +126,14 @@ fn failed_encounters_rank_last_and_choose_nobody() {
 
 #[test]
 fn impossible_sizes_are_refused() {
-    assert_eq!(Outcomes::new(0, vec![1.0]), Err(EvoError::NoIndividuals));
-    assert_eq!(Outcomes::new(3, Vec::new()), Err(EvoError::NoIndividuals));
-    assert_eq!(Outcomes::new(3, vec![0.0; 5]), Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    assert_eq!(Outcomes::new(0, vec![1.0]), Err(errors::no_individuals()));
+    assert_eq!(Outcomes::new(3, Vec::new()), Err(errors::no_individuals()));
+    assert_eq!(Outcomes::new(3, vec![0.0; 5]), Err(errors::fitness_count(6, 5)));
     let outcomes = Outcomes::new(2, vec![0.0; 6]).unwrap();
     for count in [0, 3] {
         let refused = outcomes.differing_opponents(count, &mut Stream::from_seed(1));
-        assert!(matches!(refused, Err(EvoError::Setting { value, .. }) if value == count as f64));
+        assert!(matches!(refused, Err(EvoError::OutOfRange { value, .. }) if value == count as f64));
     }
-    assert!(matches!(outcomes.replacements(3), Err(EvoError::Setting { value: 3.0, .. })));
+    assert!(matches!(outcomes.replacements(3), Err(EvoError::OutOfRange { value: 3.0, .. })));
     assert_eq!(outcomes.replacements(0), Ok(Vec::new()));
 }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::disallowed_methods)]
 
+use crate::errors;
 use farsa_evo::real::{Crossover, RealGa, RealGaConfig, RealMutation, Selection};
 use farsa_evo::{EvoError, Fitness, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
@@ -208,7 +209,7 @@ fn impossible_configurations_are_refused() {
         let mut config = RealGaConfig::new(vec![[0.0, 1.0]; 3]);
         change(&mut config);
         match RealGa::new(config, 0).unwrap_err() {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         }
     };
@@ -228,9 +229,9 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(&|c| c.mutation = mutation), ("sigma of mutation", 2.0));
     let mutation = RealMutation::SelfAdaptive { rate: 0.1, initial: 0.1, tau: 0.1, smallest: 0.0 };
     assert_eq!(refused(&|c| c.mutation = mutation), ("the smallest step size", 0.0));
-    assert_eq!(RealGa::new(RealGaConfig::new(Vec::new()), 0).unwrap_err(), EvoError::NoGenes);
+    assert_eq!(RealGa::new(RealGaConfig::new(Vec::new()), 0).unwrap_err(), errors::no_genes());
     let nobody = RealGaConfig { population: 0, ..RealGaConfig::new(vec![[0.0, 1.0]]) };
-    assert_eq!(RealGa::new(nobody, 0).unwrap_err(), EvoError::NoIndividuals);
+    assert_eq!(RealGa::new(nobody, 0).unwrap_err(), errors::no_individuals());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Covariance matrix adaptation that begins anew: which runs follow each other, and what they find.
 
+use crate::errors;
 use farsa_evo::covariance::{CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
 use farsa_evo::{EvoError, Fitness, Snapshot, Strategy, check_strategy};
 use farsa_num::{Digest, sin_cos};
@@ -139,11 +140,11 @@ fn impossible_configurations_are_refused() {
         change(&mut config);
         CmaEsRestarts::new(config, 0).unwrap_err()
     };
-    assert_eq!(refused(|c| c.first.mean.clear()), EvoError::NoGenes);
+    assert_eq!(refused(|c| c.first.mean.clear()), errors::no_genes());
     assert_eq!(refused(|c| c.spread = -1.0).to_string(), "spread is -1, where 0 to 1e100 is possible");
     // The largest run has 512 times as many.
     let population = 512 * 1_000_000;
-    assert_eq!(refused(|c| c.first.population = 1_000_000), EvoError::TooLarge { population, genes: 4 });
+    assert_eq!(refused(|c| c.first.population = 1_000_000), errors::too_large(population, 4));
 }
 
 #[test]
@@ -160,13 +161,13 @@ fn states_that_cannot_be_change_nothing() {
     {
         let mut state = state.clone();
         state[place..place + 4].copy_from_slice(&wrong.to_le_bytes());
-        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{place}: {wrong}");
+        assert!(matches!(search.restore(&state), Err(EvoError::State { .. })), "{place}: {wrong}");
         assert_eq!(search, before);
     }
     for wrong in [0.0, f64::NAN, -1.0] {
         let mut state = state.clone();
         state[72..80].copy_from_slice(&f64::to_le_bytes(wrong));
-        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{wrong}");
+        assert!(matches!(search.restore(&state), Err(EvoError::State { .. })), "{wrong}");
         assert_eq!(search, before);
     }
     search.restore(&state).unwrap();

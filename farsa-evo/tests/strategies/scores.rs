@@ -1,5 +1,6 @@
 //! Strategies that are told more than one number of an individual: what they refuse, their records, several side by side.
 
+use crate::errors;
 use farsa_evo::coevolution::Populations;
 use farsa_evo::{EvoError, Fitness, Population, Record, ScoreShape, Scores, Snapshot, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
@@ -69,7 +70,7 @@ impl Snapshot for Extremes {
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let wrong = EvoError::StateLength { expected: 28, found: state.len() };
+        let wrong = errors::state_length(28, state.len());
         let (generation, genes) = state.split_first_chunk::<4>().filter(|_| state.len() == 28).ok_or(wrong)?;
         self.generation = u32::from_le_bytes(*generation);
         let genes = genes.as_chunks::<2>().0.iter().map(|gene| u16::from_le_bytes(*gene));
@@ -146,26 +147,26 @@ fn other_shapes_are_refused_everywhere() {
     let mut record = Record::new(&mut strategy).unwrap();
     let before = strategy.clone();
     let fitness = [Fitness::WORST; 6];
-    let one = EvoError::ScoreShape { expected: SHAPE, found: ScoreShape::FITNESS };
+    let one = errors::score_shape(SHAPE, ScoreShape::FITNESS);
     let text =
         "1 objective and 0 descriptor values of each individual where 2 objectives and 1 descriptor value are expected";
     assert_eq!(one.to_string(), text);
-    assert_eq!(strategy.tell(&fitness), Err(one));
-    assert_eq!(record.tell(&mut strategy, &fitness), Err(one));
+    assert_eq!(strategy.tell(&fitness), Err(one.clone()));
+    assert_eq!(record.tell(&mut strategy, &fitness), Err(one.clone()));
     assert_eq!(record.tell_scores(&mut strategy, &Scores::from_fitness(&fitness)), Err(one));
     let few = Scores::new(SHAPE, vec![0.0; 15]).unwrap();
-    assert_eq!(strategy.tell_scores(&few), Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    assert_eq!(strategy.tell_scores(&few), Err(errors::fitness_count(6, 5)));
     assert_eq!((strategy, record.generations()), (before, 0));
 
     // One that is told fitness takes scores of one objective, and no others.
     let mut plain = farsa_evo::words::RandomSearch::new(2, 6, 1).unwrap();
     let told = Scores::new(SHAPE, vec![0.0; 18]).unwrap();
-    let many = EvoError::ScoreShape { expected: ScoreShape::FITNESS, found: SHAPE };
+    let many = errors::score_shape(ScoreShape::FITNESS, SHAPE);
     assert_eq!(plain.tell_scores(&told), Err(many));
     plain.tell_scores(&Scores::from_fitness(&fitness)).unwrap();
     assert_eq!(plain.generation(), 1);
     // A record of another shape is of another strategy.
-    assert!(matches!(record.check(&plain), Err(EvoError::OtherRecord { .. })));
+    assert!(matches!(record.check(&plain), Err(EvoError::Record { .. })));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The steady state strategy: beside a transcription of its source, on known functions, and its bits.
 
+use crate::errors;
 use farsa_evo::real::{SteadyState, SteadyStateConfig};
 use farsa_evo::{EvoError, Strategy, check_strategy};
 use farsa_num::{Domain, Stream};
@@ -100,7 +101,7 @@ fn impossible_configurations_are_refused() {
         let mut config = SteadyStateConfig::new(vec![[0.0, 1.0]; 3]);
         change(&mut config);
         match SteadyState::new(config, 0).unwrap_err() {
-            EvoError::Setting { name, value, .. } => (name, value),
+            EvoError::OutOfRange { field, value, .. } => (field, value),
             other => panic!("{other}"),
         }
     };
@@ -109,7 +110,7 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(&|c| c.sigma = -0.5), ("sigma of mutation", -0.5));
     assert_eq!(refused(&|c| c.noise = f64::INFINITY), ("noise", f64::INFINITY));
     assert_eq!(refused(&|c| c.bounds[0] = [1.0, 0.0]), ("the high end of a gene", 0.0));
-    assert_eq!(SteadyState::new(SteadyStateConfig::new(Vec::new()), 0).unwrap_err(), EvoError::NoGenes);
+    assert_eq!(SteadyState::new(SteadyStateConfig::new(Vec::new()), 0).unwrap_err(), errors::no_genes());
 }
 
 #[test]

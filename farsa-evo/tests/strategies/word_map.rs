@@ -1,5 +1,6 @@
 //! Maps of words: both ways, beside the decoding that exists.
 
+use crate::errors;
 use farsa_evo::EvoError;
 use farsa_evo::words::{GeneRange, WordCode, WordGene, WordMap, decode};
 use proptest::prelude::*;
@@ -66,19 +67,19 @@ fn frozen_parameters_take_no_word() {
 
 #[test]
 fn what_cannot_be_is_refused() {
-    assert_eq!(WordMap::new(Vec::new()), Err(EvoError::NoGenes));
+    assert_eq!(WordMap::new(Vec::new()), Err(errors::no_genes()));
     let refused = |gene| WordMap::new(vec![gene]).unwrap_err();
-    assert_eq!(refused(word(0, 0.0, 1.0, WordCode::Gray)), EvoError::GeneBits { bits: 0 });
-    assert_eq!(refused(word(17, 0.0, 1.0, WordCode::Gray)), EvoError::GeneBits { bits: 17 });
-    assert_eq!(refused(word(4, 1.0, 0.0, WordCode::Gray)), EvoError::Range { low: 1.0, high: 0.0 });
+    assert_eq!(refused(word(0, 0.0, 1.0, WordCode::Gray)), errors::gene_bits(0));
+    assert_eq!(refused(word(17, 0.0, 1.0, WordCode::Gray)), errors::gene_bits(17));
+    assert_eq!(refused(word(4, 1.0, 0.0, WordCode::Gray)), errors::range(1.0, 0.0));
     let infinite = f32::INFINITY;
-    assert_eq!(refused(WordGene::Frozen(infinite)), EvoError::Range { low: infinite, high: infinite });
+    assert_eq!(refused(WordGene::Frozen(infinite)), errors::range(infinite, infinite));
     let map = WordMap::new(vec![word(4, 0.0, 1.0, WordCode::Gray), WordGene::Frozen(2.0)]).unwrap();
     let (mut parameters, mut words) = ([8.0; 2], [8; 1]);
-    let lengths = |genes, out| Err(EvoError::Lengths { genes, ranges: 1, out });
+    let lengths = |genes, out| Err(errors::lengths(genes, 1, out));
     assert_eq!(map.decode(&[1, 2], &mut parameters), lengths(2, 2));
     assert_eq!(map.encode(&[1.0], &mut words), lengths(1, 1));
-    assert!(matches!(map.encode(&[f32::NAN, 2.0], &mut words), Err(EvoError::Setting { .. })));
+    assert!(matches!(map.encode(&[f32::NAN, 2.0], &mut words), Err(EvoError::OutOfRange { .. })));
     assert_eq!((parameters, words), ([8.0; 2], [8]));
 }
 

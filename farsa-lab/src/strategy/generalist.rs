@@ -72,7 +72,7 @@ pub(super) static GENERALIST: SimpleStrategy = SimpleStrategy {
             mutation: mutation(settings)?,
         };
         let refused = |error: EvoError| match error {
-            EvoError::Setting { name: "the number of opponents", .. } => Error::setting(OPPONENTS, error),
+            EvoError::OutOfRange { field: "the number of opponents", .. } => Error::setting(OPPONENTS, error),
             _ => Error::setting(POPULATION, error),
         };
         Ok(Search::from_words(GeneralistCoevolution::new(config, start.seed).map_err(refused)?))

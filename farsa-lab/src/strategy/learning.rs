@@ -89,8 +89,8 @@ struct Trainee {
 /// The individual of what has been learned.
 fn individual(genotype: &Genotype, learned: &[f64]) -> Result<Population, EvoError> {
     let expected = genotype.genes();
-    let lengths = EvoError::Lengths { genes: learned.len(), ranges: expected, out: expected };
-    let genes = genotype.encode(learned).ok_or(lengths)?;
+    let lengths = || EvoError::lengths(learned.len(), expected, expected);
+    let genes = genotype.encode(learned).ok_or_else(lengths)?;
     let mut population = Population::new(1, genes.len())?;
     population.iter_mut().for_each(|genome| genome.copy_from_slice(&genes));
     Ok(population)
@@ -107,13 +107,14 @@ impl Strategy for Trainee {
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         if fitness.len() != 1 {
-            return Err(EvoError::FitnessCount { expected: 1, found: fitness.len() });
+            return Err(EvoError::fitness_count(1, fitness.len()));
         }
         let next = self.generation.checked_add(1).ok_or(EvoError::LastGeneration)?;
         let mut state = self.state.clone();
-        let refused = EvoError::StateContent { what: "a number of values to learn from", found: state.len() as u64 };
-        let learner = self.evaluator.learner().ok_or(refused)?;
-        let iteration = learner.iterate(&mut state, self.seed, self.generation).ok_or(refused)?;
+        let values = state.len() as u64;
+        let refused = || EvoError::state_content("a number of values to learn from", values);
+        let learner = self.evaluator.learner().ok_or_else(refused)?;
+        let iteration = learner.iterate(&mut state, self.seed, self.generation).ok_or_else(refused)?;
         self.population = individual(&self.genotype, &learner.learned(&state))?;
         (self.generation, self.latest, self.state) = (next, Some(iteration), state);
         Ok(())
@@ -140,14 +141,15 @@ impl Snapshot for Trainee {
     }
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), EvoError> {
-        let lengths = EvoError::StateLength { expected: 4 + 8 * self.state.len(), found: saved.len() };
-        let (generation, values) = saved.split_first_chunk::<4>().ok_or(lengths)?;
+        let expected = 4 + 8 * self.state.len();
+        let lengths = || EvoError::state_length(expected, saved.len());
+        let (generation, values) = saved.split_first_chunk::<4>().ok_or_else(lengths)?;
         let (values, rest) = values.as_chunks::<8>();
         if values.len() != self.state.len() || !rest.is_empty() {
-            return Err(lengths);
+            return Err(lengths());
         }
         let state: Vec<f64> = values.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
-        let learner = self.evaluator.learner().ok_or(lengths)?;
+        let learner = self.evaluator.learner().ok_or_else(lengths)?;
         self.population = individual(&self.genotype, &learner.learned(&state))?;
         (self.generation, self.latest, self.state) = (u32::from_le_bytes(*generation), None, state);
         Ok(())

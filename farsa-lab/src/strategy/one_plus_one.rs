@@ -72,7 +72,7 @@ fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<OnePlusOn
         mutation: mutation(settings)?,
     };
     config.validate().map_err(|error| match error {
-        EvoError::RisingRate { .. } => Error::setting(LAST_RATE, error),
+        EvoError::Config { field: "last_rate", .. } => Error::setting(LAST_RATE, error),
         _ => Error::Other(error.to_string()),
     })?;
     Ok(config)

@@ -71,8 +71,8 @@ pub(super) fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Resul
     };
     config.validate().map_err(|error| {
         let key = match error {
-            EvoError::NoParents => PARENTS,
-            EvoError::Rate { .. } => RATE,
+            EvoError::Config { field: "parents", .. } => PARENTS,
+            EvoError::Config { field: "mutation_rate", .. } => RATE,
             _ => POPULATION,
         };
         Error::setting(key, error)
