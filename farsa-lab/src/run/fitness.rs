@@ -85,7 +85,8 @@ pub(crate) fn judgements_of_all(
     };
     let individuals = individuals(by, batch, shape, done)?;
     let (mut all, mut failed) = (Vec::with_capacity(individuals.len() * shape.width()), Vec::new());
-    let empty = |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(other);
+    let empty =
+        |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(|error| other(&error));
     let mut observed = batch.normalisation.map(empty).transpose()?;
     for (individual, found) in (batch.id.individual..).zip(individuals) {
         match found {
@@ -101,7 +102,7 @@ pub(crate) fn judgements_of_all(
             }
         }
     }
-    let judgements = Scores::nan_as_failed(shape, all).map_err(other)?;
+    let judgements = Scores::nan_as_failed(shape, all).map_err(|error| other(&error))?;
     Ok(Judged { judgements, failed, observed })
 }
 
@@ -123,7 +124,7 @@ pub(crate) fn individuals(
 }
 
 /// Converts an error of farsa-evo.
-fn other(error: EvoError) -> Error {
+fn other(error: &EvoError) -> Error {
     Error::Other(error.to_string())
 }
 

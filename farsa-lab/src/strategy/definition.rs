@@ -134,9 +134,9 @@ impl StrategyStart<'_> {
         S: Strategy + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            Search::from_words(search(self.seed).map_err(refused)?)
+            Search::from_words(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            Search::from_words(Populations::new(self.populations, self.seed, search).map_err(refused)?)
+            Search::from_words(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
         })
     }
 
@@ -149,15 +149,15 @@ impl StrategyStart<'_> {
         S: Strategy<f64> + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            Search::from_reals(search(self.seed).map_err(refused)?)
+            Search::from_reals(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            Search::from_reals(Populations::new(self.populations, self.seed, search).map_err(refused)?)
+            Search::from_reals(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
         })
     }
 }
 
 /// Converts an error about the values of a strategy's settings.
-fn refused(error: EvoError) -> Error {
+fn refused(error: &EvoError) -> Error {
     Error::Usage(error.to_string())
 }
 
