@@ -149,7 +149,7 @@ impl EvoError {
         }
     }
 
-    /// Returns the error of a [`tell`](crate::Strategy::tell) with a wrong number of values, for custom strategies.
+    /// Returns the error for a wrong number of fitness values, for custom strategies.
     pub fn fitness_count(expected: usize, found: usize) -> Self {
         Self::Shape { expected, found, why: format!("{found} fitness values for {expected} individuals") }
     }

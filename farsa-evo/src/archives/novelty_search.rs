@@ -332,8 +332,8 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
     }
 }
 
-/// Returns the mean distance of each behavior of a generation to the k nearest among the others and the archive, 0 if there are
-/// none. Failed evaluations have no behavior and are no neighbors. [rows x d]
+/// Returns the mean distance of each behavior of a generation to the k nearest among the others and the archive, 0 without any.
+/// Failed evaluations have no behavior and are no neighbors. [rows x d]
 fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<Option<f64>> {
     let mut nearest: Vec<f64> = Vec::with_capacity(k.min(rows.len() + archive.len() / d.max(1)));
     let mut of = |own: usize, behavior: &[f64]| {
