@@ -148,16 +148,18 @@ impl<C: Matrix> Distribution<C> {
         let (n, c) = (self.mean.len(), &self.coefficients);
         let mut weights = vec![0.0; ranked.len()];
         ranked.iter().zip(&c.weights).for_each(|(&individual, weight)| weights[individual] = *weight);
-        // The mean of the parents, in order of rank.
+        // y_w and z_w, the weighted means of the parents in order of rank. [Hansen2016] eq. 41.
         let (mut step, mut normal) = (vec![0.0; n], vec![0.0; n]);
         for &individual in ranked.iter().take(c.parents) {
             let row = individual * n..(individual + 1) * n;
             add_scaled(&mut step, weights[individual], &self.steps[row.clone()]);
             add_scaled(&mut normal, weights[individual], &self.normals[row]);
         }
+        // m <- m + sigma y_w. [Hansen2016] eq. 42.
         add_scaled(&mut self.mean, self.sigma, &step);
         self.updates = self.updates.saturating_add(1);
 
+        // p_sigma <- (1 - c_sigma) p_sigma + sqrt(c_sigma (2 - c_sigma) mu_eff) C^(-1/2) y_w. [Hansen2016] eq. 43.
         let rate = c.step_path_rate;
         let gain = Scalar::sqrt(rate * (2.0 - rate) * c.effective);
         for (path, x) in self.step_path.iter_mut().zip(self.covariance.turn(&normal)) {
@@ -165,12 +167,15 @@ impl<C: Matrix> Distribution<C> {
         }
         let length = Scalar::sqrt(dot(&self.step_path, &self.step_path));
         let stalls = c.stalls(n, self.updates, length);
+        // p_c <- (1 - c_c) p_c + h_sigma sqrt(c_c (2 - c_c) mu_eff) y_w. [Hansen2016] eq. 45.
         let rate = c.path_rate;
         let gain = if stalls { 0.0 } else { Scalar::sqrt(rate * (2.0 - rate) * c.effective) };
         for (path, y) in self.path.iter_mut().zip(&step) {
             *path = (1.0 - rate) * *path + gain * y;
         }
 
+        // C <- keep C + c_1 p_c p_c^T + c_mu sum w_i y_i y_i^T. Negative weights are scaled by n / |z_i|^2, so that C stays
+        // positive definite. [Hansen2016] eqs. 46 and 47.
         let lost = if stalls { c.rank_one * rate * (2.0 - rate) } else { 0.0 };
         let keep = 1.0 + lost - c.rank_one - c.rank_mu * c.weights.iter().sum::<f64>();
         let mut factors: Vec<f64> = Vec::with_capacity(weights.len() + 1);
@@ -192,6 +197,7 @@ impl<C: Matrix> Distribution<C> {
         rows.truncate(ranked.len() * n);
         self.steps = rows;
 
+        // sigma grows where the path is longer than that of a random walk. [Hansen2016] eq. 44.
         let growth = exp(c.step_path_rate / c.damping * (length / c.expected - 1.0));
         self.sigma = (self.sigma * growth).clamp(STEP_SIZES[0], STEP_SIZES[1]);
         self.normalize();

@@ -176,6 +176,7 @@ impl Pgpe {
     fn update(&mut self, rewards: &[f64]) {
         let genes = self.mean.len();
         let (count, pairs) = (rewards.len() as f64, self.config.pairs as f64);
+        // b, the mean reward, divided before the sum so that it cannot overflow.
         let baseline = rewards.iter().map(|reward| reward / count).sum::<f64>();
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes]);
         for (row, pair) in rewards.chunks_exact(2).enumerate() {

@@ -149,6 +149,7 @@ impl Strategy<f64> for Snes {
             noise.add_moments(individual, [weight; 2], &mut first, &mut second);
         }
         let (mean_rate, sigma_rate) = (self.config.mean_learning_rate, 0.5 * self.config.sigma_learning_rate);
+        // mu <- mu + eta_mu sigma grad_mu, sigma <- sigma exp(eta_sigma / 2 grad_sigma). [Wierstra2014] algorithm 6.
         for ((mean, sigma), (first, second)) in
             self.mean.iter_mut().zip(&mut self.sigmas).zip(first.iter().zip(&second))
         {

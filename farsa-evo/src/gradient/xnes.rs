@@ -206,10 +206,12 @@ impl Strategy<f64> for Xnes {
         let next = next_generation(self.generation, self.population.len(), fitness)?;
         let genes = self.mean.len();
         let (first, mut second) = self.gradients(fitness);
+        // mu <- mu + eta sigma B grad_delta. [Wierstra2014] algorithm 5.
         let step = self.config.mean_learning_rate * self.sigma;
         let moves: Vec<f64> = rows_times(&self.shape, &first).collect();
         self.mean.iter_mut().zip(moves).for_each(|(mean, turned)| *mean = bounded(*mean + step * turned));
 
+        // The trace of the gradient grows sigma, the rest turns and stretches B.
         let growth = second.iter().step_by(genes + 1).sum::<f64>() / genes as f64;
         self.sigma = bounded_size(self.sigma * exp(0.5 * self.config.sigma_learning_rate * growth));
         second.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal -= growth);
