@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use farsa_body::robot::Robot;
 use farsa_lab::{
     EpisodeId, Error, Evaluator, Experiment, InWorld, Lanes, PlanarWorld, Setting, Settings, StrategyDefinition,
     Truncation, Value as SettingValue, read_text_file,
@@ -76,7 +75,7 @@ impl ComposedExperiment {
     /// [`Error::Io`] and [`Error::Damaged`] for unreadable files, and the errors of [`from_text`](Self::from_text).
     pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         let text = read_text_file(path, MAX_BYTES)?;
-        Self::read(&path.display().to_string(), &text, path.parent(), strategies)
+        Self::read(Limits::default(), &path.display().to_string(), &text, path.parent(), strategies)
     }
 
     /// Reads a text as the content of a file of this name, which may name these strategies.
@@ -101,20 +100,11 @@ impl ComposedExperiment {
         text: &str,
         strategies: &[&'static dyn StrategyDefinition],
     ) -> Result<Self, Error> {
-        Self::read_within(limits, file, text, None, strategies)
+        Self::read(limits, file, text, None, strategies)
     }
 
     /// Reads a text. With a folder it may name files there.
     pub(crate) fn read(
-        file: &str,
-        text: &str,
-        folder: Option<&Path>,
-        strategies: &[&'static dyn StrategyDefinition],
-    ) -> Result<Self, Error> {
-        Self::read_within(Limits::default(), file, text, folder, strategies)
-    }
-
-    fn read_within(
         limits: Limits,
         file: &str,
         text: &str,
@@ -126,7 +116,7 @@ impl ComposedExperiment {
         let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
         if let Some(text) = embedded(file, text, folder, &document, &source)? {
-            return Self::read_within(limits, file, &text, None, strategies);
+            return Self::read(limits, file, &text, None, strategies);
         }
         add_scene(&mut document, &mut source)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
@@ -191,11 +181,6 @@ impl ComposedExperiment {
         Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
     }
 
-    #[cfg(not(feature = "rapier"))]
-    fn in_rapier(&self, _: (Setup, Agents)) -> Result<Box<dyn Evaluator>, Error> {
-        Err(self.without_rapier())
-    }
-
     fn document(&self, settings: &Settings) -> Result<Document, Error> {
         let value = apply(&self.document, &self.entries, settings)?;
         serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))
@@ -216,6 +201,7 @@ impl ComposedExperiment {
         let (engine, options) = (document.world.engine, jointed::setup::options(&document));
         let (setup, agents) = jointed::setup::Setup::new(document, &self.source)?;
         let model = Model::<f32>::new(&setup.scene.robot, &options).map_err(wrong)?;
+        #[cfg(feature = "rapier")]
         let robot = setup.scene.robot.clone();
         let mut episode = JointedEpisode::new(setup, agents);
         let mut world = articulated::World::new(model.clone());
@@ -224,7 +210,10 @@ impl ComposedExperiment {
             return Err(self.source.wrong("/start", "finds no free place after a thousand tries"));
         }
         if engine == Engine::Rapier {
+            #[cfg(feature = "rapier")]
             return self.with_joints_in_rapier(&robot, &options, episode);
+            #[cfg(not(feature = "rapier"))]
+            return Err(self.without_rapier());
         }
         let batch = move |lanes: Lanes| {
             let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
@@ -236,7 +225,7 @@ impl ComposedExperiment {
     #[cfg(feature = "rapier")]
     fn with_joints_in_rapier(
         &self,
-        robot: &Robot,
+        robot: &farsa_body::robot::Robot,
         options: &articulated::Options,
         episode: JointedEpisode,
     ) -> Result<Box<dyn Evaluator>, Error> {
@@ -245,16 +234,6 @@ impl ComposedExperiment {
         let world = World::new(robot, &Options { time_step, substeps, gravity, ..Options::default() });
         let world = world.map_err(|error| self.source.wrong("/world", error))?;
         Ok(Box::new(InWorld::new(world, ComposedTask(episode)).with_displacements().with_pushes()))
-    }
-
-    #[cfg(not(feature = "rapier"))]
-    fn with_joints_in_rapier(
-        &self,
-        _: &Robot,
-        _: &articulated::Options,
-        _: JointedEpisode,
-    ) -> Result<Box<dyn Evaluator>, Error> {
-        Err(self.without_rapier())
     }
 
     #[cfg(not(feature = "rapier"))]
@@ -409,7 +388,10 @@ impl Experiment for ComposedExperiment {
             composed.1.size = settings.count("evolution.population")?;
         }
         if composed.1.document.world.engine == Engine::Rapier {
+            #[cfg(feature = "rapier")]
             return self.in_rapier(composed);
+            #[cfg(not(feature = "rapier"))]
+            return Err(self.without_rapier());
         }
         let arena = composed.0.scene.arena.clone();
         let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.source.wrong("/world", error))?;

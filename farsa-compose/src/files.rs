@@ -6,6 +6,7 @@ use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template
 
 use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;
+use crate::limits::Limits;
 
 /// Support of experiment files for [`Laboratory`](farsa_lab::Laboratory).
 ///
@@ -42,7 +43,7 @@ fn read(
     folder: Option<&Path>,
     strategies: &[&'static dyn StrategyDefinition],
 ) -> Result<Box<dyn Experiment>, Error> {
-    Ok(Box::new(ComposedExperiment::read(file, text, folder, strategies)?))
+    Ok(Box::new(ComposedExperiment::read(Limits::default(), file, text, folder, strategies)?))
 }
 
 fn as_text() -> String {

@@ -9,9 +9,9 @@ use crate::remarks::Remarks;
 use crate::written::{Written, name, number};
 
 /// Most sensors, and most motors.
-pub(super) const MOST_PARTS: usize = 100;
+pub(super) const MAX_PARTS: usize = 100;
 /// Most nested devices with noise.
-const MOST_WRAPPED: usize = 8;
+const MAX_WRAPPED: usize = 8;
 
 /// A sensor or a motor of the experiment file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ impl<'i> Device<'i> {
         remarks: &mut Remarks,
     ) -> Result<Option<Self>, Error> {
         let (mut group, mut noise, mut own_name) = (group, Vec::new(), None);
-        for _ in 0..MOST_WRAPPED {
+        for _ in 0..MAX_WRAPPED {
             own_name = own_name.or_else(|| group.text("name", remarks).and_then(|entry| name(&entry.value)));
             let Some((kind, entry)) = group.kind(remarks) else {
                 remarks.unsaid(group, "type", "", "says not what it is");
@@ -111,7 +111,7 @@ impl<'i> Device<'i> {
             };
             group = inner;
         }
-        Err(Error::Usage(format!("{file} line {}: more than {MOST_WRAPPED} devices within each other", group.line)))
+        Err(Error::Usage(format!("{file} line {}: more than {MAX_WRAPPED} devices within each other", group.line)))
     }
 
     /// Returns the noise of a sensor as wrappers, each cut at both ends.

@@ -60,7 +60,7 @@ const OF_OTHERS: [&str; 29] = [
 ];
 
 /// Most individuals of a strategy.
-const MOST_INDIVIDUALS: u64 = 1_000_000;
+const MAX_INDIVIDUALS: u64 = 1_000_000;
 
 impl Evolution {
     /// Reads the group of the genetic algorithm, `Evoga`.
@@ -76,11 +76,11 @@ impl Evolution {
         let generations = group.whole("ngenerations", 100, 1..=u64::from(u32::MAX) - 1, remarks);
         let replications = group.whole("nreplications", 10, 1..=1_000_000, remarks);
         let seed = group.whole("seed", 1234, 0..=u64::from(u32::MAX), remarks);
-        let parents = group.whole("nreproducing", 20, 1..=MOST_INDIVIDUALS, remarks);
-        let offspring = group.whole("noffspring", 5, 1..=MOST_INDIVIDUALS, remarks);
+        let parents = group.whole("nreproducing", 20, 1..=MAX_INDIVIDUALS, remarks);
+        let offspring = group.whole("noffspring", 5, 1..=MAX_INDIVIDUALS, remarks);
         let population = parents * offspring;
-        if population > MOST_INDIVIDUALS / 2 {
-            let most = MOST_INDIVIDUALS / 2;
+        if population > MAX_INDIVIDUALS / 2 {
+            let most = MAX_INDIVIDUALS / 2;
             return Err(Error::Usage(format!("{file}: a population of {population} where {most} is the most")));
         }
         // Values from 1 on are percentages.

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use farsa_lab::{Error, Experiment as _, ImportedFile, LeftOut, Settings};
 
-use crate::channels::{Device, MOST_PARTS, Part};
+use crate::channels::{Device, MAX_PARTS, Part};
 use crate::evolution::Evolution;
 use crate::experiment::Experiment;
 use crate::ini::{Group, Ini};
 use crate::motor::motor;
-use crate::network::{MOST_NEURONS, Network};
+use crate::network::{MAX_NEURONS, Network};
 use crate::remarks::Remarks;
 use crate::robot::RobotKind;
 use crate::sensor::sensor;
@@ -18,7 +18,7 @@ use crate::written::Written;
 use farsa_compose::{ComposedExperiment, Limits};
 
 /// Most remarks of each sort in the experiment file.
-const MOST_REPEATED: usize = 200;
+const MAX_REPEATED: usize = 200;
 
 /// Converts a configuration of the 2013 program FARSA, versions 1 and 2, into an experiment file. The robots are
 /// kinematic, on wheels.
@@ -91,9 +91,9 @@ pub fn from_original_within(limits: Limits, file: &str, name: &str, text: &str) 
     let network = ["CONTROLLER", "NET"].iter().find_map(|name| ini.group(&format!("{agent}/{name}")));
     let network = Network::from_group(network.unwrap_or(&none), &mut remarks);
     let neurons = parts.channels() + network.hidden;
-    if neurons > MOST_NEURONS {
+    if neurons > MAX_NEURONS {
         return Err(Error::Usage(format!(
-            "{file}: a network of {neurons} neurons, where the original has {MOST_NEURONS}"
+            "{file}: a network of {neurons} neurons, where the original has {MAX_NEURONS}"
         )));
     }
     let none = Group { path: format!("{main}/GA"), line: 0, entries: Vec::new() };
@@ -143,8 +143,8 @@ impl Parts {
         let [sensors, motors] = ["SENSOR", "MOTOR"].map(|name| ini.numbered(agent, name));
         let wanted = [sensors.len(), motors.len()];
         for (count, what) in wanted.into_iter().zip(["sensors", "motors"]) {
-            if count > MOST_PARTS {
-                return Err(Error::Usage(format!("{file}: {count} {what}, where {MOST_PARTS} are the most")));
+            if count > MAX_PARTS {
+                return Err(Error::Usage(format!("{file}: {count} {what}, where {MAX_PARTS} are the most")));
             }
         }
         for group in sensors {
@@ -228,10 +228,10 @@ fn write_head(
         }
         out.comment("");
         out.comment(what);
-        for remark in list.iter().take(MOST_REPEATED) {
+        for remark in list.iter().take(MAX_REPEATED) {
             out.comment(&format!("- {remark}"));
         }
-        let repeated = list.len().min(MOST_REPEATED);
+        let repeated = list.len().min(MAX_REPEATED);
         if list.len() + more > repeated {
             out.comment(&format!("- and {} more", list.len() + more - repeated));
         }

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use farsa_lab::Error;
 
 /// Most bytes of a text.
-const MOST_BYTES: usize = 1_000_000;
+const MAX_BYTES: usize = 1_000_000;
 /// Most lines of a text, because a line takes more memory than its text.
-const MOST_LINES: usize = 5000;
+const MAX_LINES: usize = 5000;
 /// Most bytes of the name of a group with its parents, because remarks repeat it.
-const MOST_OF_A_PATH: usize = 200;
+const MAX_OF_A_PATH: usize = 200;
 
 /// Groups of keys with values.
 ///
@@ -59,25 +59,25 @@ impl Ini {
     /// # Errors
     /// [`Error::Usage`] for more than a megabyte, 5000 lines or a long name, and for a text without groups.
     pub(super) fn from_text(file: &str, text: &str) -> Result<Self, Error> {
-        if text.len() > MOST_BYTES {
-            return Err(Error::Usage(format!("{file}: {} bytes where {MOST_BYTES} are the most", text.len())));
+        if text.len() > MAX_BYTES {
+            return Err(Error::Usage(format!("{file}: {} bytes where {MAX_BYTES} are the most", text.len())));
         }
         let mut ini = Self::default();
         let mut group = None;
         // Skips a byte order mark.
         for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
             let (line, text) = (index + 1, line.trim());
-            if line > MOST_LINES {
-                return Err(Error::Usage(format!("{file}: more than {MOST_LINES} lines, which are the most")));
+            if line > MAX_LINES {
+                return Err(Error::Usage(format!("{file}: more than {MAX_LINES} lines, which are the most")));
             }
             if text.is_empty() || text.starts_with(['#', ';']) {
                 continue;
             }
             if let Some(path) = text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
                 let path = unescaped(path.trim().trim_matches('/'));
-                if path.len() > MOST_OF_A_PATH {
+                if path.len() > MAX_OF_A_PATH {
                     let length = path.len();
-                    let why = format!("a group with a name of {length} bytes where {MOST_OF_A_PATH} are the most");
+                    let why = format!("a group with a name of {length} bytes where {MAX_OF_A_PATH} are the most");
                     return Err(Error::Usage(format!("{file} line {line}: {why}")));
                 }
                 group = Some(ini.index(&path, line));

@@ -5,7 +5,7 @@ use crate::remarks::Remarks;
 use crate::written::{Written, number, numbers};
 
 /// Most neurons of a network of the 2013 program.
-pub(super) const MOST_NEURONS: u64 = 1000;
+pub(super) const MAX_NEURONS: u64 = 1000;
 
 /// A perceptron if possible, else Evonet with the same flags.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Network {
             let why = "networks of `.net` files are to be named by hand (kind `evonet`, `file`); this one is of the keys beside it";
             remarks.lost(group, entry, why);
         }
-        let hidden = group.whole("nHiddens", 0, 0..=MOST_NEURONS, remarks);
+        let hidden = group.whole("nHiddens", 0, 0..=MAX_NEURONS, remarks);
         let range = group.number("weightRange", 5.0, 1.0..=1e6, remarks);
         let largest_bias = group.number("biasRange", 5.0, 0.0..=1e6, remarks);
         let mut flags = Vec::new();

@@ -7,7 +7,7 @@ use farsa_lab::{Error, LeftOut};
 use crate::ini::{Entry, Group, Ini};
 
 /// Most remarks of each sort. Further ones are counted, because each repeats the name of its group.
-const MOST_REMARKS: usize = 400;
+const MAX_REMARKS: usize = 400;
 
 /// Remarks on the lines of a configuration.
 #[derive(Debug, Default)]
@@ -104,7 +104,7 @@ impl Remarks {
 
 /// Adds a remark if there is capacity.
 fn add(list: &mut Vec<LeftOut>, more: &mut usize, remark: impl FnOnce() -> LeftOut) {
-    if list.len() < MOST_REMARKS {
+    if list.len() < MAX_REMARKS {
         list.push(remark());
     } else {
         *more += 1;

@@ -9,9 +9,9 @@ use farsa_view::{Channel, ImageChannel, Schema};
 use crate::arena::field::Field;
 
 /// Most cells along a side of a field that is drawn. Smaller food would be invisible.
-const MOST_CELLS: usize = 64;
+const MAX_CELLS: usize = 64;
 /// Most robots with drawn marks of death and load.
-const MOST_ROBOTS: usize = 50;
+const MAX_ROBOTS: usize = 50;
 /// Color of food, on the ground and on robots.
 const FOOD: Color = OKABE_ITO[2];
 /// Colors of the cover of a dead robot and of the bar across it.
@@ -53,7 +53,7 @@ impl Field {
         if let Some(cells) = self.shown_cells() {
             schema.images.push(ImageChannel::new("food", [cells; 2]).on_ground([0.0; 2], self.size()));
         }
-        if robots.len() <= MOST_ROBOTS {
+        if robots.len() <= MAX_ROBOTS {
             for (number, robot) in robots.iter().enumerate() {
                 let name = schema.bodies.get(number).cloned().unwrap_or_default();
                 schema.objects.extend(marks(number, robot, &name));
@@ -75,7 +75,7 @@ impl Field {
 
     /// Returns the cells along a side of a drawn field.
     fn shown_cells(&self) -> Option<usize> {
-        Some(self.cells()).filter(|cells| (1..=MOST_CELLS).contains(cells))
+        Some(self.cells()).filter(|cells| (1..=MAX_CELLS).contains(cells))
     }
 }
 

@@ -9,9 +9,9 @@ use crate::check::source::Source;
 use crate::document::{Document, NetworkKind, SensorKind};
 
 /// Most bytes of a named file.
-const MOST_BYTES: u64 = 1_000_000;
+const MAX_BYTES: u64 = 1_000_000;
 /// Most named files.
-const MOST_FILES: usize = 16;
+const MAX_FILES: usize = 16;
 
 /// Returns the names of files in a document, with their paths.
 fn named(document: &Document) -> Vec<(String, &str)> {
@@ -69,8 +69,8 @@ pub(crate) fn embedded(
         if contents.iter().any(|(known, _)| *known == name) {
             continue;
         }
-        if contents.len() == MOST_FILES {
-            return Err(source.wrong(&path, format!("is one file more than {MOST_FILES}, which are the most")));
+        if contents.len() == MAX_FILES {
+            return Err(source.wrong(&path, format!("is one file more than {MAX_FILES}, which are the most")));
         }
         let relative = Path::new(name);
         let within = relative.components().all(|part| matches!(part, Component::Normal(_)));
@@ -85,7 +85,7 @@ pub(crate) fn embedded(
         if !inside {
             return Err(source.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
         }
-        contents.push((name, read_text_file(&target, MOST_BYTES)?));
+        contents.push((name, read_text_file(&target, MAX_BYTES)?));
     }
     if contents.is_empty() {
         return Ok(None);

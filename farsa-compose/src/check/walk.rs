@@ -10,9 +10,9 @@ use crate::check::source::{Lines, Source, key};
 use crate::name::{NAME, is_name};
 
 /// Most parts of a list.
-const MOST_PARTS: usize = 1000;
+const MAX_PARTS: usize = 1000;
 /// Most errors of one text.
-const MOST_ERRORS: usize = 20;
+const MAX_ERRORS: usize = 20;
 
 /// Reads the values of a text that match a schema, with their places.
 ///
@@ -51,7 +51,7 @@ impl Walk<'_> {
     /// Stores the error of a value, so that the next value is checked, until there are enough errors.
     fn kept(&mut self, offset: usize, value: Result<Value, Error>) -> Result<Value, Error> {
         match value {
-            Err(error) if self.errors.len() + 1 < MOST_ERRORS => {
+            Err(error) if self.errors.len() + 1 < MAX_ERRORS => {
                 self.errors.push((offset, error));
                 Ok(Value::Null)
             }
@@ -89,8 +89,8 @@ impl Walk<'_> {
 
     fn table(&mut self, part: Part<'_>, table: &DeTable<'_>, path: &str, offset: usize) -> Result<Value, Error> {
         self.source.put(path, self.lines.of(offset));
-        if table.len() > MOST_PARTS {
-            return Err(self.source.wrong(path, format!("has {} keys; at most {MOST_PARTS}", table.len())));
+        if table.len() > MAX_PARTS {
+            return Err(self.source.wrong(path, format!("has {} keys; at most {MAX_PARTS}", table.len())));
         }
         let tag = |name: &str| {
             let (_, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
@@ -154,7 +154,7 @@ impl Walk<'_> {
     fn list(&mut self, part: Part<'_>, items: &[Spanned<DeValue<'_>>], path: &str) -> Result<Value, Error> {
         let count = items.len();
         let [least, most] = part.lengths().map(|length| length.and_then(|length| usize::try_from(length).ok()));
-        let (least, most) = (least.unwrap_or(0), most.unwrap_or(MOST_PARTS));
+        let (least, most) = (least.unwrap_or(0), most.unwrap_or(MAX_PARTS));
         if !(least..=most).contains(&count) {
             let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
             return Err(self.source.wrong(path, format!("has {count} values where {wanted} are wanted")));

@@ -17,9 +17,9 @@ pub(crate) struct RobotModel {
 }
 
 /// Most elements of a model.
-const MOST_ELEMENTS: usize = 20_000;
+const MAX_ELEMENTS: usize = 20_000;
 /// Most geoms of a model that may have contacts.
-const MOST_CONTACTS: usize = 200;
+const MAX_CONTACTS: usize = 200;
 
 impl RobotModel {
     /// Builds the robot of a document at its base.
@@ -50,7 +50,7 @@ impl RobotModel {
 
     fn from_file(name: &str, floating: bool, document: &Document, source: &Source) -> Result<Self, Error> {
         let text = document.files.get(name).map(String::as_str).unwrap_or_default();
-        let limits = Limits { elements: MOST_ELEMENTS, contacts: MOST_CONTACTS, depth: 1000, ..Limits::default() };
+        let limits = Limits { elements: MAX_ELEMENTS, contacts: MAX_CONTACTS, depth: 1000, ..Limits::default() };
         // Meshes are in further files. Contacts use the other shapes of the robot.
         let options = ReadOptions { floating, meshes: Meshes::Leave, limits, ..ReadOptions::default() };
         let read = Imported::from_text(text, &options);

@@ -23,7 +23,7 @@ pub(crate) struct EvonetNetwork {
 }
 
 /// Most neurons of a file, as in the 2013 program, and most blocks.
-const MOST_LINES: usize = 1000;
+const MAX_LINES: usize = 1000;
 
 impl EvonetNetwork {
     /// Builds a network at rest between the given numbers of inputs and outputs, from flags or from a file.
@@ -63,8 +63,8 @@ impl EvonetNetwork {
             return Err(wrong(&why));
         }
         for (what, count) in [("neurons", layout.layout().neurons()), ("blocks", layout.blocks.len())] {
-            if count > MOST_LINES {
-                return Err(wrong(&format!("has {count} {what}; at most {MOST_LINES}")));
+            if count > MAX_LINES {
+                return Err(wrong(&format!("has {count} {what}; at most {MAX_LINES}")));
             }
         }
         // A number with a mutation rate of 0 is fixed. The 2013 program draws all others.

@@ -28,7 +28,7 @@ pub(crate) struct Searched {
 }
 
 /// Largest magnitude of a fixed value.
-const LARGEST: f64 = 1e6;
+const MAX_FIXED: f64 = 1e6;
 
 impl Searched {
     /// Selects the searched parameters: all except the fixed ones, and one of each shared list. `given` contains
@@ -54,8 +54,8 @@ impl Searched {
         let mut fixed: Vec<Option<f64>> = all.iter().map(|known| given.get(&known.name).copied()).collect();
         for (name, value) in &network.fixed {
             let path = format!("/network/fixed/{name}");
-            if value.abs() > LARGEST {
-                return Err(source.wrong(&path, format!("{value} is outside -{LARGEST} to {LARGEST}")));
+            if value.abs() > MAX_FIXED {
+                return Err(source.wrong(&path, format!("{value} is outside -{MAX_FIXED} to {MAX_FIXED}")));
             }
             fixed[number(name, &path)?] = Some(*value);
         }
