@@ -13,7 +13,8 @@ use std::hint::black_box;
 use farsa::nn::{Controller, LeakyLayout};
 use farsa::physics::articulated::Batch;
 use farsa_experiments::reach_grasp_lift::{Config, evaluator};
-use farsa_lab::{EpisodeId, Evaluation, Evaluator as _, Genotype, Task as _};
+use farsa_lab::advanced::Genotype;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator as _, Task as _};
 use farsa_view::Recording;
 use scene::{Aba, Lanes, Loop};
 

@@ -7,8 +7,10 @@ use farsa::body::sensors::{Beam, LightSensors};
 use farsa::body::{Pose, Twist};
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, Cylinder};
-use farsa_lab::{Controlled, EpisodeId, Error, Evaluator, InWorld, Neurocontroller, Objective, PlanarWorld};
-use farsa_lab::{Schema, Setting, Settings, SimpleExperiment, Trials, cli};
+use farsa_lab::advanced::PlanarWorld;
+use farsa_lab::advanced::Schema;
+use farsa_lab::{Controlled, EpisodeId, Error, Evaluator, InWorld, Neurocontroller, Objective};
+use farsa_lab::{Setting, Settings, SimpleExperiment, Trials, cli};
 
 const LAMP: [f64; 2] = [0.8, 0.4]; // metres
 

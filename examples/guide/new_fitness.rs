@@ -1,7 +1,8 @@
 //! Another fitness for a task that there is: foraging, where the death of a robot costs.
 
 use farsa_experiments::Foraging;
-use farsa_lab::{Error, Evaluator, Experiment, Note, Outcome, Rescored, Setting, Settings, cli};
+use farsa_lab::advanced::Rescored;
+use farsa_lab::{Error, Evaluator, Experiment, Note, Outcome, Setting, Settings, cli};
 
 /// The task `foraging` with Kheperas, under two judges.
 struct Judges;

@@ -2,10 +2,11 @@
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
-use farsa_lab::{
-    Behaviour, ControllerExport, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport, NetworkExport,
-    Outcome, Rollout, SensorExport, SensorReading, Task, TaskInfo,
+use farsa_lab::advanced::{Behavior, Rollout};
+use farsa_lab::exports::{
+    ControllerExport, Exports, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
 };
+use farsa_lab::{Episode, EpisodeId, Evaluation, Outcome, Task, TaskInfo};
 use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::{Controller as _, Leak};
 use farsa_view::{Channel, Schema};
@@ -92,7 +93,7 @@ impl<E: Body> Task for ComposedTask<E> {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         self.0.agents().ledger.behaviour.as_ref().map(|behaviour| behaviour as _)
     }
 

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use farsa_lab::{
-    EpisodeId, Error, Evaluator, Experiment, InWorld, Lanes, PlanarWorld, Setting, Settings, StrategyDefinition,
-    Truncation, Value as SettingValue, read_text_file,
-};
+use farsa_lab::advanced::{Lanes, PlanarWorld, Value as SettingValue, read_text_file};
+use farsa_lab::strategy::{StrategyDefinition, Truncation};
+use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, InWorld, Setting, Settings};
 use farsa_physics::articulated::{self, Batch, Model, ModelError};
 use serde_json::Value;
 
@@ -42,7 +41,7 @@ const MAX_BYTES: u64 = 1_000_000;
 /// episode = { steps = 100, trials = 2, ends = ["collision"] }
 /// reward = [{ kind = "forward", over = "sum" }]
 /// "#;
-/// let experiment = ComposedExperiment::from_text("wander.toml", text, farsa_lab::strategies())?;
+/// let experiment = ComposedExperiment::from_text("wander.toml", text, farsa_lab::strategy::strategies())?;
 /// let settings = Settings::new(experiment.settings(""))?;
 /// let mut evaluator = experiment.prepare("", &settings)?;
 /// let parameters = vec![0.5; evaluator.info().parameters.len()];

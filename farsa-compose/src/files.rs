@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template};
+use farsa_lab::advanced::{ExperimentFiles, Template};
+use farsa_lab::strategy::StrategyDefinition;
+use farsa_lab::{Error, Experiment};
 
 use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;

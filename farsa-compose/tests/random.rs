@@ -4,14 +4,16 @@ mod drawn;
 
 use farsa_body::Recorder;
 use farsa_compose::ComposedExperiment;
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, NetworkExport, Outcome, Settings};
+use farsa_lab::advanced::Lanes;
+use farsa_lab::exports::NetworkExport;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Outcome, Settings};
 use farsa_nn::block::BlockNetwork;
 use farsa_nn::{Controller, Ctrnn, Leak, LeakyNetwork, Perceptron};
 
 use drawn::Draw;
 
 fn evaluator(text: &str) -> Box<dyn Evaluator> {
-    let made = ComposedExperiment::from_text("drawn.toml", text, farsa_lab::strategies());
+    let made = ComposedExperiment::from_text("drawn.toml", text, farsa_lab::strategy::strategies());
     let made = made.unwrap_or_else(|error| panic!("{error}\n{text}"));
     let settings = Settings::new(made.settings("")).unwrap_or_else(|error| panic!("{error}\n{text}"));
     made.prepare("", &settings).unwrap_or_else(|error| panic!("{error}\n{text}"))

@@ -12,7 +12,8 @@ use farsa_body::robot::Robot;
 use farsa_body::robots::Tabletop;
 use farsa_body::{Pose, Twist};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable};
-use farsa_lab::{EpisodeId, run_episode};
+use farsa_lab::EpisodeId;
+use farsa_lab::advanced::run_episode;
 use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 

@@ -3,8 +3,10 @@
 use std::process::ExitCode;
 
 use farsa_body::Recorder;
-use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Schema, Setting, Settings};
-use farsa_lab::{SimpleExperiment, Task, TaskInfo, cli, record_row};
+use farsa_lab::advanced::record_row;
+use farsa_lab::advanced::{Description, Schema};
+use farsa_lab::{Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings};
+use farsa_lab::{SimpleExperiment, Task, TaskInfo, cli};
 use farsa_num::{Domain, Stream};
 
 fn settings(_: &str) -> Vec<Setting> {

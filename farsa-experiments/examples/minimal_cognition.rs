@@ -7,7 +7,8 @@ use std::path::Path;
 
 use farsa_experiments::MinimalCognition;
 use farsa_experiments::minimal_cognition::{AgentEpisode, Config, Object, Wiring};
-use farsa_lab::{EpisodeId, Experiment as _, Genotype, read_genotypes};
+use farsa_lab::advanced::{Genotype, read_genotypes};
+use farsa_lab::{EpisodeId, Experiment as _};
 
 /// The part of the line that is drawn, to both sides of the object.
 const SIDE: f64 = 100.0;

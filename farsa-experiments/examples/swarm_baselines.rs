@@ -12,9 +12,8 @@ use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, Beac
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
 use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
-use farsa_lab::{
-    EpisodeId, Error, Evaluation, Evaluator, Genotype, Laboratory, Note, Outcome, OwnedNetwork, RunDirectory,
-};
+use farsa_lab::advanced::{Genotype, OwnedNetwork, RunDirectory};
+use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator, Laboratory, Note, Outcome};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 

@@ -43,7 +43,7 @@ pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     let files = farsa_compose::FILES;
     #[cfg(feature = "command")]
-    let files = farsa_lab::ExperimentFiles { import: Some(farsa_original::from_original), ..files };
+    let files = farsa_lab::advanced::ExperimentFiles { import: Some(farsa_original::from_original), ..files };
     let laboratory = farsa_lab::Laboratory::new(&all()).with_files(files);
     #[cfg(feature = "command")]
     let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.gz"), &["rapier"]);

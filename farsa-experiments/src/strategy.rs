@@ -1,6 +1,6 @@
 //! The strategy that an experiment is searched by unless another one is asked for.
 
-use farsa_lab::{StrategyDefinition, Truncation, strategies};
+use farsa_lab::strategy::{StrategyDefinition, Truncation, strategies};
 
 /// The strategy of a name, or truncation selection for an unknown one.
 pub(crate) fn strategy(name: &str) -> &'static dyn StrategyDefinition {

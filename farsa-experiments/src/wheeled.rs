@@ -3,7 +3,9 @@
 use farsa_body::Recorder;
 use farsa_body::ports::{BodyId, Handles, Kinematics};
 use farsa_body::robots::MobileRobot;
-use farsa_lab::{Evaluation, Intervention, Interventions, MotorExport, SensorExport, SensorReading, Task};
+use farsa_lab::advanced::{Intervention, Interventions};
+use farsa_lab::exports::{MotorExport, SensorExport, SensorReading};
+use farsa_lab::{Evaluation, Task};
 use farsa_view::Schema;
 
 /// Records what was sensed and done in a step, and where bodies are after it.

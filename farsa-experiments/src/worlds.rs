@@ -51,8 +51,9 @@ impl FromStr for Engine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_lab::advanced::{ENGINE, Value};
     #[cfg(not(feature = "rapier"))]
-    use farsa_lab::{ENGINE, Experiment, Settings, Value};
+    use farsa_lab::{Experiment, Settings};
 
     #[test]
     fn worlds_have_names() {

@@ -8,7 +8,8 @@ use std::process::Command;
 
 use farsa_compose::ComposedExperiment;
 use farsa_experiments::{Aggregation, Foraging};
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings};
+use farsa_lab::advanced::Genotype;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Stream};
 
 fn folder() -> PathBuf {
@@ -16,7 +17,7 @@ fn folder() -> PathBuf {
 }
 
 fn from_file(name: &str) -> ComposedExperiment {
-    ComposedExperiment::from_file(&folder().join(name), farsa_lab::strategies())
+    ComposedExperiment::from_file(&folder().join(name), farsa_lab::strategy::strategies())
         .unwrap_or_else(|error| panic!("{error}"))
 }
 

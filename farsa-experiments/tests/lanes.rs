@@ -8,10 +8,8 @@ use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
 use farsa_experiments::{Aggregation, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, Foraging, PredatorPrey};
-use farsa_lab::{
-    Displacement, Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Push, Settings,
-    Value, run_episode, run_in_lanes,
-};
+use farsa_lab::advanced::{Displacement, Genotype, Lanes, Push, Value, run_episode, run_in_lanes};
+use farsa_lab::{Episode, EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Batch, LANES, Model, World};
 use farsa_physics::{arena, articulated};

@@ -11,7 +11,8 @@ use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, Beac
 use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
 use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Note, Outcome, Settings, Value};
+use farsa_lab::advanced::{Genotype, Value};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Note, Outcome, Settings};
 use farsa_num::{Domain, Stream};
 use farsa_view::Recording;
 

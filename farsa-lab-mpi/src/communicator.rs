@@ -3,7 +3,8 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use farsa_lab::{Error, Ranks};
+use farsa_lab::Error;
+use farsa_lab::advanced::Ranks;
 use mpi::Count;
 use mpi::collective::CommunicatorCollectives as _;
 use mpi::datatype::PartitionMut;

@@ -3,7 +3,7 @@
 //!
 //! The command has one public entry, [`Laboratory::main`], which reads the arguments of the process, starts threads and writes
 //! files. A fuzz target calls a reader ten million times. This module is hidden behind a feature, is not part of the interface,
-//! and may change with any version. Directories of runs have a public reader, [`RunDirectory`](crate::RunDirectory).
+//! and may change with any version. Directories of runs have a public reader, [`RunDirectory`](crate::advanced::RunDirectory).
 
 use std::fs;
 use std::path::Path;
@@ -13,9 +13,9 @@ use farsa_evo::{EvoError, Scores};
 use crate::command::{cli, manual};
 use crate::error::Error;
 use crate::evaluation::genotypes::{Shape, written, written_reals};
-use crate::evaluation::lines::{Request, Wanted};
+use crate::evaluation::lines::{Request, RequestSchema};
+use crate::evaluation::protocols::case_summary::CaseSummary;
 use crate::evaluation::protocols::files::ProtocolRecord;
-use crate::evaluation::protocols::found::FoundCase;
 use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
 use crate::evaluation::test::Record as TestRecord;
@@ -35,7 +35,7 @@ use crate::store::failures::Failures;
 use crate::store::lineage::{HEADER, Lineage};
 use crate::store::log::{Log, header};
 use crate::store::manifest::Manifest;
-use crate::strategy::search::{Genome, Search};
+use crate::strategy::any_strategy::{AnyStrategy, Genome};
 use crate::sweep::SweepFile;
 
 /// A reader of command lines. Creating it takes a hundred times as long as reading one.
@@ -91,7 +91,7 @@ pub fn read_trials(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
 pub fn read_cases(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
     let path = Path::new("cases.csv");
     let table = ProtocolTable::from_text(path, text)?;
-    for found in FoundCase::all(&table, terms) {
+    for found in CaseSummary::all(&table, terms) {
         drop(found.case());
     }
     table.csv(path)
@@ -144,12 +144,12 @@ pub fn read_genotypes(text: &str) -> Result<String, Error> {
 }
 
 /// A reader of an optimizer's lines, with two parameters of each individual, for one population or two.
-pub struct RequestReader([Wanted; 2]);
+pub struct RequestReader([RequestSchema; 2]);
 
 impl Default for RequestReader {
     fn default() -> Self {
         let parameters = vec![Parameter::new("gain", [-5.0, 5.0]), Parameter::new("bias", [1.0, 0.0])];
-        let of = |names: &[&str], size| Wanted {
+        let of = |names: &[&str], size| RequestSchema {
             experiment: "tune",
             populations: names.iter().map(|&name| name.into()).collect(),
             parameters: parameters.clone(),
@@ -286,7 +286,7 @@ impl<'l> RunReader<'l> {
     }
 
     /// Reports some fitness of a generation, as in a resumed run.
-    fn go_on(&self, search: &mut Search) -> Result<(), EvoError> {
+    fn go_on(&self, search: &mut AnyStrategy) -> Result<(), EvoError> {
         // A genome that cannot be decoded ends a run with an error.
         let _ = search.parameters(&self.genotype);
         let shape = search.score_shape();

@@ -24,7 +24,8 @@ use crate::strategy::history::History;
 /// ```no_run
 /// use std::path::Path;
 ///
-/// use farsa_lab::{Error, Evaluation, EpisodeId, Experiment, Laboratory, RunDirectory};
+/// use farsa_lab::{Error, Evaluation, EpisodeId, Experiment, Laboratory};
+/// use farsa_lab::advanced::RunDirectory;
 ///
 /// fn analyze(path: &Path, experiments: &[&dyn Experiment]) -> Result<(), Error> {
 ///     let laboratory = Laboratory::new(experiments);

@@ -5,7 +5,8 @@
 
 use std::cell::RefCell;
 
-use farsa_lab::{ExperimentFiles, Laboratory, LiveSession};
+use farsa_lab::Laboratory;
+use farsa_lab::advanced::{ExperimentFiles, LiveSession};
 
 #[derive(Default)]
 struct State {

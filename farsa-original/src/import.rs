@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use farsa_lab::{Error, Experiment as _, ImportedFile, LeftOut, Settings};
+use farsa_lab::advanced::{ImportedFile, LeftOut};
+use farsa_lab::{Error, Experiment as _, Settings};
 
 use crate::channels::{Device, MAX_PARTS, Part};
 use crate::evolution::Evolution;
@@ -122,7 +123,7 @@ pub fn from_original_within(limits: Limits, file: &str, name: &str, text: &str) 
 
 /// Checks that a text is a valid experiment.
 fn check(limits: Limits, name: &str, text: &str) -> Result<(), Error> {
-    let made = ComposedExperiment::from_text_within(limits, name, text, farsa_lab::strategies())?;
+    let made = ComposedExperiment::from_text_within(limits, name, text, farsa_lab::strategy::strategies())?;
     made.prepare("", &Settings::new(made.settings(""))?).map(drop)
 }
 

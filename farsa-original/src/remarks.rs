@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_lab::{Error, LeftOut};
+use farsa_lab::Error;
+use farsa_lab::advanced::LeftOut;
 
 use crate::ini::{Entry, Group, Ini};
 

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use farsa_compose::ComposedExperiment;
-use farsa_lab::{EpisodeId, Evaluation, Experiment as _, ImportedFile, Settings};
+use farsa_lab::advanced::ImportedFile;
+use farsa_lab::{EpisodeId, Evaluation, Experiment as _, Settings};
 use farsa_original::from_original;
 use proptest::prelude::*;
 
@@ -29,7 +30,7 @@ fn error(text: &str) -> String {
 
 /// Returns the number of parameters, and the fitness of one trial with parameters of 0.3.
 fn lived(text: &str) -> (usize, f64) {
-    let made = ComposedExperiment::from_text("x.toml", text, farsa_lab::strategies()).expect("an experiment");
+    let made = ComposedExperiment::from_text("x.toml", text, farsa_lab::strategy::strategies()).expect("an experiment");
     let settings = Settings::new(made.settings("")).expect("settings");
     let mut evaluator = made.prepare("", &settings).expect("an evaluator");
     let parameters: Vec<f32> =
@@ -88,7 +89,8 @@ fn body(text: &str) -> Vec<String> {
 /// Returns keys and reasons of lost lines, except those of the empty configuration.
 fn lost(text: &str) -> Vec<String> {
     let without = imported(&with("none", "")).left;
-    let new = |left: &farsa_lab::LeftOut| !without.iter().any(|old| (&old.key, &old.why) == (&left.key, &left.why));
+    let new =
+        |left: &farsa_lab::advanced::LeftOut| !without.iter().any(|old| (&old.key, &old.why) == (&left.key, &left.why));
     imported(text).left.iter().filter(|left| new(left)).map(ToString::to_string).collect()
 }
 
@@ -355,7 +357,7 @@ proptest! {
         }
         let text: String = signs.into_iter().collect();
         if let Ok(made) = from_original("x.ini", "x.toml", &text) {
-            let read = ComposedExperiment::from_text("x.toml", &made.text, farsa_lab::strategies());
+            let read = ComposedExperiment::from_text("x.toml", &made.text, farsa_lab::strategy::strategies());
             prop_assert!(read.is_ok(), "{:?}\n{}", read.err().map(|error| error.to_string()), made.text);
         }
     }

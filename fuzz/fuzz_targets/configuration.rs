@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 farsa_fuzz::text!();
 
 // The schema is made once, and is no part of what an input takes.
-fuzz_target!(init: drop(ComposedExperiment::from_text("warm.toml", "", farsa_lab::strategies())), |input: &[u8]| {
+fuzz_target!(init: drop(ComposedExperiment::from_text("warm.toml", "", farsa_lab::strategy::strategies())), |input: &[u8]| {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let _ = bounded_toml(text, || read_sweep(text));
     let laboratory = laboratory();

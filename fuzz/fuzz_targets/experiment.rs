@@ -7,7 +7,7 @@ use farsa_lab::Experiment as _;
 use libfuzzer_sys::fuzz_target;
 
 fn read(text: &str) -> Option<ComposedExperiment> {
-    ComposedExperiment::from_text_within(limits(), "experiment.toml", text, farsa_lab::strategies()).ok()
+    ComposedExperiment::from_text_within(limits(), "experiment.toml", text, farsa_lab::strategy::strategies()).ok()
 }
 
 farsa_fuzz::text!();

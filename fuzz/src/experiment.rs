@@ -2,11 +2,9 @@
 
 use farsa_body::Recorder;
 use farsa_compose::{ComposedExperiment, Limits};
-use farsa_lab::{
-    Behaviour, Error, Evaluation, Evaluator, Experiment, ExperimentFiles, Iteration, Laboratory, Learner,
-    NotedBehaviour, Outcome, Parameter, ReadExperiment, Schema, Setting, Settings, StrategyDefinition, Task, TaskInfo,
-    Truncation,
-};
+use farsa_lab::{Error, Evaluation, Evaluator, Experiment, Laboratory, Outcome, Parameter, Setting, Settings, Task, TaskInfo};
+use farsa_lab::advanced::{Behavior, ExperimentFiles, Iteration, Learner, NotedBehavior, ReadExperiment, Schema};
+use farsa_lab::strategy::{StrategyDefinition, Truncation};
 use farsa_num::{Domain, Stream};
 
 /// Individuals of a population.
@@ -69,8 +67,8 @@ struct Trial {
     noise: f64,
 }
 
-static BEHAVIOUR: NotedBehaviour =
-    NotedBehaviour { objectives: &[("distance", -1.0)], descriptors: &[("first", [0.0, 1.0]), ("second", [0.0, 1.0])] };
+static BEHAVIOUR: NotedBehavior =
+    NotedBehavior { objectives: &[("distance", -1.0)], descriptors: &[("first", [0.0, 1.0]), ("second", [0.0, 1.0])] };
 
 impl Task for Trial {
     fn info(&self) -> TaskInfo {
@@ -85,7 +83,7 @@ impl Task for Trial {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 }

@@ -3,7 +3,8 @@
 use std::fs;
 
 use farsa_lab::fuzzing::RunReader;
-use farsa_lab::{RunDirectory, strategies};
+use farsa_lab::advanced::RunDirectory;
+use farsa_lab::strategy::strategies;
 
 thread_local! {
     /// Readers for all strategies with one population, then for those with opponents.

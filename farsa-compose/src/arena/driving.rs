@@ -4,7 +4,8 @@ use farsa_body::ChannelError;
 use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
 use farsa_body::ports::{ActuatorId, Channels, Motor};
 use farsa_body::robots::{MobileParts, MobileRobot};
-use farsa_lab::{Error, PlanarWorld};
+use farsa_lab::Error;
+use farsa_lab::advanced::PlanarWorld;
 
 use crate::arena::scene::Scene;
 use crate::check::source::Source;

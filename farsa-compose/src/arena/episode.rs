@@ -3,7 +3,8 @@
 use farsa_body::ports::{BodyId, PairId};
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
-use farsa_lab::{Episode, EpisodeId, PlanarWorld, seconds};
+use farsa_lab::advanced::{PlanarWorld, seconds};
+use farsa_lab::{Episode, EpisodeId};
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};

@@ -10,7 +10,8 @@ use farsa_body::sensors::{
     AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ContactForce, GroundColor, Height, JointPosition, JointSpeed,
     LaserDistance, LightSensors, Point, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
 };
-use farsa_lab::{Error, PlanarWorld};
+use farsa_lab::Error;
+use farsa_lab::advanced::PlanarWorld;
 
 use crate::arena::body_state::{BodyState, BodyStateSensor};
 use crate::arena::field::Forager;

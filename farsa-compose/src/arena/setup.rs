@@ -3,7 +3,8 @@
 use farsa_body::ports::{BodyId, Channels as _};
 use farsa_body::robots::MobileRobot;
 use farsa_body::sensors::infrared::InfraredDrawing;
-use farsa_lab::{Error, PlanarWorld};
+use farsa_lab::Error;
+use farsa_lab::advanced::PlanarWorld;
 
 use crate::arena::driving::{Driving, motor};
 use crate::arena::field::Field;

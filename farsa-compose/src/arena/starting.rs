@@ -4,7 +4,8 @@ use core::f32::consts::PI;
 
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Twist};
-use farsa_lab::{Error, PlanarWorld};
+use farsa_lab::Error;
+use farsa_lab::advanced::PlanarWorld;
 use farsa_num::{Scalar, Stream, sin_cos};
 use farsa_physics::arena::{ArenaError, FreePlace};
 

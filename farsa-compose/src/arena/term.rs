@@ -3,7 +3,8 @@
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, PairId};
 use farsa_body::robots::MobileParts;
-use farsa_lab::{Error, PlanarWorld};
+use farsa_lab::Error;
+use farsa_lab::advanced::PlanarWorld;
 use farsa_num::{Scalar, atan2};
 
 use crate::arena::field::Field;

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Component, Path};
 
-use farsa_lab::{Error, read_text_file};
+use farsa_lab::Error;
+use farsa_lab::advanced::read_text_file;
 
 use crate::check::source::Source;
 use crate::document::{Document, NetworkKind, SensorKind};

@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_lab::{Error, Setting, Settings, Value as Given};
+use farsa_lab::advanced::Value as Given;
+use farsa_lab::{Error, Setting, Settings};
 use serde_json::{Map, Value};
 
 use crate::check::schema::{Kind, Part};

@@ -3,7 +3,8 @@
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{Joint, JointKind, MassProperties, Robot, Segment};
 use farsa_body::{Pose, Recorder};
-use farsa_lab::{Episode, EpisodeId, seconds};
+use farsa_lab::advanced::seconds;
+use farsa_lab::{Episode, EpisodeId};
 use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{Anatomy, ChannelGroup, Description, Evaluation, Interventions, NormalisedController, Outcome};
+use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Interventions, NormalizedController};
+use farsa_lab::{Evaluation, Outcome};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 use crate::document::Document;
@@ -26,7 +27,7 @@ pub(crate) struct Agents {
     pub(crate) size: usize,
     /// Evolving robots of this trial, from the first up to the one after the last.
     pub(crate) evolving: [usize; 2],
-    pub(crate) networks: Vec<NormalisedController<AnyNetwork>>,
+    pub(crate) networks: Vec<NormalizedController<AnyNetwork>>,
     /// Last sensor and motor values of all robots.
     pub(crate) x: Vec<f32>,
     pub(crate) y: Vec<f32>,
@@ -36,7 +37,7 @@ impl Agents {
     /// Creates robots at rest.
     pub(crate) fn new(document: Document, spec: NetworkSpec, ledger: Ledger, groups: Groups) -> Self {
         let robots = groups.robots();
-        let networks = vec![NormalisedController::new(spec.network.clone()); robots];
+        let networks = vec![NormalizedController::new(spec.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * spec.inputs.len()], vec![0.0; robots * spec.outputs.len()]);
         let interventions = Arc::new(interventions(&document, &spec));
         let document = Arc::new(document);
@@ -78,7 +79,7 @@ impl Agents {
             return Outcome::failed();
         }
         let [first, end] = self.evolving;
-        let mut observed = self.networks[first..end].iter().filter_map(NormalisedController::observed);
+        let mut observed = self.networks[first..end].iter().filter_map(NormalizedController::observed);
         let first = observed.next().cloned();
         let merged = first.and_then(|first| {
             let merge = |mut all: ObservationStatistics, own| all.merge(own).ok().map(|()| all);

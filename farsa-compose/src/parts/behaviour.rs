@@ -1,6 +1,7 @@
 //! Objectives and measures of an individual in addition to its fitness.
 
-use farsa_lab::{Behaviour, Error, Note, Outcome, Parameter};
+use farsa_lab::advanced::Behavior;
+use farsa_lab::{Error, Note, Outcome, Parameter};
 
 use crate::check::source::Source;
 use crate::document::BehaviourOfTerms;
@@ -52,7 +53,7 @@ impl TermBehaviour {
     }
 }
 
-impl Behaviour for TermBehaviour {
+impl Behavior for TermBehaviour {
     fn objectives(&self) -> Vec<String> {
         let named = |(name, sign): &(String, f64)| if *sign < 0.0 { format!("minus {name}") } else { name.clone() };
         self.objectives.iter().map(named).collect()

@@ -1,6 +1,6 @@
 //! Lesions and noise of the test protocols.
 
-use farsa_lab::Interventions;
+use farsa_lab::advanced::Interventions;
 use farsa_nn::Ablatable as _;
 
 use crate::document::{Document, Lesions, Network, NetworkKind};

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use farsa_lab::{Error, Note, Outcome, mean_of_trials};
+use farsa_lab::advanced::mean_of_trials;
+use farsa_lab::{Error, Note, Outcome};
 use farsa_num::Scalar;
 
 use crate::check::source::Source;

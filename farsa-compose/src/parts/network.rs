@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use farsa_lab::{Error, Intervention, OwnedNetwork, Parameter, resting_network};
+use farsa_lab::advanced::{Intervention, OwnedNetwork, resting_network};
+use farsa_lab::{Error, Parameter};
 use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter};
 use farsa_nn::{
     Ablatable, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak, LeakyLayout, LeakyParameter, Lesion, Perceptron,

@@ -44,7 +44,7 @@ parents = 2
 "#;
 
 fn error(text: &str) -> String {
-    match ComposedExperiment::from_text("look.toml", text, farsa_lab::strategies()) {
+    match ComposedExperiment::from_text("look.toml", text, farsa_lab::strategy::strategies()) {
         Ok(made) => {
             let made = Settings::new(made.settings("")).and_then(|settings| made.prepare("", &settings).map(drop));
             made.err().map_or_else(|| "nothing is wrong".into(), |error| error.to_string())

@@ -3,7 +3,8 @@
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
 use farsa_compose::ComposedExperiment;
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, Outcome, Settings};
+use farsa_lab::advanced::Lanes;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Outcome, Settings};
 
 const CHASE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../experiments/chase.toml");
 
@@ -17,7 +18,7 @@ const GROUPS: &str = "[[robots]]\nname = \"hunter\"\nkind = \"e-puck\"\nspeed = 
 const MOVED: &str = "[[reward]]\nkind = \"displacement\"\nover = \"end\"\n";
 
 fn made(text: &str) -> Result<Box<dyn Evaluator>, farsa_lab::Error> {
-    let made = ComposedExperiment::from_text("team.toml", text, farsa_lab::strategies())?;
+    let made = ComposedExperiment::from_text("team.toml", text, farsa_lab::strategy::strategies())?;
     let mut settings = made.settings("");
     // As a strategy's settings are when there is a run.
     settings.retain(|setting| setting.key() != "evolution.population");

@@ -27,10 +27,10 @@ kind = "steps"
 "#;
 
 fn made(text: &str, settings: &[(&str, bool)]) -> Result<Box<dyn Evaluator>, Error> {
-    let made = ComposedExperiment::from_text("own.toml", text, farsa_lab::strategies())?;
+    let made = ComposedExperiment::from_text("own.toml", text, farsa_lab::strategy::strategies())?;
     let mut own = Settings::new(made.settings(""))?;
     for (key, value) in settings {
-        own.set("own", key, farsa_lab::Value::Flag(*value))?;
+        own.set("own", key, farsa_lab::advanced::Value::Flag(*value))?;
     }
     made.prepare("", &own)
 }
@@ -353,12 +353,12 @@ fn a_text_has_the_network_that_it_names() {
     let path = folder.join("own.toml");
     let read = |name: &str| {
         std::fs::write(&path, format!("{REST}{EVONET}file = \"{name}\"\n")).expect("a file");
-        ComposedExperiment::from_file(&path, farsa_lab::strategies())
+        ComposedExperiment::from_file(&path, farsa_lab::strategy::strategies())
     };
     let own = read("my.net").unwrap_or_else(|error| panic!("{error}"));
     let kept = own.definition().expect("the text").to_owned();
     assert!(kept.contains("[files]") && kept.contains("nneurons 12"), "{kept}");
-    let again = ComposedExperiment::from_text("elsewhere.toml", &kept, farsa_lab::strategies());
+    let again = ComposedExperiment::from_text("elsewhere.toml", &kept, farsa_lab::strategy::strategies());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     let [a, b] = [&own, &again].map(|made| {
         let settings = Settings::new(made.settings("")).unwrap_or_else(|error| panic!("{error}"));

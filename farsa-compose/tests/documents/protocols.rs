@@ -5,9 +5,9 @@ use std::path::Path;
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
 use farsa_compose::ComposedExperiment;
-use farsa_lab::{
-    CaseId, EpisodeId, Evaluation, Evaluator, Experiment as _, Lanes, NetworkExport, Outcome, Protocol, Settings,
-};
+use farsa_lab::advanced::{CaseId, Lanes, Protocol};
+use farsa_lab::exports::NetworkExport;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Outcome, Settings};
 use farsa_nn::block::{Block, BlockNetwork};
 use farsa_nn::{Controller, Ctrnn, LeakyNetwork, LeakyParameter, Perceptron};
 use farsa_num::{Domain, Instructions, Stream};
@@ -80,7 +80,7 @@ const WIRED: &str = "kind = \"wired\"\nbias = [0.5, 0.5]\n\
     wires = [{ from = [\"constant\"], to = \"wheels left\", weight = 0.5 }]\n";
 
 fn evaluator(text: &str) -> Box<dyn Evaluator> {
-    let made = ComposedExperiment::from_text("own.toml", text, farsa_lab::strategies());
+    let made = ComposedExperiment::from_text("own.toml", text, farsa_lab::strategy::strategies());
     let made = made.unwrap_or_else(|error| panic!("{error}\n{text}"));
     let settings = Settings::new(made.settings("")).expect("settings");
     made.prepare("", &settings).expect("an evaluator")
@@ -326,7 +326,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>) {
 
 fn shown(name: &str) -> ComposedExperiment {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments");
-    ComposedExperiment::from_file(&folder.join(name), farsa_lab::strategies()).expect("an experiment")
+    ComposedExperiment::from_file(&folder.join(name), farsa_lab::strategy::strategies()).expect("an experiment")
 }
 
 fn prepared(experiment: &ComposedExperiment) -> Box<dyn Evaluator> {

@@ -9,7 +9,7 @@ const PARTS: &str = "[[sensors]]\nkind = \"infrared\"\nmodel = \"rays\"\ngroups 
 const REWARD: &str = "[[reward]]\nkind = \"steps\"\n";
 
 fn made(text: &str) -> Result<Box<dyn Evaluator>, farsa_lab::Error> {
-    let made = ComposedExperiment::from_text("rules.toml", text, farsa_lab::strategies())?;
+    let made = ComposedExperiment::from_text("rules.toml", text, farsa_lab::strategy::strategies())?;
     made.prepare("", &Settings::new(made.settings(""))?)
 }
 
@@ -83,7 +83,7 @@ fn a_position_is_where_the_robot_is() {
         let robot = steps.poses.last().map(|at| at.map(f64::from)).expect("a robot");
         assert!(steps.poses.last() != steps.first.last(), "it moves");
         let [x, y] = robot;
-        let found = task.behaviour().expect("descriptors").describe(&[outcome]);
+        let found = task.behavior().expect("descriptors").describe(&[outcome]);
         assert_eq!(found[0], x);
         assert!((found[1] - (0.8 * y - 0.6 * x)).abs() < 1e-12, "{found:?} at {robot:?}");
         ends.push(x);
@@ -344,7 +344,7 @@ fn behaviours_are_measures_of_terms() {
         other => panic!("{wanted}: {other:?}"),
     };
     let mean = |name: &str| trials.iter().map(|trial| note(trial, name)).sum::<f64>() / 2.0;
-    let behaviour = task.behaviour().expect("a behaviour");
+    let behaviour = task.behavior().expect("a behaviour");
     assert_eq!(behaviour.objectives(), ["minus energy"]);
     assert_eq!(behaviour.descriptors()[0].ends, [0.0, 60.0]);
     assert_eq!(behaviour.describe(&trials), [-mean("energy"), mean("alive")]);
@@ -377,7 +377,7 @@ fn a_text_has_the_files_that_it_names() {
     let read = |text: &str| {
         let path = folder.join("measured.toml");
         std::fs::write(&path, text).expect("a file");
-        ComposedExperiment::from_file(&path, farsa_lab::strategies())
+        ComposedExperiment::from_file(&path, farsa_lab::strategy::strategies())
     };
     let refused = |text: &str| read(text).err().unwrap_or_else(|| panic!("nothing is wrong with\n{text}")).to_string();
     let own = read(&text).unwrap_or_else(|error| panic!("{error}"));
@@ -388,14 +388,14 @@ fn a_text_has_the_files_that_it_names() {
         for (text, word) in
             [(text.clone(), "tables/wall.sam"), (text.replace("tables/wall.sam", "Cargo.toml"), "Cargo.toml")]
         {
-            let found = ComposedExperiment::from_text(name, &text, farsa_lab::strategies()).err();
+            let found = ComposedExperiment::from_text(name, &text, farsa_lab::strategy::strategies()).err();
             let found = found.unwrap_or_else(|| panic!("{name} has read {word}")).to_string();
             let why = format!("`{word}` is not in the table `files`, and a text that is no file reads no others");
             assert!(found.contains("line 8: `sensors.1.tables.walls`") && found.contains(&why), "{found}");
         }
     }
     // From the text alone, in another place.
-    let again = ComposedExperiment::from_text("elsewhere.toml", &kept, farsa_lab::strategies());
+    let again = ComposedExperiment::from_text("elsewhere.toml", &kept, farsa_lab::strategy::strategies());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again.definition(), Some(kept.as_str()));
     let mut felt = 0.0;
@@ -452,7 +452,7 @@ fn a_scene_stands_in_a_file_of_its_own() {
     let read = |scene: &str, text: &str| {
         std::fs::write(folder.join("rooms.toml"), scene).expect("a scene");
         std::fs::write(folder.join("own.toml"), text).expect("a file");
-        ComposedExperiment::from_file(&folder.join("own.toml"), farsa_lab::strategies())
+        ComposedExperiment::from_file(&folder.join("own.toml"), farsa_lab::strategy::strategies())
     };
     let apart = read(scene, &text("scene = \"rooms.toml\"\n")).unwrap_or_else(|error| panic!("{error}"));
     let inline = read(scene, &format!("{}{scene}", text(""))).unwrap_or_else(|error| panic!("{error}"));

@@ -1,6 +1,7 @@
 //! Sight of robots with joints: cameras of a plane and eyes with an image.
 
-use farsa_lab::{EpisodeId, Evaluation, ImageChannel, Recording};
+use farsa_lab::advanced::{ImageChannel, Recording};
+use farsa_lab::{EpisodeId, Evaluation};
 
 use crate::{FELT, close, file, made, measured, outcome, refused};
 
@@ -33,7 +34,7 @@ fn cameras_see_coloured_things_in_their_plane() {
     let evaluation = Evaluation::new(&parameters, EpisodeId::default());
     let alone = evaluator.evaluate(evaluation, None);
     let lanes = evaluator.in_lanes().expect("lanes");
-    lanes.use_lanes(farsa_lab::Lanes::best()).expect("a batch");
+    lanes.use_lanes(farsa_lab::advanced::Lanes::best()).expect("a batch");
     let (mut next, mut in_lanes) = (Some(evaluation), Vec::new());
     lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
     assert_eq!(in_lanes, [alone]);

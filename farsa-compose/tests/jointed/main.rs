@@ -24,7 +24,7 @@ fn file(world: &str, motor: &str, rest: &str) -> String {
 }
 
 fn made(text: &str) -> Result<Box<dyn Evaluator>, farsa_lab::Error> {
-    let made = ComposedExperiment::from_text("bar.toml", text, farsa_lab::strategies())?;
+    let made = ComposedExperiment::from_text("bar.toml", text, farsa_lab::strategy::strategies())?;
     made.prepare("", &Settings::new(made.settings(""))?)
 }
 
@@ -217,13 +217,16 @@ fn lanes_have_the_same_bits_as_one_world() {
 
 fn shown_in_lanes(file: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments").join(file);
-    let made = ComposedExperiment::from_file(&path, farsa_lab::strategies()).expect("an experiment");
+    let made = ComposedExperiment::from_file(&path, farsa_lab::strategy::strategies()).expect("an experiment");
     let settings = Settings::new(made.settings("")).expect("settings");
     assert!(made.definition().is_some_and(|text| text.contains("<robot name=\"arm\">")));
     // The text of a run needs no other file.
-    let kept =
-        ComposedExperiment::from_text("kept.toml", made.definition().expect("the text"), farsa_lab::strategies())
-            .expect("an experiment");
+    let kept = ComposedExperiment::from_text(
+        "kept.toml",
+        made.definition().expect("the text"),
+        farsa_lab::strategy::strategies(),
+    )
+    .expect("an experiment");
     let mut evaluators =
         [made.prepare("", &settings).expect("an evaluator"), kept.prepare("", &settings).expect("an evaluator")];
     let parameters = vec![0.3; evaluators[0].info().parameters.len()];
@@ -234,7 +237,7 @@ fn shown_in_lanes(file: &str) {
         assert_eq!(found[0], found[1]);
         let mut in_lanes = Vec::new();
         let lanes = one.in_lanes().expect("lanes");
-        lanes.use_lanes(farsa_lab::Lanes::best()).expect("a batch");
+        lanes.use_lanes(farsa_lab::advanced::Lanes::best()).expect("a batch");
         let mut next = Some(Evaluation::new(&parameters, id));
         lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
         assert_eq!(in_lanes, [found[0].clone()]);

@@ -14,7 +14,8 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team, distance};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
+use farsa_lab::advanced::{Behavior, ChannelGroup, NotedBehavior, PlanarWorld};
+use farsa_lab::{EpisodeId, Error, Note, Outcome};
 use farsa_view::Channel;
 
 /// Robots that aggregate, with a controller each.
@@ -77,7 +78,7 @@ impl AggregationScenario {
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("dispersion", -1.0)],
     descriptors: &[("share on the fullest nest", [0.0, 1.0]), ("share in the largest cluster", [0.0, 1.0])],
 };
@@ -180,7 +181,7 @@ impl Scenario for AggregationScenario {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 

@@ -41,6 +41,6 @@ impl Experiment for Aggregation {
 
 /// Runs one trial of a team of any controllers and returns its outcome.
 pub fn aggregate<C: Controller>(episode: &mut AggregationEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(episode, world, id, None);
+    farsa_lab::advanced::run_episode(episode, world, id, None);
     episode.outcome(0)
 }

@@ -1,6 +1,7 @@
 //! The network of an agent, whole or changed by a test.
 
-use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
+use farsa_lab::advanced::{Intervention, NormalizedController};
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::{Controller, Ctrnn};
 
 use crate::compositional_instructions::network::{LAYOUT, Wiring};
@@ -8,7 +9,7 @@ use crate::compositional_instructions::network::{LAYOUT, Wiring};
 /// A network that is made of genes and that tests can change.
 #[derive(Clone, Debug)]
 pub struct Agent {
-    network: NormalisedController<Ctrnn<Vec<f32>, Vec<f32>>>,
+    network: NormalizedController<Ctrnn<Vec<f32>, Vec<f32>>>,
     genes: Vec<f32>,
     parameters: Vec<f32>,
 }
@@ -25,7 +26,7 @@ impl Agent {
         wiring.expand(&first, &mut genes, &mut parameters);
         let state = vec![0.0; LAYOUT.state_len()];
         let network = Ctrnn::new(LAYOUT, time_step as f32, parameters.clone(), state).map_err(wrong)?;
-        Ok(Self { network: NormalisedController::new(network), genes, parameters })
+        Ok(Self { network: NormalizedController::new(network), genes, parameters })
     }
 
     /// Sets the parameters and clears all changes. Returns false for another count of numbers, or for numbers that make no network.

@@ -1,6 +1,8 @@
 //! The experiment `compositional-instructions` as the `farsa` command runs it.
 
-use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition};
+use farsa_lab::advanced::Lanes;
+use farsa_lab::strategy::StrategyDefinition;
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Setting, Settings};
 use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::compositional_instructions::config::Config;

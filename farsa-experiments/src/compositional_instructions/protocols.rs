@@ -1,6 +1,6 @@
 //! The test protocols of `compositional-instructions`: the instructions of each case, and the changes of the network.
 
-use farsa_lab::{CaseId, Intervention, Protocol};
+use farsa_lab::advanced::{CaseId, Intervention, Protocol};
 use farsa_nn::CtrnnParameter;
 use farsa_nn::block::Span;
 

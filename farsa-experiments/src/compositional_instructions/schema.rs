@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};
-use farsa_lab::seconds;
+use farsa_lab::advanced::seconds;
 use farsa_nn::CtrnnParts;
 use farsa_nn::block::Span;
 use farsa_view::{Channel, Links, NodeParameters, Schema, View};

@@ -1,7 +1,8 @@
 //! An episode of `double-pole`: a network pushes the cart until a pole falls.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
+use farsa_lab::advanced::{Intervention, NormalizedController};
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::block::BlockNetwork;
 use farsa_nn::{Controller as _, Leak};
 
@@ -18,7 +19,7 @@ const LAST: u32 = 100;
 #[derive(Clone, Debug)]
 pub struct CartEpisode {
     config: Config,
-    network: NormalisedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
+    network: NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
     state: CartState,
     steps: u32,
     fallen: bool,
@@ -38,7 +39,7 @@ impl CartEpisode {
         let layout = layout(config.velocities, config.hidden);
         let network = BlockNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])
             .map_err(|error| Error::Other(format!("double-pole: {error}")))?;
-        let network = NormalisedController::new(network);
+        let network = NormalizedController::new(network);
         let (unrest, x) = ([0.0; LAST as usize], vec![0.0; config.inputs()]);
         let state = CartState::default();
         let mut episode = Self { config, network, state, steps: 0, fallen: false, unrest, x, y: [0.0], force: 0.0 };

@@ -2,10 +2,13 @@
 
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
+use farsa_lab::advanced::{
+    Anatomy, ChannelGroup, Description, Interventions, NoWorld, Rollout, mean_of_trials, seconds,
+};
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Rollout,
-    SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
+    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter, Setting, Settings,
+    Task, TaskInfo,
 };
 use farsa_num::sin_cos;
 use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};

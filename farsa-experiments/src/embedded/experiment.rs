@@ -5,8 +5,9 @@ use std::sync::OnceLock;
 
 use farsa_compose::ComposedExperiment;
 #[cfg(not(feature = "rapier"))]
-use farsa_lab::ENGINE;
-use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings, StrategyDefinition, strategies};
+use farsa_lab::advanced::ENGINE;
+use farsa_lab::strategy::{StrategyDefinition, strategies};
+use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 
 use crate::embedded::infrared;
 use crate::embedded::settings::NamedSettings;

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use farsa_lab::{Error, Settings, Value, read_text_file};
+use farsa_lab::advanced::{Value, read_text_file};
+use farsa_lab::{Error, Settings};
 use toml::{Table, Value as Toml};
 
 const MODEL: &str = "robot.infrared";

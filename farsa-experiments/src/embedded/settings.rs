@@ -1,6 +1,7 @@
 //! The settings of an embedded experiment, and the keys of its file that they set.
 
-use farsa_lab::{Error, Setting, Settings, Value};
+use farsa_lab::advanced::Value;
+use farsa_lab::{Error, Setting, Settings};
 use serde::Deserialize;
 
 /// All settings of an experiment, in the order of its configuration.

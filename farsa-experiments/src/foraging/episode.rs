@@ -14,10 +14,10 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{
-    Behaviour, ChannelGroup, EpisodeId, Error, Intervention, Interventions, Note, NotedBehaviour, Outcome, PlanarWorld,
-    Protocol, input_ranges,
+use farsa_lab::advanced::{
+    Behavior, ChannelGroup, Intervention, Interventions, NotedBehavior, PlanarWorld, Protocol, input_ranges,
 };
+use farsa_lab::{EpisodeId, Error, Note, Outcome};
 use farsa_view::{Channel, Schema};
 
 /// Robots that forage, with a controller each, and the record of their food and energy.
@@ -73,7 +73,7 @@ impl ForagingScenario {
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("energy at the end", 1.0)],
     descriptors: &[("energy at the end", [0.0, 1.0]), ("deaths", [0.0, 4.0])],
 };
@@ -185,7 +185,7 @@ impl Scenario for ForagingScenario {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 

@@ -43,6 +43,6 @@ impl Experiment for Foraging {
 
 /// Runs one trial of a team of any controllers and returns its outcome.
 pub fn forage<C: Controller>(episode: &mut ForagingEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(episode, world, id, None);
+    farsa_lab::advanced::run_episode(episode, world, id, None);
     episode.outcome(0)
 }

@@ -18,4 +18,4 @@ pub use config::ForagingConfig;
 pub use episode::{ForagingEpisode, ForagingScenario};
 pub use experiment::{Foraging, forage};
 pub use farsa_compose::{Field, Forager};
-pub use farsa_lab::OwnedNetwork;
+pub use farsa_lab::advanced::OwnedNetwork;

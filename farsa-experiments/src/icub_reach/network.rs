@@ -1,6 +1,7 @@
 //! The network of an agent of `icub-reach`.
 
-use farsa_lab::{Error, NormalisedController, Parameter};
+use farsa_lab::advanced::NormalizedController;
+use farsa_lab::{Error, Parameter};
 use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan, Span};
 use farsa_nn::{Controller, Leak};
 
@@ -21,7 +22,7 @@ pub static LAYOUT: BlockLayout<'static> = PLAN.layout();
 /// A network whose inputs can be disturbed and whose neurons can be silent.
 #[derive(Clone, Debug)]
 pub struct Agent {
-    network: NormalisedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
+    network: NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
 }
 
 impl Agent {
@@ -33,16 +34,16 @@ impl Agent {
         let (parameters, state) = (vec![0.0; LAYOUT.parameter_count()], vec![0.0; LAYOUT.state_len()]);
         let network = BlockNetwork::new(LAYOUT, Leak::Filter, parameters, state)
             .map_err(|error| Error::Other(format!("icub-reach: {error}")))?;
-        Ok(Self { network: NormalisedController::new(network) })
+        Ok(Self { network: NormalizedController::new(network) })
     }
 
     /// The network.
-    pub fn network(&self) -> &NormalisedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
+    pub fn network(&self) -> &NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
         &self.network
     }
 
     /// The same, for other parameters.
-    pub fn network_mut(&mut self) -> &mut NormalisedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
+    pub fn network_mut(&mut self) -> &mut NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
         &mut self.network
     }
 }

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use farsa_lab::{CaseId, Evaluation, Intervention, Interventions, Protocol};
+use farsa_lab::Evaluation;
+use farsa_lab::advanced::{CaseId, Intervention, Interventions, Protocol};
 use farsa_num::Scalar;
 
 use crate::icub_reach::config::{Config, Volume};

@@ -5,10 +5,9 @@ use std::sync::Arc;
 use farsa_body::Recorder;
 use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, Handles};
 use farsa_body::robot::Robot;
-use farsa_lab::{
-    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
-    NetworkExport, Note, Outcome, Rollout, SensorExport, Task, TaskInfo, mean_of_trials,
-};
+use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Rollout, mean_of_trials};
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
+use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_nn::Leak;
 use farsa_nn::block::BlockLayoutBuf;
 use farsa_view::Schema;

@@ -1,6 +1,7 @@
 //! The network of an agent of `icub-reach-grasp`.
 
-use farsa_lab::{Error, NormalisedController, OwnedNetwork};
+use farsa_lab::Error;
+use farsa_lab::advanced::{NormalizedController, OwnedNetwork};
 use farsa_nn::{Controller as _, Leak, LeakyNetwork};
 
 use crate::icub_reach_grasp::config::{Config, MOTORS, SENSORS};
@@ -11,7 +12,7 @@ use crate::icub_reach_grasp::scene::wrong;
 /// motor neurons leaky.
 #[derive(Clone, Debug)]
 pub struct Agent {
-    network: NormalisedController<OwnedNetwork>,
+    network: NormalizedController<OwnedNetwork>,
 }
 
 impl Agent {
@@ -23,16 +24,16 @@ impl Agent {
         let layout = config.layout();
         let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
         let network = LeakyNetwork::new(layout, Leak::Filter, parameters, state).map_err(|error| wrong(&error))?;
-        Ok(Self { network: NormalisedController::new(network) })
+        Ok(Self { network: NormalizedController::new(network) })
     }
 
     /// The network.
-    pub fn network(&self) -> &NormalisedController<OwnedNetwork> {
+    pub fn network(&self) -> &NormalizedController<OwnedNetwork> {
         &self.network
     }
 
     /// The same, for other parameters.
-    pub fn network_mut(&mut self) -> &mut NormalisedController<OwnedNetwork> {
+    pub fn network_mut(&mut self) -> &mut NormalizedController<OwnedNetwork> {
         &mut self.network
     }
 }

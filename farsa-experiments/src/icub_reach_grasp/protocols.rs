@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use farsa_lab::{CaseId, Evaluation, Intervention, Interventions, Protocol};
+use farsa_lab::Evaluation;
+use farsa_lab::advanced::{CaseId, Intervention, Interventions, Protocol};
 
 use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;

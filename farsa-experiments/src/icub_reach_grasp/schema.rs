@@ -4,7 +4,7 @@ use farsa_body::Recorder;
 use farsa_body::ports::{PairId, Vision};
 use farsa_body::robot::Robot;
 use farsa_body::sensors::Camera;
-use farsa_lab::seconds;
+use farsa_lab::advanced::seconds;
 use farsa_view::{Channel, Schema};
 
 use crate::icub_reach_grasp::agent::Agent;

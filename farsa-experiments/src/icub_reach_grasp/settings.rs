@@ -148,7 +148,7 @@ impl Config {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_lab::Value;
+    use farsa_lab::advanced::Value;
 
     #[test]
     fn settings_of_the_defaults_read_back_and_wrong_ones_are_refused_by_name() {

@@ -6,11 +6,11 @@ use farsa_body::Recorder;
 use farsa_body::ports::{Actuated, ActuatorId, Arrange, Handles, Vision};
 use farsa_body::robot::Robot;
 use farsa_body::sensors::Camera;
-use farsa_lab::{
-    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Rollout, SensorExport, Task, TaskInfo,
-    mean_of_trials, network_parameters,
+use farsa_lab::advanced::{
+    Anatomy, Behavior, ChannelGroup, Description, NotedBehavior, Rollout, mean_of_trials, network_parameters,
 };
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
+use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
 use farsa_nn::Leak;
 use farsa_view::Schema;
 
@@ -114,7 +114,7 @@ impl Rollout for GraspTask {
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("highest [cm]", 1.0), ("distance [cm]", -1.0)],
     descriptors: &[("highest [cm]", [0.0, 40.0]), ("distance [cm]", [0.0, 40.0])],
 };
@@ -170,7 +170,7 @@ impl Task for GraspTask {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 

@@ -11,10 +11,10 @@ use crate::reach_grasp_lift::experiment::evaluator;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
-use farsa_lab::{
-    ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Learning, Outcome, Setting,
-    Settings, StrategyDefinition, Task, TaskInfo,
-};
+use farsa_lab::advanced::{ENGINE, InLanes, Learner};
+use farsa_lab::exports::Exports;
+use farsa_lab::strategy::{Learning, StrategyDefinition};
+use farsa_lab::{Error, Evaluation, Evaluator, Experiment, InWorld, Outcome, Setting, Settings, Task, TaskInfo};
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use farsa_lab::{EpisodeId, Error, Iteration};
+use farsa_lab::advanced::Iteration;
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::learning::{Adam, Gradient, Learner, Loss};
 use farsa_nn::{Error as NetworkError, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::{Domain, Scalar, Stream};
@@ -164,7 +165,7 @@ impl Trainer {
     }
 }
 
-impl farsa_lab::Learner for Trainer {
+impl farsa_lab::advanced::Learner for Trainer {
     fn initial_state(&self, seed: u64) -> Vec<f64> {
         Self::initial_state(self, seed)
     }

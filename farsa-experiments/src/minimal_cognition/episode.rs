@@ -1,7 +1,8 @@
 //! An episode of `minimal-cognition`: one object falls, and the agent moves under it.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
+use farsa_lab::advanced::{Intervention, NormalizedController};
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::{Controller as _, Ctrnn};
 use farsa_num::{Domain, Stream, sin_cos};
 
@@ -15,7 +16,7 @@ pub struct AgentEpisode {
     config: Config,
     /// Sine and cosine of each ray's angle, clockwise from straight up.
     rays: [[f64; 2]; RAYS],
-    network: NormalisedController<Ctrnn<Vec<f32>, Vec<f32>>>,
+    network: NormalizedController<Ctrnn<Vec<f32>, Vec<f32>>>,
     object: Object,
     /// Where the object and the agent are on the line.
     places: [f64; 2],
@@ -33,7 +34,7 @@ impl AgentEpisode {
         let state = vec![0.0; LAYOUT.state_len()];
         let network = Ctrnn::new(LAYOUT, config.time_step as f32, parameters, state)
             .map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
-        let network = NormalisedController::new(network);
+        let network = NormalizedController::new(network);
         // Whole numbers to the last product: the fan is the same to the bit on both sides.
         let angle = |ray: usize| config.fan * (2.0 * ray as f64 - (RAYS - 1) as f64) / (2 * (RAYS - 1)) as f64;
         let rays = core::array::from_fn(|ray| {

@@ -11,10 +11,13 @@ use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::episode::AgentEpisode;
 use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
+use farsa_lab::advanced::{
+    Anatomy, ChannelGroup, Description, Interventions, NoWorld, Protocol, Rollout, mean_of_trials, seconds,
+};
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Protocol, Rollout,
-    SensorExport, Setting, Settings, Task, TaskInfo, mean_of_trials, seconds,
+    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Setting, Settings, Task,
+    TaskInfo,
 };
 use farsa_num::{Domain, Stream};
 use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};

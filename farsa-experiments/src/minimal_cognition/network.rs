@@ -102,7 +102,7 @@ impl Wiring {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_lab::Genotype;
+    use farsa_lab::advanced::Genotype;
 
     fn decoded(genes: &[u16]) -> Vec<f32> {
         let wiring = Wiring::new(&Config::default()).unwrap();

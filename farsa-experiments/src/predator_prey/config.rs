@@ -1,6 +1,7 @@
 //! The values of `predator-prey`, as settings.
 
-use farsa_lab::{Error, OwnedNetwork, Setting, Settings, resting_network};
+use farsa_lab::advanced::{OwnedNetwork, resting_network};
+use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::{Arena, CollisionRule, World};
 
 use crate::team::config::{TeamConfig, whole};

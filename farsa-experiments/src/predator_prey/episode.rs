@@ -15,7 +15,8 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::eyes::{BLUE, RED};
 use crate::team::robots::{Team, distance};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
+use farsa_lab::advanced::{Behavior, ChannelGroup, NotedBehavior, PlanarWorld};
+use farsa_lab::{EpisodeId, Error, Note, Outcome};
 use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
@@ -71,7 +72,7 @@ impl PredatorPreyScenario {
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("gap at the end [m]", -1.0)],
     descriptors: &[("time [s]", [0.0, 100.0]), ("gap at the end [m]", [0.0, 1.0])],
 };
@@ -161,7 +162,7 @@ impl Scenario for PredatorPreyScenario {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 

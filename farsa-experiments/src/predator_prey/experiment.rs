@@ -36,6 +36,6 @@ impl Experiment for PredatorPrey {
 
 /// Runs one trial of any two controllers and returns the predator's outcome.
 pub fn chase<C: Controller>(episode: &mut PredatorPreyEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(episode, world, id, None);
+    farsa_lab::advanced::run_episode(episode, world, id, None);
     episode.outcome(0)
 }

@@ -1,7 +1,8 @@
 //! The values of `push-box`, as settings.
 
 use farsa_body::robots::MobileRobot;
-use farsa_lab::{ENGINE, Error, Setting, Settings};
+use farsa_lab::advanced::ENGINE;
+use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::Arena;
 
 /// A robot that pushes a box. The defaults are those of the experiment, all of them chosen.

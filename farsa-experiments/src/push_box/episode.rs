@@ -11,7 +11,8 @@ use farsa_body::robots::MobileParts;
 use farsa_body::sensors::Beam;
 use farsa_body::sensors::infrared::{InfraredDrawing, InfraredRays};
 use farsa_body::{ChannelError, Pose, Recorder, Twist};
-use farsa_lab::{Episode, EpisodeId, Error, seconds};
+use farsa_lab::advanced::seconds;
+use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 

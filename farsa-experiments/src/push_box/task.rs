@@ -6,24 +6,25 @@ use farsa_nn::Perceptron;
 
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
-use farsa_lab::{
-    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
-    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task, TaskInfo, mean_of_trials,
+use farsa_lab::advanced::{
+    Anatomy, Behavior, ChannelGroup, Description, NormalizedController, NotedBehavior, Rollout, mean_of_trials,
 };
+use farsa_lab::exports::{ControllerExport, Exports, NetworkExport};
+use farsa_lab::{Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
 use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 /// The layer of two logistic units that parameters are for.
-pub(crate) type Layer = NormalisedController<Perceptron<Vec<f32>>>;
+pub(crate) type Layer = NormalizedController<Perceptron<Vec<f32>>>;
 
 /// Two logistic units over these parameters.
 pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
     let layer = Perceptron::new(inputs, OUTPUTS, 1.0, parameters);
-    layer.map(NormalisedController::new).map_err(|error| Error::Other(format!("push-box: {error}")))
+    layer.map(NormalizedController::new).map_err(|error| Error::Other(format!("push-box: {error}")))
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("way of the box [m]", -1.0)],
     descriptors: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
 };
@@ -104,7 +105,7 @@ impl Task for PushEpisode<Layer> {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 
@@ -180,7 +181,8 @@ mod tests {
     use super::*;
     use crate::push_box::config::PushConfig;
     use crate::push_box::experiment::evaluator;
-    use farsa_lab::{EpisodeId, Evaluator, Genotype};
+    use farsa_lab::advanced::Genotype;
+    use farsa_lab::{EpisodeId, Evaluator};
     use farsa_view::Recording;
 
     #[test]

@@ -6,7 +6,8 @@ use crate::reach_grasp_lift::config::Config;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
-use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings};
+use farsa_lab::advanced::Lanes;
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Setting, Settings};
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -84,7 +85,8 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
 mod tests {
     use farsa_body::Recorder;
     use farsa_body::robots::{ArmAndHand, Tabletop};
-    use farsa_lab::{EpisodeId, Evaluation, Genotype, Outcome, Rollout as _, Task as _, run_episode};
+    use farsa_lab::advanced::{Genotype, Rollout as _, run_episode};
+    use farsa_lab::{EpisodeId, Evaluation, Outcome, Task as _};
     use farsa_view::Recording;
 
     use super::*;

@@ -3,9 +3,10 @@
 use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
 use farsa_body::robot::Pair;
 use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
-use farsa_lab::{
-    ActuatorExport, ControllerExport, EpisodeId, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
-    SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
+use farsa_lab::EpisodeId;
+use farsa_lab::exports::{
+    ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
+    SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 
 use crate::reach_grasp_lift::phase::Phase;

@@ -2,7 +2,8 @@
 
 use farsa_nn::{Leak, LeakyLayout, LeakyParameter};
 
-use farsa_lab::{Error, Parameter, network_parameters};
+use farsa_lab::advanced::network_parameters;
+use farsa_lab::{Error, Parameter};
 
 /// Weights and biases from minus to plus the range of weights, and leaks from 0 to 1, or as the original program has them.
 #[derive(Clone, Debug)]
@@ -53,7 +54,7 @@ impl Ranges {
 mod tests {
     use super::*;
     use crate::reach_grasp_lift::config::Config;
-    use farsa_lab::Genotype;
+    use farsa_lab::advanced::Genotype;
 
     #[test]
     fn genes_become_parameters_of_their_kinds() {

@@ -4,7 +4,7 @@ use farsa_body::actuators::{Law, MusclePair};
 use farsa_body::ports::{BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairId};
 use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::{Recorder, Twist};
-use farsa_lab::{NormalisedController, OwnedNetwork};
+use farsa_lab::advanced::{NormalizedController, OwnedNetwork};
 use farsa_view::{Channel, Schema};
 
 use crate::reach_grasp_lift::episode::ReachEpisode;
@@ -13,7 +13,7 @@ use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
 
 /// The controller's episode in a trial.
-pub(crate) type NetworkEpisode = ReachEpisode<NormalisedController<OwnedNetwork>>;
+pub(crate) type NetworkEpisode = ReachEpisode<NormalizedController<OwnedNetwork>>;
 
 /// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17 forces, 27 +
 /// 6 speeds of joints and sphere.

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use farsa_body::actuators::MuscleVariant;
 use farsa_body::sensors::Axes;
-use farsa_lab::{ENGINE, Error, Setting, Settings, Source};
+use farsa_lab::advanced::{ENGINE, Source};
+use farsa_lab::{Error, Setting, Settings};
 
 use crate::reach_grasp_lift::config::{Config, Displacement, SphereFrame};
 use crate::reach_grasp_lift::fitness::ContactTerm;
@@ -445,7 +446,7 @@ impl Config {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_lab::Value;
+    use farsa_lab::advanced::Value;
 
     #[test]
     fn settings_of_the_defaults_read_back_as_the_defaults() {

@@ -13,11 +13,12 @@ use crate::reach_grasp_lift::fitness::Rewards;
 use crate::reach_grasp_lift::parameters::Ranges;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
-use farsa_lab::{
-    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    Intervention, Interventions, NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Protocol, Rollout,
-    StartExport, Task, TaskInfo, input_ranges,
+use farsa_lab::advanced::{
+    Anatomy, Behavior, ChannelGroup, Description, Intervention, Interventions, NormalizedController, NotedBehavior,
+    Protocol, Rollout, input_ranges,
 };
+use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, StartExport};
+use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_view::Schema;
 
 /// A trial run by a network, with what it records.
@@ -41,7 +42,7 @@ impl ReachTask {
         let network = LeakyNetwork::new(layout, config.leak, zeros, state);
         let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
         let episode_recorder = Arc::new(EpisodeRecorder::new(&scene));
-        let episode = ReachEpisode::new(Arc::new(scene), NormalisedController::new(network))?;
+        let episode = ReachEpisode::new(Arc::new(scene), NormalizedController::new(network))?;
         let mut task = Self { episode, ranges, episode_recorder, interventions: Interventions::default() };
         task.interventions = task.interventions();
         Ok(task)
@@ -149,7 +150,7 @@ impl Rollout for ReachTask {
 }
 
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("held [s]", 1.0), ("highest [cm]", 1.0)],
     descriptors: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
 };
@@ -220,7 +221,7 @@ impl Task for ReachTask {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 

@@ -7,7 +7,8 @@ use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
-use farsa_lab::{Behaviour, ChannelGroup, Episode, EpisodeId, Error, Interventions, Outcome, PlanarWorld};
+use farsa_lab::advanced::{Behavior, ChannelGroup, Interventions, PlanarWorld};
+use farsa_lab::{Episode, EpisodeId, Error, Outcome};
 use farsa_view::{Channel, Schema};
 
 /// Where the robots of a team are, and since when.
@@ -85,7 +86,7 @@ pub trait Scenario: Send {
     fn terms(&self) -> Vec<String>;
 
     /// Objectives and measures of an individual, in addition to its fitness.
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         None
     }
 

@@ -7,7 +7,7 @@ use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
 use farsa_body::{ChannelError, Recorder};
 
 use crate::team::config::{EYES, TeamConfig};
-use farsa_lab::PlanarWorld;
+use farsa_lab::advanced::PlanarWorld;
 
 /// Everything that shines red, with or without other colors.
 pub(crate) const RED: ColorBand = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };

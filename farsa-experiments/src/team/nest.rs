@@ -2,7 +2,7 @@
 
 use farsa_body::sensors::ColorBand;
 use farsa_lab::Error;
-use farsa_lab::PlanarWorld;
+use farsa_lab::advanced::PlanarWorld;
 
 use crate::team::eyes::{BLUE, RED};
 

@@ -14,7 +14,7 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::team::config::TeamConfig;
 use crate::team::eyes::RobotEyes;
-use farsa_lab::PlanarWorld;
+use farsa_lab::advanced::PlanarWorld;
 
 /// The robots of a team in their world, with a controller each.
 ///

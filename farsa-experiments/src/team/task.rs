@@ -12,17 +12,18 @@ use crate::team::episode::{Scenario, TeamEpisode};
 use crate::team::eyes::eye_angles;
 use crate::team::robots::OUTPUTS;
 use crate::wheeled::infrared_exports;
-use farsa_lab::{
-    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    InWorld, Interventions, MotorExport, NetworkExport, NormalisedController, Outcome, OwnedNetwork, Parameter,
-    PlanarWorld, Rollout, SensorExport, Task, TaskInfo, mean_of_trials, network_parameters, resting_network, seconds,
+use farsa_lab::advanced::{
+    Anatomy, Behavior, ChannelGroup, Description, Interventions, NormalizedController, OwnedNetwork, PlanarWorld,
+    Rollout, mean_of_trials, network_parameters, resting_network, seconds,
 };
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
+use farsa_lab::{Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, Parameter, Task, TaskInfo};
 use farsa_view::Schema;
 
 /// A team in a scenario, whose networks have the parameters that are evaluated.
 #[derive(Clone)]
 pub(crate) struct TeamTask<M> {
-    episode: TeamEpisode<M, NormalisedController<OwnedNetwork>>,
+    episode: TeamEpisode<M, NormalizedController<OwnedNetwork>>,
     layout: LeakyLayout,
     /// The population whose outcome is asked for.
     own: usize,
@@ -52,7 +53,7 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
     let layout = config.layout(inputs, outputs);
     // An error if the range is empty.
     network_parameters(&layout, config.weight_range, [0.0, 1.0], "net.weight_range")?;
-    let networks = (0..config.robots).map(|_| resting_network(&layout).map(NormalisedController::new));
+    let networks = (0..config.robots).map(|_| resting_network(&layout).map(NormalizedController::new));
     let networks = networks.collect::<Result<_, _>>()?;
     let bodies = (arena.robots.len() + arena.areas.len()) as u16;
     let mut world = world(arena.clone())?;
@@ -69,7 +70,7 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
 impl<M: Scenario> TeamTask<M> {
     /// The observations of the robots, one after the other, where observations are normalized.
     fn observed(&self) -> Option<ObservationStatistics> {
-        let mut robots = self.episode.team().controllers().iter().map(NormalisedController::observed);
+        let mut robots = self.episode.team().controllers().iter().map(NormalizedController::observed);
         let first = robots.next()??.clone();
         robots.flatten().try_fold(first, |mut all, own| all.merge(own).ok().map(|()| all))
     }
@@ -131,7 +132,7 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         for (robot, network) in networks.iter_mut().enumerate() {
             network.intervene(&change, id, robot as u32);
         }
-        let mut networks = networks.iter_mut().map(NormalisedController::controller_mut);
+        let mut networks = networks.iter_mut().map(NormalizedController::controller_mut);
         if count == 1 {
             let parameters = change.edited(parameters);
             return networks.all(|network| network.copy_parameters(&parameters).is_ok());
@@ -204,8 +205,8 @@ impl<M: Scenario> Task for TeamTask<M> {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        self.episode.scenario().behaviour()
+    fn behavior(&self) -> Option<&dyn Behavior> {
+        self.episode.scenario().behavior()
     }
 
     /// The mean over the trials.

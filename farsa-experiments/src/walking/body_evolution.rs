@@ -15,10 +15,14 @@ use crate::walking::settings::rapier_options;
 use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
 use crate::walking::walker::{Legs, Walker};
 use crate::worlds::Engine;
+use farsa_lab::advanced::{
+    Behavior, Bodies, ChannelGroup, Description, ENGINE, Genotype, mean_of_note, mean_of_trials, network_parameters,
+    run_episode,
+};
+use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Behaviour, Bodies, ChannelGroup, ControllerExport, Description, ENGINE, Episode, EpisodeId, Error, Evaluation,
-    Evaluator, Experiment, Exports, Genotype, MotorExport, NetworkExport, Note, Outcome, Parameter, SensorExport,
-    Setting, Settings, Task, TaskInfo, mean_of_note, mean_of_trials, network_parameters, run_episode,
+    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Note, Outcome, Parameter, Setting, Settings, Task,
+    TaskInfo,
 };
 use farsa_view::Schema;
 
@@ -346,7 +350,7 @@ impl Task for Walkers {
         mean_of_trials(trials)
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(self)
     }
 
@@ -360,7 +364,7 @@ impl Task for Walkers {
 }
 
 /// The work of a walk, and its body: legs and soles.
-impl Behaviour for Walkers {
+impl Behavior for Walkers {
     fn objectives(&self) -> Vec<String> {
         vec![format!("minus {WORK}")]
     }

@@ -9,7 +9,8 @@ use farsa_body::sensors::{JointPosition, JointSpeed, Touch};
 use farsa_body::wrappers::Scaled;
 use farsa_body::{ChannelError, Recorder};
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{Episode, EpisodeId, Error, NormalisedController, OwnedNetwork, seconds};
+use farsa_lab::advanced::{NormalizedController, OwnedNetwork, seconds};
+use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 use farsa_num::{Domain, Scalar, Stream};
 
@@ -74,7 +75,7 @@ type Sole = Touch<[PairId; 1]>;
 /// touch.
 #[derive(Clone, Debug)]
 pub struct Brain {
-    network: NormalisedController<OwnedNetwork>,
+    network: NormalizedController<OwnedNetwork>,
     senses: ((Angle, Angle), (Speed, Speed), (Sole, Sole)),
     motor: TorqueMotor,
     hinge: JointId,
@@ -104,7 +105,7 @@ impl Brain {
         let touch = |pair| Touch::new([pair], 1.0).map_err(wrong);
         let [outer, inner] = parts.hinges;
         Ok(Self {
-            network: NormalisedController::new(network.map_err(|error| Error::Other(format!("walker: {error}")))?),
+            network: NormalizedController::new(network.map_err(|error| Error::Other(format!("walker: {error}")))?),
             senses: (
                 (angle(outer)?, angle(inner)?),
                 (speed(outer)?, speed(inner)?),

@@ -16,9 +16,11 @@ use farsa_physics::articulated::{Model, Options, World};
 use crate::walking::schema::{drawn, exported, schema};
 use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
 use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
+use farsa_lab::advanced::{Bodies, Description, ENGINE, Rollout, mean_of_trials};
+use farsa_lab::exports::Exports;
 use farsa_lab::{
-    Bodies, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Note,
-    Outcome, Parameter, Rollout, Setting, Settings, Task, TaskInfo, mean_of_trials,
+    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter, Setting, Settings,
+    Task, TaskInfo,
 };
 use farsa_view::Schema;
 

@@ -1,6 +1,7 @@
 //! The settings that all experiments with walkers have, and how a walk is run and recorded.
 
-use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
+use farsa_lab::advanced::ENGINE;
+use farsa_lab::{Error, Note, Outcome, Setting, Settings};
 use farsa_models::mjcf::MjcfOptions;
 
 use crate::walking::episode::{Walk, WalkerEpisode};

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use farsa_lab::LiveSession;
+use farsa_lab::advanced::LiveSession;
 use flate2::read::GzDecoder;
 use serde_json::{Value, json};
 

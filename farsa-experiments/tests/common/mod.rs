@@ -1,7 +1,8 @@
 //! Checks of several experiments.
 #![allow(clippy::unwrap_used)]
 
-use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Lanes, Outcome};
+use farsa_lab::advanced::{CaseId, Lanes};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Outcome};
 use farsa_num::{Domain, Instructions, Stream};
 
 /// Random individuals.

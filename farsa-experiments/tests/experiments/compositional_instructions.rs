@@ -8,7 +8,8 @@ use farsa_experiments::compositional_instructions::{
     Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, TrialInstructions,
     evaluator,
 };
-use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Task as _, run_episode};
+use farsa_lab::advanced::{CaseId, Genotype, run_episode};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Task as _};
 use farsa_physics::articulated::{Model, World};
 
 /// Evolved agents, by the names of the files with their genes.

@@ -5,9 +5,9 @@ use std::process::Command;
 
 use farsa_body::ports::BodyId;
 use farsa_experiments::{DISCRIMINATION, DISCRIMINATION_CYLINDERS};
-use farsa_lab::{
-    EpisodeId, Evaluation, Evaluator, Experiment, Genotype, NetworkExport, Note, Outcome, Settings, Value,
-};
+use farsa_lab::advanced::{Genotype, Value};
+use farsa_lab::exports::NetworkExport;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Note, Outcome, Settings};
 use farsa_view::Recording;
 
 /// The original's measured tables and genotypes: in the folder `khepera` of `FARSA_FIXTURES`, or in that next to the repository.

@@ -2,7 +2,8 @@
 
 use farsa_experiments::DoublePole;
 use farsa_experiments::double_pole::{Cart, CartEpisode, CartState, Config, Pole, layout};
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Settings, Value};
+use farsa_lab::advanced::Value;
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Settings};
 use farsa_view::Recording;
 use proptest::prelude::*;
 

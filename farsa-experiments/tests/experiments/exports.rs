@@ -7,10 +7,9 @@ use std::process::Command;
 use farsa_body::Recorder;
 use farsa_compose::ComposedExperiment;
 use farsa_experiments::all;
-use farsa_lab::{
-    ControllerExport, EpisodeId, Evaluation, Evaluator, Experiment, MotorDrive, NetworkExport, SensorReading, Settings,
-    Value,
-};
+use farsa_lab::advanced::Value;
+use farsa_lab::exports::{ControllerExport, MotorDrive, NetworkExport, SensorReading};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Settings};
 use farsa_nn::block::BlockNetwork;
 use farsa_nn::bytes::{BlockNetworkBytes, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, channel_hash};
 use farsa_nn::{Controller, Ctrnn, LeakyNetwork, Perceptron};
@@ -242,7 +241,7 @@ fn json_holds_the_parameters_of_every_kind() {
 fn the_board_of_the_e_puck_has_what_this_program_makes() {
     const RECORDED: usize = 300;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/e-puck");
-    let file = ComposedExperiment::from_file(&folder.join("e-puck.toml"), farsa_lab::strategies());
+    let file = ComposedExperiment::from_file(&folder.join("e-puck.toml"), farsa_lab::strategy::strategies());
     let experiment = file.unwrap_or_else(|error| panic!("{error}"));
     let settings = Settings::new(experiment.settings("")).expect("its settings");
     let mut evaluator = experiment.prepare("", &settings).unwrap_or_else(|error| panic!("{error}"));

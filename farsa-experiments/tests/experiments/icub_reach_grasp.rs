@@ -9,7 +9,8 @@ use farsa_body::robots::Icub;
 use farsa_experiments::icub_reach_grasp::{
     Area, CELLS, Config, GraspEpisode, Grasper, Lifting, MOTORS, SENSORS, Scene, Script, Senses, evaluator,
 };
-use farsa_lab::{Episode as _, EpisodeId, Exports as _, SensorReading, Task as _};
+use farsa_lab::exports::{Exports as _, SensorReading};
+use farsa_lab::{Episode as _, EpisodeId, Task as _};
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, World};
 

@@ -4,10 +4,8 @@
 use farsa_experiments::KinestheticGrasp;
 use farsa_experiments::kinesthetic_grasp::{Config, Trainee, Training};
 use farsa_experiments::reach_grasp_lift::Config as Reach;
-use farsa_lab::{
-    EpisodeId, Error, Evaluation, Evaluator as _, Experiment as _, Genotype, Iteration, Learner, Settings, Task as _,
-    Value,
-};
+use farsa_lab::advanced::{Genotype, Iteration, Learner, Value};
+use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator as _, Experiment as _, Settings, Task as _};
 
 const SEED: u64 = 3;
 

@@ -1,10 +1,8 @@
 //! Changes of controllers by name, in every experiment that has a controller.
 
 use farsa_body::Recorder;
-use farsa_lab::{
-    Anatomy, CaseId, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Intervention, Lanes, Outcome, Settings,
-    Value,
-};
+use farsa_lab::advanced::{Anatomy, CaseId, Genotype, Intervention, Lanes, Value};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_view::Schema;
 

@@ -2,7 +2,8 @@
 
 use farsa_evo::ObservationStatistics;
 use farsa_evo::words::randomize;
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Settings, Value};
+use farsa_lab::advanced::{Genotype, Lanes, Value};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
 
 const TRIALS: u32 = 11;

@@ -3,9 +3,8 @@
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
 use farsa_experiments::{Foraging, MinimalCognition, ReachGraspLift};
-use farsa_lab::{
-    CaseId, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Protocol, Settings, Value,
-};
+use farsa_lab::advanced::{CaseId, Genotype, Lanes, Protocol, Value};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
 
 /// The recording of an episode.
@@ -55,7 +54,7 @@ fn id(trial: u32) -> EpisodeId {
 fn case(evaluator: &dyn Evaluator, name: &str, row: &str, column: &str) -> Option<CaseId> {
     let protocols = evaluator.info().protocols;
     let protocol = protocols.iter().position(|protocol| protocol.name == name).unwrap();
-    let wanted = |case: &farsa_lab::Case| case.row == row && case.column == column;
+    let wanted = |case: &farsa_lab::advanced::Case| case.row == row && case.column == column;
     let case = protocols[protocol].cases.iter().position(wanted).unwrap();
     Some(CaseId { protocol, case })
 }

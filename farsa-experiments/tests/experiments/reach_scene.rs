@@ -10,7 +10,8 @@ use farsa_body::robot::Shape;
 use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
 use farsa_body::{Pose, Twist};
 use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachEpisode, Scene};
-use farsa_lab::{Episode, EpisodeId, run_episode};
+use farsa_lab::advanced::run_episode;
+use farsa_lab::{Episode, EpisodeId};
 use farsa_nn::{Controller, LeakyNetwork};
 use farsa_physics::articulated::{Model, World};
 

@@ -9,10 +9,8 @@ use farsa_experiments::passive_walker::{
     Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerEpisode, WalkerParts,
 };
 use farsa_experiments::{BodyEvolution, PassiveWalker};
-use farsa_lab::{
-    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings, Value, run_episode,
-    run_in_lanes,
-};
+use farsa_lab::advanced::{Genotype, Value, run_episode, run_in_lanes};
+use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Batch, Model, World};
 

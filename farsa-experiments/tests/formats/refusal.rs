@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use farsa_lab::VALUES_VERSION;
+use farsa_lab::advanced::VALUES_VERSION;
 
 use crate::TEST;
 use crate::place::{Place, content, end, today};

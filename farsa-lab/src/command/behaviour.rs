@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use crate::experiment::behaviour::Behaviour;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::parameter::Parameter;
 
 /// The objectives and measures of an experiment, with the names of its JSON.
@@ -25,9 +25,9 @@ struct DescriptorInfo {
 
 impl BehaviourInfo {
     /// Returns the objectives and measures of an experiment, if any.
-    pub(crate) fn new(behaviour: Option<&dyn Behaviour>) -> Self {
-        let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
-        let descriptors = behaviour.map(Behaviour::descriptors).unwrap_or_default();
+    pub(crate) fn new(behaviour: Option<&dyn Behavior>) -> Self {
+        let others = behaviour.map(Behavior::objectives).unwrap_or_default();
+        let descriptors = behaviour.map(Behavior::descriptors).unwrap_or_default();
         let descriptor = |Parameter { name, ends }| DescriptorInfo { name, range: ends };
         Self {
             objectives: ["fitness".into()].into_iter().chain(others).collect(),

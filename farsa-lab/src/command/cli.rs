@@ -22,7 +22,6 @@ use crate::error::Error;
 use crate::escaped::escaped;
 use crate::evaluation::protocols::sheet;
 use crate::evaluation::{draw, evaluate, lines, protocols, replay, test};
-use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
 use crate::export::robot_file;
 use crate::json::pretty;
@@ -32,6 +31,7 @@ use crate::report::write;
 use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
+use crate::run::experiment::Experiment;
 use crate::run::laboratory::{FILE, Laboratory};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
@@ -208,7 +208,7 @@ impl<'e> Invocation<'e, '_> {
                     return self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found));
                 }
                 let (which, camera) = (args.which(), args.camera.as_deref());
-                let wish = draw::Wish { which, time: args.time, frames: args.frames, camera, size: args.size };
+                let wish = draw::DrawRequest { which, time: args.time, frames: args.frames, camera, size: args.size };
                 let found = draw::draw(&plan, &directory, wish, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
             }
@@ -260,7 +260,7 @@ impl<'e> Invocation<'e, '_> {
         }
         let (threads, lanes) = (workers.threads(), workers.lanes());
         let trials = trials.map(|trials| trials as usize);
-        let effort = protocols::test::Effort { trials, seed, threads, lanes, quiet };
+        let effort = protocols::test::TestOptions { trials, seed, threads, lanes, quiet };
         let found = match protocol.as_deref() {
             name if !lesion.is_empty() => Some(protocols::test::lesions(&plan, &directory, name, &lesion, effort)?),
             Some(name) => Some(protocols::test::test(&plan, &directory, name, effort)?),

@@ -121,7 +121,7 @@ impl Connections {
                 .collect(),
             motors: groups(&motors, &names(&schema.outputs), &of_motors),
             terms: task.info().terms,
-            behaviour: BehaviourInfo::new(task.behaviour()),
+            behaviour: BehaviourInfo::new(task.behavior()),
             trials: task.info().trials,
             steps,
             step_seconds,

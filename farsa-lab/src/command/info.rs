@@ -7,11 +7,11 @@ use serde::Serialize;
 use crate::command::behaviour::BehaviourInfo;
 use crate::error::Error;
 use crate::experiment::PartNames;
-use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
+use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 
 /// The most names of a kind that are listed before the last.
@@ -158,7 +158,7 @@ impl Info {
             steps,
             step_seconds,
             fitness_terms: evaluator.info().terms,
-            behaviour: BehaviourInfo::new(evaluator.behaviour()),
+            behaviour: BehaviourInfo::new(evaluator.behavior()),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
             lesions: evaluator.info().anatomy.map(|anatomy| anatomy.names()).unwrap_or_default(),
             settings: settings.collect(),

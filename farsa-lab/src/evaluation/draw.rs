@@ -6,8 +6,8 @@ use farsa_view::{Camera, Picture, Recording};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::kept::Kept;
-use crate::evaluation::replay::{ReplaySummary, Replayable, Which};
+use crate::evaluation::memory_budget::MemoryUse;
+use crate::evaluation::replay::{ReplaySummary, Replayable, Selection};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::{create_results, refuse_existing};
@@ -41,7 +41,7 @@ impl Format {
 
 /// A drawn picture.
 #[derive(Debug, Serialize)]
-pub(crate) struct Drawn {
+pub(crate) struct DrawResult {
     /// The whole trial, of which the picture is a moment.
     #[serde(flatten)]
     replay: ReplaySummary,
@@ -58,8 +58,8 @@ pub(crate) struct Drawn {
 
 /// Contents and form of a picture.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wish<'w> {
-    pub(crate) which: Which,
+pub(crate) struct DrawRequest<'w> {
+    pub(crate) which: Selection,
     /// The moment \[s\], by default the last.
     pub(crate) time: Option<f64>,
     /// Number of moments from the first to the last, instead of one moment.
@@ -75,7 +75,12 @@ pub(crate) struct Wish<'w> {
 ///
 /// # Errors
 /// [`Error::Usage`] for what cannot be drawn, those of [`Replayable::find`], [`Error::Io`].
-pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path: &Path) -> Result<Drawn, Error> {
+pub(crate) fn draw(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    wish: DrawRequest<'_>,
+    path: &Path,
+) -> Result<DrawResult, Error> {
     let format = Format::from_path(path)?;
     let camera = wish.camera.map(Camera::named).transpose()?;
     let (width, height) = wish.size.unwrap_or(if wish.frames.is_some() { SIZE_OF_FRAMES } else { SIZE });
@@ -88,7 +93,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     refuse_existing(path)?;
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
-    let mut kept = Kept::new();
+    let mut kept = MemoryUse::new();
     let mut recording = kept.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
     // A trial that does not fit in memory still has moments before its end.
@@ -123,7 +128,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
         }
     };
     create_results(&[(path.to_owned(), bytes)])?;
-    Ok(Drawn {
+    Ok(DrawResult {
         replay: replayable.summary(plan, directory, std::slice::from_ref(&outcome)),
         time: seconds,
         frames,
@@ -153,10 +158,10 @@ pub(crate) struct Portrait {
 ///
 /// `prefix` begins every id, so that one page can hold several pictures.
 pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> Result<Option<Portrait>, Error> {
-    let mut replayable = Replayable::find(plan, directory, Which::default())?;
+    let mut replayable = Replayable::find(plan, directory, Selection::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in replayable.trials.clone() {
-        let mut recording = Kept::new().recording(replayable.schema());
+        let mut recording = MemoryUse::new().recording(replayable.schema());
         let outcome = replayable.run(trial, &mut recording)?;
         let fitness = replayable.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {

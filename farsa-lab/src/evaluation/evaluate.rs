@@ -14,10 +14,10 @@ use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::Progress;
-use crate::strategy::search::Genome;
+use crate::strategy::any_strategy::Genome;
 
 /// The genes that a command line gives.
-pub(crate) struct GivenGenes {
+pub(crate) struct GeneArguments {
     /// Lists of genes, with the names of populations before them or not.
     pub(crate) lists: Vec<String>,
     /// Files of genotypes, likewise.
@@ -47,7 +47,7 @@ pub(crate) struct Evaluation {
     success_rate: Option<f64>,
     /// Results of several populations, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    populations: Vec<Earned>,
+    populations: Vec<PopulationResult>,
     /// Name and value of each line of text.
     #[serde(skip)]
     lines: Vec<(String, String)>,
@@ -55,7 +55,7 @@ pub(crate) struct Evaluation {
 
 /// Result of one population.
 #[derive(Debug, Serialize)]
-struct Earned {
+struct PopulationResult {
     population: String,
     mean_fitness: f64,
     /// Standard error of the mean fitness. NaN for a single trial.
@@ -63,7 +63,7 @@ struct Earned {
     success_rate: f64,
 }
 
-impl Earned {
+impl PopulationResult {
     /// Summarizes population number `own` over the finished trials. The success rate is relative to all trials.
     fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize) -> Self {
         let of = |results: &TrialResult| match own.checked_sub(1) {
@@ -94,8 +94,9 @@ impl Evaluation {
             });
             notes.push((format!("{}_per_trial", word(name)), mean(&values.collect::<Vec<_>>()).0));
         }
-        let earned = names.iter().enumerate().map(|(own, name)| Earned::new(name, own, &finished, results.len()));
-        let earned: Vec<Earned> = earned.collect();
+        let earned =
+            names.iter().enumerate().map(|(own, name)| PopulationResult::new(name, own, &finished, results.len()));
+        let earned: Vec<PopulationResult> = earned.collect();
         let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
         let mut lines: Vec<(String, String)> = Vec::new();
         let mut add = |name: &str, x: f64| lines.push((name.into(), format!("{x:?}")));
@@ -164,7 +165,7 @@ fn word(name: &str) -> String {
 pub(crate) fn evaluate(
     plan: &Plan<'_>,
     mut pool: Pool,
-    given: &GivenGenes,
+    given: &GeneArguments,
     trials: usize,
     seed: u64,
     quiet: bool,
@@ -183,7 +184,7 @@ pub(crate) fn evaluate(
 }
 
 /// The genes of each population, from lists and files.
-fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Genome>, Error> {
+fn genes(asked: &GeneArguments, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Genome>, Error> {
     const OPTIONS: &str = "--genes, --genes-file";
     let populations = Populations { experiment, names };
     if asked.numbers.len() > asked.files.len() {

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::escaped::Quoted;
 use crate::experiment::genotype::Genotype;
 use crate::store::bounded;
-use crate::strategy::search::Genome;
+use crate::strategy::any_strategy::Genome;
 
 /// The most bytes that are read of a file of genotypes.
 const MOST_BYTES: u64 = 256_000_000;

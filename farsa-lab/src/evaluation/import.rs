@@ -15,7 +15,7 @@ use crate::run::records::{Best, Champions, write_imported};
 use crate::store::directory::Directory;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
-use crate::strategy::search::Genome;
+use crate::strategy::any_strategy::Genome;
 use crate::strategy::settings::POPULATION;
 
 /// Summary of an import.

@@ -11,12 +11,12 @@ pub(crate) mod genotypes;
 /// `farsa import`: genotypes of the 2013 program as a directory for tests, replays and pictures.
 #[cfg(feature = "command")]
 pub(crate) mod import;
-/// Memory use of recordings.
-#[cfg(feature = "command")]
-mod kept;
 /// `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimizers in any language.
 #[cfg(feature = "command")]
 pub(crate) mod lines;
+/// Memory use of recordings.
+#[cfg(feature = "command")]
+mod memory_budget;
 /// The population that a part of the command line refers to.
 #[cfg(feature = "command")]
 pub(crate) mod populations;

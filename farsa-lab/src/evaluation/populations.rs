@@ -11,14 +11,14 @@ pub(crate) struct Populations<'n> {
 }
 
 /// Something from the command line, with the population that it names.
-pub(crate) type Given<T> = (Option<usize>, T);
+pub(crate) type Assigned<T> = (Option<usize>, T);
 
 impl Populations<'_> {
     /// Divides `NAME=REST` if there are several populations. Without a name everything is the rest.
     ///
     /// # Errors
     /// [`Error::Unknown`] with the nearest population.
-    pub(crate) fn split<'t>(&self, option: &str, text: &'t str) -> Result<Given<&'t str>, Error> {
+    pub(crate) fn split<'t>(&self, option: &str, text: &'t str) -> Result<Assigned<&'t str>, Error> {
         let Some((name, rest)) = text.split_once('=').filter(|_| self.names.len() > 1) else {
             return Ok((None, text));
         };
@@ -29,7 +29,7 @@ impl Populations<'_> {
     ///
     /// # Errors
     /// As for [`split`](Self::split).
-    pub(crate) fn file(&self, option: &str, path: &Path) -> Result<Given<PathBuf>, Error> {
+    pub(crate) fn file(&self, option: &str, path: &Path) -> Result<Assigned<PathBuf>, Error> {
         let Some(text) = path.to_str() else { return Ok((None, path.into())) };
         self.split(option, text).map(|(population, rest)| (population, rest.into()))
     }
@@ -58,7 +58,7 @@ impl Populations<'_> {
     ///
     /// # Errors
     /// [`Error::Usage`] for a population that is left without, and for names here and none there.
-    pub(crate) fn divide<T>(&self, option: &str, given: Vec<Given<T>>) -> Result<Vec<Vec<T>>, Error> {
+    pub(crate) fn divide<T>(&self, option: &str, given: Vec<Assigned<T>>) -> Result<Vec<Vec<T>>, Error> {
         let names = self.names;
         let count = names.len();
         let named = given.iter().filter(|(population, _)| population.is_some()).count();
@@ -123,7 +123,7 @@ mod tests {
     fn who_is_left_without_is_named() {
         let names = names();
         let two = Populations { experiment: "hunt", names: &names };
-        let said = |given: Vec<Given<u8>>| two.divide("--genes", given).unwrap_err().to_string();
+        let said = |given: Vec<Assigned<u8>>| two.divide("--genes", given).unwrap_err().to_string();
         let order = "--genes: 1 given: hunt has 2 populations, predator and prey; one for each in this order, or \
                      predator=... prey=...";
         assert_eq!(said(vec![(None, 1)]), order);

@@ -11,7 +11,7 @@ use farsa_view::{Page, Recording, Schema, Table};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::kept::Kept;
+use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::trials::{came_to, facts, fitness};
 use crate::experiment::Anatomy;
@@ -24,13 +24,13 @@ use crate::run::catch_panic::catch_printed_panic;
 use crate::run::plan::Plan;
 use crate::run::record_file::history;
 use crate::store::directory::Directory;
+use crate::strategy::any_strategy::Genome;
 use crate::strategy::history::History;
 use crate::strategy::opponents;
-use crate::strategy::search::Genome;
 
 /// Which trials of an individual.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) enum WhichTrial {
+pub(crate) enum TrialSelector {
     #[default]
     All,
     /// The one of this number.
@@ -41,17 +41,17 @@ pub(crate) enum WhichTrial {
 
 /// Selection of trials. Individuals are numbered through all populations.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Which {
+pub(crate) struct Selection {
     /// Generation. By default the champion's, or with an individual the last finished one.
     pub(crate) generation: Option<u32>,
     /// Individual. By default the best of the first population.
     pub(crate) individual: Option<u32>,
     /// Which of its trials.
-    pub(crate) trial: WhichTrial,
+    pub(crate) trial: TrialSelector,
 }
 
 /// Where an individual of a run is.
-pub(crate) struct Found<'p> {
+pub(crate) struct LocatedIndividual<'p> {
     pub(crate) history: History<'p>,
     /// The file that the history is from.
     pub(crate) path: PathBuf,
@@ -60,13 +60,13 @@ pub(crate) struct Found<'p> {
     pub(crate) individual: u32,
 }
 
-impl<'p> Found<'p> {
+impl<'p> LocatedIndividual<'p> {
     /// Looks for an individual of a run.
     ///
     /// # Errors
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
     /// keeps the run of another version from being replayed.
-    pub(crate) fn new(plan: &'p Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
+    pub(crate) fn new(plan: &'p Plan<'_>, directory: &Directory, which: Selection) -> Result<Self, Error> {
         let (identity, history, path) = history(plan, directory)?;
         identity.same_values(&plan.identity()?, &path)?;
         let finished = history.finished();
@@ -117,8 +117,8 @@ impl Replayable {
     /// # Errors
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
     /// keeps the run of another version from being replayed.
-    pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
-        Self::rebuilt(plan, &Found::new(plan, directory, which)?, which.trial)
+    pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Selection) -> Result<Self, Error> {
+        Self::rebuilt(plan, &LocatedIndividual::new(plan, directory, which)?, which.trial)
     }
 
     /// The champions of a run, one of each population.
@@ -126,20 +126,20 @@ impl Replayable {
     /// # Errors
     /// As for [`find`](Self::find).
     pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Self>, Error> {
-        let mut found = Found::new(plan, directory, Which::default())?;
+        let mut found = LocatedIndividual::new(plan, directory, Selection::default())?;
         let populations = 0..found.history.populations();
         let best = populations.filter_map(|population| found.history.champion(population, found.generation));
         let best: Vec<usize> = best.collect();
         let rebuilt = |individual: usize| {
             found.individual = individual as u32;
-            Self::rebuilt(plan, &found, WhichTrial::All)
+            Self::rebuilt(plan, &found, TrialSelector::All)
         };
         best.into_iter().map(rebuilt).collect()
     }
 
     /// Rebuilds the genes of an individual, for some of its trials.
-    fn rebuilt(plan: &Plan<'_>, found: &Found<'_>, trial: WhichTrial) -> Result<Self, Error> {
-        let Found { history, path, generation, individual } = found;
+    fn rebuilt(plan: &Plan<'_>, found: &LocatedIndividual<'_>, trial: TrialSelector) -> Result<Self, Error> {
+        let LocatedIndividual { history, path, generation, individual } = found;
         let (generation, individual) = (*generation, *individual);
         let genes = history.genomes(&[(generation, individual as usize)])?;
         let evaluator = plan.evaluator()?;
@@ -148,13 +148,14 @@ impl Replayable {
         let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
         let trials = 0..evaluator.info().trials as u32;
         let trials = match trial {
-            WhichTrial::All | WhichTrial::Best => trials,
-            WhichTrial::Number(trial) if trials.contains(&trial) => trial..trial + 1,
-            WhichTrial::Number(trial) => {
+            TrialSelector::All | TrialSelector::Best => trials,
+            TrialSelector::Number(trial) if trials.contains(&trial) => trial..trial + 1,
+            TrialSelector::Number(trial) => {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let met = opponents::met(history, generation, individual as usize, trials.clone(), evaluator.info().trials)?;
+        let met =
+            opponents::opponents_of(history, generation, individual as usize, trials.clone(), evaluator.info().trials)?;
         let decoded = |genes: &Vec<Genome>| genes.iter().map(|genes| genes.decode(&genotype)).collect::<Option<_>>();
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
@@ -171,7 +172,7 @@ impl Replayable {
             individual,
             trials,
         };
-        if trial == WhichTrial::Best {
+        if trial == TrialSelector::Best {
             found.keep_best()?;
         }
         Ok(found)
@@ -198,7 +199,7 @@ impl Replayable {
     /// Changes the controller in all that is replayed from now on, by a list such as `neuron:3`.
     ///
     /// # Errors
-    /// As for [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention).
+    /// As for [`parts`] and [`Anatomy::intervention`](crate::advanced::Anatomy::intervention).
     fn change(&mut self, plan: &Plan<'_>, list: &str) -> Result<(), Error> {
         self.intervention = Some(parts(self.evaluator.as_ref(), plan)?.intervention(list)?);
         Ok(())
@@ -355,7 +356,7 @@ impl InWords for ReplaySummary {
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
-    which: Which,
+    which: Selection,
     lesion: Option<&str>,
     out: impl FnOnce() -> Result<W, Error>,
 ) -> Result<Replayed<ReplaySummary>, Error> {
@@ -399,7 +400,7 @@ pub(crate) fn replay<W: Write>(
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
-    which: Which,
+    which: Selection,
     lesion: Option<&str>,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
@@ -407,7 +408,7 @@ pub(crate) fn page(
     replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
         let run = run_in_words(plan);
-        let mut kept = Kept::new();
+        let mut kept = MemoryUse::new();
         let (mut films, outcomes) = films(&mut replayable, &run, &mut kept)?;
         films.sort_by(|one, other| other.fitness.total_cmp(&one.fitness));
         let order: Vec<u32> = films.iter().map(|film| film.trial).collect();
@@ -436,7 +437,11 @@ struct FilmedTrial {
 }
 
 /// Runs and records the selected trials. `whose` ends their names.
-fn films(replayable: &mut Replayable, whose: &str, kept: &mut Kept) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
+fn films(
+    replayable: &mut Replayable,
+    whose: &str,
+    kept: &mut MemoryUse,
+) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
     let (mut outcomes, mut films) = (Vec::new(), Vec::new());
     for trial in replayable.trials.clone() {
         let mut recording = kept.recording(replayable.schema());

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::evaluation::recorded::{self, TableRecord};
-use crate::evaluation::replay::{Found, Which};
+use crate::evaluation::replay::{LocatedIndividual, Selection};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::evaluation::trials::episode;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, TaskInfo};
 use crate::experiment::intervention::Intervention;
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;
 use crate::run::evaluation_backend::Unfinished;
@@ -102,11 +102,11 @@ impl TestRun {
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
-    other: Option<Which>,
+    other: Option<Selection>,
     trials: usize,
     seed: u64,
     threads: usize,
-    lanes: Wanted,
+    lanes: LaneRequest,
     quiet: bool,
 ) -> Result<TestRun, Error> {
     let mut pool = Pool::new(plan, threads, lanes)?;
@@ -197,9 +197,10 @@ impl Subject {
     /// populations.
     ///
     /// # Errors
-    /// As for [`Found::new`], and [`Error::Damaged`].
-    fn find(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>, which: Which) -> Result<Self, Error> {
-        let Found { history, path, generation, individual } = Found::new(plan, directory, which)?;
+    /// As for [`LocatedIndividual::new`], and [`Error::Damaged`].
+    fn find(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>, which: Selection) -> Result<Self, Error> {
+        let LocatedIndividual { history, path, generation, individual } =
+            LocatedIndividual::new(plan, directory, which)?;
         let (size, own) = (history.size(), individual as usize / history.size().max(1));
         let best = |population| {
             if population == own { Some(individual as usize) } else { history.champion(population, generation) }
@@ -245,7 +246,7 @@ pub(crate) struct Tested<'t> {
 
 /// Condition of a trial: a case of a protocol, a change of the controller, both, or neither.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Asked<'t> {
+pub(crate) struct TrialCondition<'t> {
     pub(crate) case: Option<CaseId>,
     pub(crate) intervention: Option<&'t Intervention>,
 }
@@ -257,13 +258,13 @@ pub(crate) struct Trials<'t> {
     pub(crate) count: usize,
     pub(crate) seed: u64,
     /// At least one.
-    pub(crate) cases: &'t [Asked<'t>],
+    pub(crate) cases: &'t [TrialCondition<'t>],
 }
 
 impl Trials<'_> {
     /// Trials of no protocol.
     pub(crate) fn plain(count: usize, seed: u64) -> Self {
-        Self { count, seed, cases: &[Asked { case: None, intervention: None }] }
+        Self { count, seed, cases: &[TrialCondition { case: None, intervention: None }] }
     }
 }
 
@@ -281,7 +282,7 @@ pub(crate) fn run_trials(
         (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();
     let task = |number: usize| {
         let (population, trial) = (number % count, number / count % trials.count);
-        let Asked { case, intervention } = *trials.cases.get(number / count / trials.count)?;
+        let TrialCondition { case, intervention } = *trials.cases.get(number / count / trials.count)?;
         let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, trials.seed) };
         let (parameters, opponents) = (champions.get(population)?, others.get(population)?);
         let plain = Evaluation::new(parameters, id);

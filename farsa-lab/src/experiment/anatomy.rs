@@ -26,7 +26,7 @@ const LONGEST: usize = 10_000;
 /// | `noise:LEVEL` | every input changes at every step by up to this |
 ///
 /// ```
-/// use farsa_lab::{Anatomy, ChannelGroup, Description, Intervention};
+/// use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Intervention};
 /// use farsa_nn::{LeakyLayout, LeakyParameter, Lesion};
 /// use farsa_view::Schema;
 ///

@@ -26,7 +26,7 @@ impl EpisodeId {
 
 /// One trial in a world of type `W`: a start, then steps until it is over.
 ///
-/// An episode steps no world: [`run_episode`] does, alone, and [`run_in_lanes`](crate::run_in_lanes) in a lane of a batch. So
+/// An episode steps no world: [`run_episode`] does, alone, and [`run_in_lanes`](crate::advanced::run_in_lanes) in a lane of a batch. So
 /// the same episode gives the same bits in both.
 pub trait Episode<W: ?Sized> {
     /// Sets up the world and the episode. The previous episode is discarded.

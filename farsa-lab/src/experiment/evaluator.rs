@@ -8,7 +8,7 @@ use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::anatomy::Anatomy;
-use crate::experiment::behaviour::Behaviour;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::disturbance::{Displacement, Push};
 use crate::experiment::episode::EpisodeId;
@@ -23,7 +23,8 @@ use crate::experiment::protocol::{CaseId, Protocol};
 /// Start from [`new`](Self::new) and name the fields that differ:
 ///
 /// ```
-/// use farsa_lab::{Parameter, Schema, TaskInfo};
+/// use farsa_lab::{Parameter, TaskInfo};
+/// use farsa_lab::advanced::Schema;
 ///
 /// let parameters = vec![Parameter::new("gain", [-1.0, 1.0])];
 /// let info = TaskInfo { trials: 5, ..TaskInfo::new(parameters, Schema::from_scalars(["angle [rad]"])) };
@@ -52,7 +53,7 @@ pub struct TaskInfo {
     pub robots: Vec<String>,
     /// Number of observed channels that can be normalized. By default 0, without normalization.
     ///
-    /// A [`NormalisedController`](crate::NormalisedController) normalizes, and [`Outcome::observed`] reports its statistics.
+    /// A [`NormalizedController`](crate::advanced::NormalizedController) normalizes, and [`Outcome::observed`] reports its statistics.
     pub observations: usize,
     /// Test protocols of `farsa test --protocol`. By default none.
     ///
@@ -62,7 +63,7 @@ pub struct TaskInfo {
     ///
     /// The evaluator must apply [`Evaluation::intervention`]. [`Interventions::applied`] combines it with the case.
     ///
-    /// [`Interventions::applied`]: crate::Interventions::applied
+    /// [`Interventions::applied`]: crate::advanced::Interventions::applied
     pub anatomy: Option<Anatomy>,
 }
 
@@ -109,7 +110,7 @@ pub trait Task: Send {
     }
 
     /// Returns further objectives and measures of an individual, if the task has any.
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         None
     }
 
@@ -244,7 +245,7 @@ pub trait Evaluator: Task {
         None
     }
 
-    /// Returns the training for the strategy [`Learning`](crate::Learning).
+    /// Returns the training for the strategy [`Learning`](crate::strategy::Learning).
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         None
     }
@@ -262,7 +263,7 @@ pub trait InLanes {
     /// that of [`Evaluator::evaluate`].
     ///
     /// `next` may be asked in any order of `done`: other threads draw from the same evaluations.
-    fn evaluate_all<'p>(
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),

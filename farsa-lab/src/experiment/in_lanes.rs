@@ -48,7 +48,7 @@ batch!(articulated, arena);
 ///
 /// Each of `episodes` has its own lane. `begin` prepares an episode for its next start and returns its id, or `None`
 /// after the last one. `end` takes the return. A lane is refilled as soon as its episode ends. So every episode equals
-/// the one that [`run_episode`](crate::run_episode) runs alone: lanes, batches and order change only the time.
+/// the one that [`run_episode`](crate::advanced::run_episode) runs alone: lanes, batches and order change only the time.
 pub fn run_in_lanes<B, E>(
     episodes: &mut [E],
     batch: &mut B,

@@ -4,7 +4,7 @@ use farsa_body::Recorder;
 use farsa_body::ports::{Arrange, BodyId, ExternalForces, Handles, Kinematics, World};
 
 use crate::error::Error;
-use crate::experiment::behaviour::Behaviour;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::disturbance::{Apply, Disturbances, Disturbed, Place, apply, place};
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task, TaskInfo};
@@ -28,8 +28,8 @@ pub trait Rollout: Task {
 }
 
 /// An episode in each lane of a batch.
-trait SideBySide<R>: Send {
-    fn evaluate_all<'p>(
+trait LaneRunner<R>: Send {
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
@@ -62,12 +62,12 @@ impl<W: ?Sized, R: Episode<W>> Episode<W> for Numbered<R> {
     }
 }
 
-impl<B, R> SideBySide<R> for InBatch<B, R>
+impl<B, R> LaneRunner<R> for InBatch<B, R>
 where
     B: Batch + Send + 'static,
     R: Rollout + for<'a> Episode<B::Lane<'a>>,
 {
-    fn evaluate_all<'p>(
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
@@ -93,7 +93,7 @@ where
     }
 }
 
-type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn SideBySide<R>>, Error> + Send>;
+type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn LaneRunner<R>>, Error> + Send>;
 
 /// Evaluates episodes in a world of type `W`, one after the other or, where the world has batches, side by side in lanes.
 pub struct InWorld<W, R> {
@@ -102,7 +102,7 @@ pub struct InWorld<W, R> {
     /// Most steps of an episode, once one was run.
     budget: Option<u64>,
     make: Option<Make<R>>,
-    lanes: Option<Box<dyn SideBySide<R>>>,
+    lanes: Option<Box<dyn LaneRunner<R>>>,
     /// Moves bodies, if the world can.
     place: Option<Place<W>>,
     /// Pushes bodies, if the world can.
@@ -169,8 +169,8 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         self.rollout.fitness(trials)
     }
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        self.rollout.behaviour()
+    fn behavior(&self) -> Option<&dyn Behavior> {
+        self.rollout.behavior()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.rollout.exports()
@@ -230,7 +230,7 @@ where
         Ok(())
     }
 
-    fn evaluate_all<'p>(
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
@@ -245,7 +245,7 @@ where
                 }
                 alone.push(evaluation);
             };
-            lanes.evaluate_all(&mut plain, done);
+            lanes.run_in_lanes(&mut plain, done);
             for evaluation in alone {
                 done(evaluation.number, self.evaluate(evaluation, None));
             }

@@ -7,11 +7,11 @@ use farsa_nn::Lesion;
 
 use crate::experiment::outcome::ChannelGroup;
 
-/// A change of a controller in a test. [`Interventions::applied`](crate::Interventions::applied) returns that of an
+/// A change of a controller in a test. [`Interventions::applied`](crate::advanced::Interventions::applied) returns that of an
 /// evaluation.
 ///
-/// Two steps of [`Rollout::load`](crate::Rollout::load) obey it: [`edited`](Self::edited) for the parameters, and
-/// [`NormalisedController::intervene`](crate::NormalisedController::intervene) for all else.
+/// Two steps of [`Rollout::load`](crate::advanced::Rollout::load) obey it: [`edited`](Self::edited) for the parameters, and
+/// [`NormalizedController::intervene`](crate::advanced::NormalizedController::intervene) for all else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intervention {
     /// Neurons that are held.

@@ -10,7 +10,7 @@ use crate::experiment::protocol::{Case, CaseId, Protocol};
 /// Test protocols of an experiment with what they do to the controller in each case.
 ///
 /// ```
-/// use farsa_lab::{CaseId, Intervention, Interventions};
+/// use farsa_lab::advanced::{CaseId, Intervention, Interventions};
 ///
 /// let all = Interventions::default()
 ///     .with_lesions([("camera", 0..3), ("touch", 3..4)], [("neuron 1".to_owned(), 0)])

@@ -72,7 +72,7 @@ impl Default for LanesInfo {
 
 /// Lanes of a command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Wanted {
+pub(crate) struct LaneRequest {
     /// As many as the machine's instructions or the experiment make sensible, if there is no number.
     pub(crate) count: Option<usize>,
     /// The best of the machine, if there is no name.
@@ -96,7 +96,7 @@ fn usual(instructions: Instructions) -> usize {
     if name(instructions) == SIMD[2] { LANES[1] } else { LANES[0] }
 }
 
-impl Wanted {
+impl LaneRequest {
     /// One lane, the default.
     pub(crate) const ONE: Self = Self { count: Some(1), simd: None };
 
@@ -125,12 +125,12 @@ mod tests {
 
     #[test]
     fn the_best_is_what_is_wanted_by_default() {
-        let best = Wanted { count: None, simd: None }.on_this_machine().unwrap();
+        let best = LaneRequest { count: None, simd: None }.on_this_machine().unwrap();
         assert_eq!(best.info(), Lanes::best().info());
-        let baseline = Wanted { count: None, simd: Some("baseline") }.on_this_machine().unwrap();
+        let baseline = LaneRequest { count: None, simd: Some("baseline") }.on_this_machine().unwrap();
         assert_eq!(baseline.info(), LanesInfo { lanes: 8, simd: "baseline".into() });
-        assert_eq!(Wanted::ONE.on_this_machine().unwrap().info(), LanesInfo::default());
-        let error = Wanted { count: None, simd: Some("neon") }.on_this_machine().unwrap_err();
+        assert_eq!(LaneRequest::ONE.on_this_machine().unwrap().info(), LanesInfo::default());
+        let error = LaneRequest { count: None, simd: Some("neon") }.on_this_machine().unwrap_err();
         assert_eq!(error.exit_code(), 2);
         let odd = Lanes::new(13, Instructions::detect()).unwrap_err().to_string();
         assert_eq!(odd, "13 lanes; the nearest number is 16");

@@ -3,13 +3,11 @@
 /// Named parts of a controller that a test can change.
 mod anatomy;
 /// Objectives and measures of an individual in addition to its fitness.
-pub(crate) mod behaviour;
+pub(crate) mod behavior;
 /// An episode of one robot with a network and a custom objective.
 mod controlled;
 /// A controller, its channels and its starts as plain data for `farsa export`.
 pub(crate) mod controller_export;
-/// An experiment as the command sees it: a name, settings, and an evaluator.
-pub(crate) mod definition;
 /// Bodies that are moved or pushed during an episode.
 pub(crate) mod disturbance;
 /// One trial in a world, and its loop.
@@ -37,7 +35,7 @@ mod network_parameters;
 /// The controller of a robot: its sensors, a network, and its motors.
 mod neurocontroller;
 /// A controller with normalized observations.
-mod normalised_controller;
+mod normalized_controller;
 /// The outcome of a trial, and the description of a robot.
 pub(crate) mod outcome;
 /// A number that evolution sets, with its range.
@@ -54,13 +52,12 @@ pub(crate) mod settings;
 mod value;
 
 pub use anatomy::{Anatomy, PartNames};
-pub use behaviour::{Behaviour, NotedBehaviour, mean_of_note};
+pub use behavior::{Behavior, NotedBehavior, mean_of_note};
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
     ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, PointExport, SensorExport, SensorReading,
     ServoExport, StartExport, SurfaceExport,
 };
-pub use definition::{Experiment, SimpleExperiment};
 pub use disturbance::{Displacement, Push};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task, TaskInfo};
@@ -73,7 +70,7 @@ pub use lanes::Lanes;
 pub use network_export::NetworkExport;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
-pub use normalised_controller::NormalisedController;
+pub use normalized_controller::NormalizedController;
 pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
 pub use parameter::Parameter;
 pub use protocol::{Case, CaseId, Protocol};

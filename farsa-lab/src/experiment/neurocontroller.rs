@@ -13,7 +13,7 @@ use crate::experiment::anatomy::Anatomy;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::interventions::Interventions;
 use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
-use crate::experiment::normalised_controller::NormalisedController;
+use crate::experiment::normalized_controller::NormalizedController;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::Protocol;
@@ -51,7 +51,7 @@ pub struct Neurocontroller<S, M> {
     motors: M,
     layout: LeakyLayout,
     range: f64,
-    network: NormalisedController<OwnedNetwork>,
+    network: NormalizedController<OwnedNetwork>,
     x: Vec<f32>,
     y: Vec<f32>,
     schema: Schema,
@@ -75,7 +75,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
             return Err(Error::Other(format!("weights within {range}")));
         }
         let layout = LeakyLayout::new(inputs, hidden, outputs);
-        let network = NormalisedController::new(resting_network(&layout)?);
+        let network = NormalizedController::new(resting_network(&layout)?);
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
         Ok(Self {
             sensors,

@@ -17,7 +17,7 @@ pub struct Outcome {
     /// Further results for `farsa test` by name, such as `("phase", "lift".into())`. Every trial has the same names.
     pub notes: Vec<(&'static str, Note)>,
     /// Statistics of the observations if the [`Evaluation`](crate::Evaluation) normalizes them, from
-    /// [`NormalisedController::observed`](crate::NormalisedController::observed).
+    /// [`NormalizedController::observed`](crate::advanced::NormalizedController::observed).
     pub observed: Option<ObservationStatistics>,
     /// Reason of a failure. A trial with a reason counts as failed whatever its terms are.
     pub failure: Option<Failure>,

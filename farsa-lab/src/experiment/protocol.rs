@@ -19,7 +19,7 @@ const LONGEST: [usize; 2] = [64, 120];
 /// trial. A list of cases is a table of one column.
 ///
 /// ```
-/// use farsa_lab::Protocol;
+/// use farsa_lab::advanced::Protocol;
 ///
 /// let words = Protocol::from_table("instructions", "every instruction", ["TOUCH", "MOVE"], ["red", "green"])
 ///     .with_axes("action", "object")

@@ -3,7 +3,7 @@
 use farsa_body::Recorder;
 
 use crate::error::Error;
-use crate::experiment::behaviour::Behaviour;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task, TaskInfo};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Outcome, mean_of_trials};
@@ -43,8 +43,8 @@ impl Task for Rescored {
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
     }
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
-        self.inner.behaviour()
+    fn behavior(&self) -> Option<&dyn Behavior> {
+        self.inner.behavior()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.inner.exports()
@@ -81,14 +81,14 @@ impl InLanes for Rescored {
         self.inner.in_lanes().map_or(Ok(()), |inner| inner.use_lanes(lanes))
     }
 
-    fn evaluate_all<'p>(
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
     ) {
         let Self { inner, score, .. } = self;
         if let Some(inner) = inner.in_lanes() {
-            inner.evaluate_all(next, &mut |number, outcome| done(number, rescore(score, outcome)));
+            inner.run_in_lanes(next, &mut |number, outcome| done(number, rescore(score, outcome)));
         }
     }
 }

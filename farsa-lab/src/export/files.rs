@@ -15,7 +15,7 @@ use crate::json::pretty;
 use crate::run::plan::Plan;
 use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
-use crate::strategy::search::Genome;
+use crate::strategy::any_strategy::Genome;
 use crate::strategy::settings::NORMALISE;
 
 /// The formats of model files.

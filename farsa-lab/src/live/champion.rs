@@ -4,7 +4,7 @@ use farsa_evo::Snapshot as _;
 use farsa_view::View;
 
 use crate::error::Error;
-use crate::evaluation::replay::{Replayable, Which};
+use crate::evaluation::replay::{Replayable, Selection};
 use crate::live::page_run::PageIndividual;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
@@ -18,7 +18,7 @@ pub(crate) fn champion(
     directory: &Directory,
     generation: Option<u32>,
 ) -> Result<(PageIndividual, View), Error> {
-    let champion = Replayable::find(plan, directory, Which { generation, ..Which::default() })?;
+    let champion = Replayable::find(plan, directory, Selection { generation, ..Selection::default() })?;
     let view = champion.schema().view;
     Ok((saved(champion), view))
 }

@@ -15,8 +15,8 @@ use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinishe
 use crate::run::plan::Plan;
 use crate::run::search_state::{GenerationResult, SearchState};
 use crate::store::log::Line;
-use crate::strategy::opponents::Hall;
-use crate::strategy::search::Search;
+use crate::strategy::any_strategy::AnyStrategy;
+use crate::strategy::opponents::HallOfFame;
 
 /// The results of a generation.
 #[derive(Debug, Serialize)]
@@ -57,7 +57,7 @@ impl Evolution {
             return Err(invalid("its champions have another number of parameters"));
         }
         let of_generation = |champions: &[f32]| champions.chunks(length).map(<[f32]>::to_vec).collect();
-        let hall = Hall::from_champions(floats.chunks(populations * length).map(of_generation).collect());
+        let hall = HallOfFame::from_champions(floats.chunks(populations * length).map(of_generation).collect());
         let observed = match state.observed {
             Some(bytes) => {
                 Some(ObservationStatistics::from_saved(&bytes.0).map_err(|error| invalid(&error.to_string()))?)
@@ -101,7 +101,7 @@ impl Evolution {
         numbered.sort_by_key(|(number, _)| *number);
         let generation = self.search.search.generation();
         let mut session = Session { evaluator, info: &self.info, genotype: &self.genotype, part: Part::All(numbered) };
-        let evaluated = self.search.generation(&mut session, &|| {}, Search::tell_unrecorded);
+        let evaluated = self.search.generation(&mut session, &|| {}, AnyStrategy::tell_unrecorded);
         let GenerationResult { fitness, statistics, each, best, met, normalisation, .. } =
             evaluated.map_err(|error| match error {
                 Unfinished::Error(error) => error,
@@ -114,7 +114,7 @@ impl Evolution {
         });
         let fitness_of_best = best.first().map_or(Fitness::WORST, |best| best.fitness);
         let champions = match self.champions.take() {
-            Some(previous) if self.search.search.keeps_champion() && fitness_of_best <= previous.0 => previous,
+            Some(previous) if self.search.search.champion_is_best_ever() && fitness_of_best <= previous.0 => previous,
             _ => (fitness_of_best, champions.collect()),
         };
         let line = Line::new(&statistics, fitness.len(), &each);

@@ -165,14 +165,14 @@ fn find(path: &Path, name: &Path, depth: usize, found: &mut Vec<(Directory, Path
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::definition::Experiment;
+    use crate::run::experiment::Experiment;
     use std::sync::atomic::AtomicBool;
 
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
     use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
-    use crate::experiment::lanes::Wanted;
+    use crate::experiment::lanes::LaneRequest;
     use crate::experiment::outcome::Outcome;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings};
@@ -222,7 +222,7 @@ mod tests {
     fn run(toy: Toy, path: &Path) {
         let plan = Plan::new(&toy, None, "").unwrap();
         let directory = begin::create(&plan, path).unwrap();
-        let pool = Pool::new(&plan, 1, Wanted::ONE).unwrap();
+        let pool = Pool::new(&plan, 1, LaneRequest::ONE).unwrap();
         evolve::continue_run(&plan, &directory, pool, &AtomicBool::new(false), "farsa", true).unwrap();
     }
 

@@ -1,8 +1,8 @@
 //! The results of test protocols, a table and a figure for each.
 
 use crate::error::Error;
+use crate::evaluation::protocols::case_summary;
 use crate::evaluation::protocols::files::ProtocolRecord;
-use crate::evaluation::protocols::found;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::bar_list::{Bar, BarList};
 use crate::figures::heat_map::{HeatCell, HeatMap};
@@ -223,7 +223,7 @@ impl Alike<'_> {
     fn tables(&self) -> Vec<Block> {
         let Some((run, tested)) = self.runs.first() else { return Vec::new() };
         let single = |tested: &TestedProtocol| {
-            let (rows, _) = found::rows(&tested.protocol, &tested.found);
+            let (rows, _) = case_summary::rows(&tested.protocol, &tested.found);
             let mut rows = rows.into_iter();
             Table { head: rows.next().unwrap_or_default(), rows: rows.collect() }
         };

@@ -1,8 +1,8 @@
 //! A test protocol with its results in a run.
 
 use crate::error::Error;
+use crate::evaluation::protocols::case_summary::CaseSummary;
 use crate::evaluation::protocols::files::{self, ProtocolRecord};
-use crate::evaluation::protocols::found::FoundCase;
 use crate::evaluation::protocols::states::States;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::protocol::{Case, Protocol};
@@ -11,7 +11,7 @@ use crate::store::directory::Directory;
 /// A test protocol with its results in a run.
 pub(crate) struct TestedProtocol {
     pub(crate) protocol: Protocol,
-    pub(crate) found: Vec<FoundCase>,
+    pub(crate) found: Vec<CaseSummary>,
     /// `None` if a process was killed before writing it.
     pub(crate) record: Option<ProtocolRecord>,
     /// The recorded states of the same test, if any.
@@ -36,13 +36,13 @@ impl TestedProtocol {
             // States of an earlier test are of other trials.
             let own = |of: &ProtocolRecord| record.as_ref().is_some_and(|record| record.same_test(of));
             let states = states.filter(|(_, of)| of.as_ref().is_some_and(own)).map(|(states, _)| states);
-            tested.push(Self { protocol, found: FoundCase::all(&table, &terms), record, states });
+            tested.push(Self { protocol, found: CaseSummary::all(&table, &terms), record, states });
         }
         Ok((tested, others))
     }
 
     /// Returns the cases in the order of the table.
     pub(crate) fn cases(&self) -> Vec<Case> {
-        self.found.iter().map(FoundCase::case).collect()
+        self.found.iter().map(CaseSummary::case).collect()
     }
 }

@@ -17,9 +17,9 @@ use crate::store::lineage::HEADER;
 use crate::store::log;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
+use crate::strategy::any_strategy::{AnyStrategy, MAX_STATE_BYTES};
 use crate::strategy::history::History;
-use crate::strategy::opponents::Hall;
-use crate::strategy::search::{LARGEST_STATE, Search};
+use crate::strategy::opponents::HallOfFame;
 
 /// Creates the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
@@ -29,11 +29,11 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
     let state = strategy.snapshot().map(|strategy| strategy.save());
     let bytes = state.as_ref().map_or(0, Vec::len);
-    if bytes as u64 > LARGEST_STATE {
+    if bytes as u64 > MAX_STATE_BYTES {
         let (name, individuals, genes) = (plan.definition().name(), strategy.individuals(), strategy.genes());
         return Err(Error::Usage(format!(
             "`{name}`: a state of {individuals} individuals of {genes} genes has {bytes} bytes; a checkpoint keeps at most \
-             {LARGEST_STATE}"
+             {MAX_STATE_BYTES}"
         )));
     }
     if text.len() as u64 > config_file::MAX_BYTES {
@@ -61,7 +61,7 @@ pub(crate) fn resumed(
     directory: &Directory,
     checkpoint: &Checkpoint,
     record: &Record,
-) -> Result<Search, Error> {
+) -> Result<AnyStrategy, Error> {
     let path = directory.record();
     let mut strategy = plan.strategy()?;
     match (&checkpoint.state, strategy.snapshot()) {
@@ -81,7 +81,7 @@ pub(crate) fn resumed(
 /// Restores the search of a run from its checkpoint, with the opponents of previous generations.
 ///
 /// # Errors
-/// The errors of [`resumed`] and of [`Hall::before`].
+/// The errors of [`resumed`] and of [`HallOfFame::before`].
 pub(crate) fn search_state(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -91,9 +91,9 @@ pub(crate) fn search_state(
 ) -> Result<SearchState, Error> {
     let search = resumed(plan, directory, checkpoint, &run_record.record)?;
     let hall = match run_record.record.populations() {
-        1 => Hall::default(),
-        _ if search.opponents().is_some() => Hall::default(),
-        _ => Hall::before(&History::new(directory.record(), run_record.record.clone(), plan.fresh()), genotype)?,
+        1 => HallOfFame::default(),
+        _ if search.opponents().is_some() => HallOfFame::default(),
+        _ => HallOfFame::before(&History::new(directory.record(), run_record.record.clone(), plan.fresh()), genotype)?,
     };
     let observed = run_record.observed.last().cloned().or(plan.no_observations()?);
     Ok(SearchState::new(search, hall, observed, checkpoint.identity.seed))

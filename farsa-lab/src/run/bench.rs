@@ -18,7 +18,7 @@ use crate::run::pool::Pool;
 use crate::run::record_file::history;
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
-use crate::strategy::opponents::{Hall, Meeting};
+use crate::strategy::opponents::{HallOfFame, Pairing};
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
@@ -45,7 +45,7 @@ impl Sample {
         let strategy = plan.strategy()?;
         let populations = strategy.populations();
         let parameters = strategy.parameters(&plan.genotype(plan.evaluator()?.as_ref()));
-        Self::new(plan, parameters, populations, &Hall::default(), 0, 0)
+        Self::new(plan, parameters, populations, &HallOfFame::default(), 0, 0)
     }
 
     /// Takes the last finished generation of a run, or its first.
@@ -60,7 +60,7 @@ impl Sample {
         };
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
-        let hall = Hall::before(&history, &genotype)?;
+        let hall = HallOfFame::before(&history, &genotype)?;
         let mut sample = None;
         history.visit([generation], |generation, genomes| {
             let parameters = genomes.decode_all(&genotype);
@@ -79,7 +79,7 @@ impl Sample {
         plan: &Plan<'_>,
         parameters: Option<Vec<Vec<f32>>>,
         populations: usize,
-        hall: &Hall,
+        hall: &HallOfFame,
         finished: u32,
         generation: u32,
     ) -> Result<Self, Error> {
@@ -87,7 +87,7 @@ impl Sample {
         let evaluator = plan.evaluator()?;
         let parameters = parameters.ok_or_else(|| lost("genomes of another length"))?;
         let (trials, size) = (evaluator.info().trials, parameters.len() / populations);
-        let meeting = Meeting { generation: finished, populations, size, trials };
+        let meeting = Pairing { generation: finished, populations, size, trials };
         let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost("one is missing"))?;
         let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
         Ok(Self { parameters, opponents, populations, seed: plan.seed, generation, run: None })
@@ -328,12 +328,12 @@ fn ticks(stat: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
-    use crate::experiment::lanes::Wanted;
+    use crate::experiment::lanes::LaneRequest;
     use crate::experiment::outcome::Description;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
+    use crate::run::experiment::Experiment;
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
     use farsa_view::Schema;
@@ -381,7 +381,7 @@ mod tests {
     fn benched(toy: &Toy, threads: usize, seconds: f64) -> Bench {
         let mut plan = Plan::new(toy, None, "").unwrap();
         plan.settings.set("", GENERATIONS, Value::Whole(50)).unwrap();
-        let pool = Pool::new(&plan, threads, Wanted::ONE).unwrap();
+        let pool = Pool::new(&plan, threads, LaneRequest::ONE).unwrap();
         bench(&plan, &Sample::random(&plan).unwrap(), pool, seconds).unwrap()
     }
 

@@ -3,13 +3,13 @@
 use farsa_evo::{Collection, Member, ScoreShape};
 
 use crate::error::Error;
-use crate::experiment::behaviour::Behaviour;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::parameter::Parameter;
 use crate::figures::scatter::Scatter;
 use crate::store::directory::Directory;
 use crate::store::replace::replace;
-use crate::strategy::search::Search;
+use crate::strategy::any_strategy::AnyStrategy;
 
 /// The names of the scores.
 pub(crate) struct CollectionTable {
@@ -20,12 +20,12 @@ pub(crate) struct CollectionTable {
 
 impl CollectionTable {
     /// Creates the table of a strategy with an archive or front, and `None` for another.
-    pub(crate) fn new(search: &Search, evaluator: &dyn Evaluator) -> Option<Self> {
+    pub(crate) fn new(search: &AnyStrategy, evaluator: &dyn Evaluator) -> Option<Self> {
         search.collection()?;
         let ScoreShape { objectives, measures: descriptors, .. } = search.score_shape();
-        let behaviour = evaluator.behaviour();
-        let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
-        let values = behaviour.map(Behaviour::descriptors).unwrap_or_default();
+        let behaviour = evaluator.behavior();
+        let others = behaviour.map(Behavior::objectives).unwrap_or_default();
+        let values = behaviour.map(Behavior::descriptors).unwrap_or_default();
         Some(Self {
             objectives: ["fitness".into()].into_iter().chain(others).take(objectives).collect(),
             descriptors: values.into_iter().take(descriptors).collect(),
@@ -36,7 +36,7 @@ impl CollectionTable {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub(crate) fn write(&self, search: &Search, directory: &Directory, title: &str) -> Result<(), Error> {
+    pub(crate) fn write(&self, search: &AnyStrategy, directory: &Directory, title: &str) -> Result<(), Error> {
         let members = members(search);
         let [csv, svg] = directory.diagnostics("archive");
         replace(&csv, &self.csv(&members).map_err(|why| Error::damaged(&csv, why))?)?;
@@ -44,7 +44,7 @@ impl CollectionTable {
     }
 
     /// Draws the archive or front.
-    pub(crate) fn drawn(&self, search: &Search, title: &str) -> String {
+    pub(crate) fn drawn(&self, search: &AnyStrategy, title: &str) -> String {
         self.picture(&members(search), title)
     }
 
@@ -82,7 +82,7 @@ impl CollectionTable {
 }
 
 /// Returns all members, sorted by cell, fitness and origin.
-fn members(search: &Search) -> Vec<Member<'_>> {
+fn members(search: &AnyStrategy) -> Vec<Member<'_>> {
     let mut members = search.collection().map_or_else(Vec::new, Collection::members);
     members.sort_by(|a, b| {
         let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);

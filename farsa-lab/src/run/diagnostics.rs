@@ -9,8 +9,8 @@ use crate::figures::series::Series;
 use crate::store::append_log::AppendLog;
 use crate::store::directory::Directory;
 use crate::store::replace::replace;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::Diagnostics;
-use crate::strategy::search::Search;
 
 /// The table of diagnostics, which grows, and its curves.
 pub(crate) struct DiagnosticsTable(Option<Table>);
@@ -52,7 +52,7 @@ impl DiagnosticsTable {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub(crate) fn append(&mut self, strategy: &Search) -> Result<(), Error> {
+    pub(crate) fn append(&mut self, strategy: &AnyStrategy) -> Result<(), Error> {
         let Some(table) = &mut self.0 else { return Ok(()) };
         let line = line(table.generations, &strategy.diagnostics(), &mut table.curves);
         table.generations += 1;

@@ -67,7 +67,7 @@ pub(crate) fn round<'g>(
     end: &mut dyn FnMut(usize, Outcome),
 ) {
     if let Some(lanes) = evaluator.in_lanes() {
-        return lanes.evaluate_all(next, end);
+        return lanes.run_in_lanes(next, end);
     }
     while let Some(evaluation) = next() {
         end(evaluation.number, evaluator.evaluate(evaluation, None));

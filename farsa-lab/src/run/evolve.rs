@@ -202,7 +202,7 @@ impl<'d> Run<'d> {
             lineage.append(&rows(search))?;
         }
         let latest = Champions { identity: self.identity.clone(), generation, best, normalisation };
-        let keeps = search.keeps_champion();
+        let keeps = search.champion_is_best_ever();
         self.champions = Some(match self.champions.take() {
             Some(best) if keeps && latest.fitness() <= best.fitness() => best,
             _ => latest,
@@ -282,15 +282,15 @@ impl<'d> Run<'d> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::replay::{Which, WhichTrial, replay};
+    use crate::evaluation::replay::{Selection, TrialSelector, replay};
     use crate::evaluation::test;
-    use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
-    use crate::experiment::lanes::Wanted;
+    use crate::experiment::lanes::LaneRequest;
     use crate::experiment::outcome::Outcome;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::run::begin::create;
+    use crate::run::experiment::Experiment;
     use crate::store::directory::Directory;
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
@@ -350,7 +350,7 @@ mod tests {
     }
 
     fn pool<'e>(plan: &Plan<'e>, threads: usize) -> Pool<'e> {
-        Pool::new(plan, threads, Wanted::ONE).unwrap()
+        Pool::new(plan, threads, LaneRequest::ONE).unwrap()
     }
 
     fn finish(toy: Toy, directory: &Directory) -> Result<Summary, Error> {
@@ -377,7 +377,7 @@ mod tests {
         let counted: u64 =
             log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
         assert_eq!(failures.lines().count() as u64 - 1, counted);
-        let which = Which { generation: Some(2), individual: Some(3), trial: WhichTrial::Number(0) };
+        let which = Selection { generation: Some(2), individual: Some(3), trial: TrialSelector::Number(0) };
         let error = replay(&plan, &directory, which, None, || Ok(Vec::new())).unwrap_err();
         assert_eq!(error.to_string(), "trial 0 of individual 3 of generation 2 panicked");
         fs::remove_dir_all(root).unwrap();
@@ -397,10 +397,10 @@ mod tests {
         let resumed = message(finish(new, &directory).unwrap_err());
         assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
         let plan = Plan::new(&new, None, "").unwrap();
-        let replayed = message(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
+        let replayed = message(replay(&plan, &directory, Selection::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are valid, but its behavior may differ, so there is a warning.
-        let tested = test::test(&plan, &directory, None, 3, 1, 1, Wanted::ONE, true).unwrap().text();
+        let tested = test::test(&plan, &directory, None, 3, 1, 1, LaneRequest::ONE, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();
     }
@@ -417,12 +417,12 @@ mod tests {
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
         // No champion exists yet.
         assert!(
-            test::test(&plan, &directory, None, 1, 1, 1, Wanted::ONE, true)
+            test::test(&plan, &directory, None, 1, 1, 1, LaneRequest::ONE, true)
                 .unwrap_err()
                 .to_string()
                 .contains("no generation is finished")
         );
-        let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
+        let replayed = replay(&plan, &directory, Selection::default(), None, || Ok(Vec::new())).unwrap_err();
         assert!(replayed.to_string().contains("record.bin: no generation is finished"), "{replayed}");
         plan.settings.set("", GENERATIONS, Value::Whole(2)).unwrap();
         continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();

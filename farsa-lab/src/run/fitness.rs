@@ -165,7 +165,7 @@ fn row(
             }
             row.push(fitness);
         }
-    } else if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != ScoreShape::FITNESS) {
+    } else if let Some(behaviour) = evaluator.behavior().filter(|_| shape != ScoreShape::FITNESS) {
         let names: Vec<String> = behaviour
             .objectives()
             .into_iter()

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::run::config_file::ConfigFile;
+use crate::run::experiment::Experiment;
 use crate::run::imported_file::ImportedFile;
 use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
@@ -15,7 +15,8 @@ use crate::strategy::known;
 /// ```no_run
 /// use std::process::ExitCode;
 ///
-/// use farsa_lab::{Experiment, Laboratory, StrategyDefinition};
+/// use farsa_lab::{Experiment, Laboratory};
+/// use farsa_lab::strategy::StrategyDefinition;
 ///
 /// fn command(experiments: &[&dyn Experiment], mine: &'static dyn StrategyDefinition) -> ExitCode {
 ///     Laboratory::new(experiments).with_strategy(mine).main()
@@ -99,7 +100,7 @@ impl<'e> Laboratory<'e> {
     }
 
     /// Adds interactive pages: `farsa live`. `module` is a program with these experiments as WebAssembly, compressed by gzip or
-    /// xz. `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it does not include.
+    /// xz. `lacking` names the worlds ([`ENGINE`](crate::advanced::ENGINE)) that it does not include.
     #[must_use]
     pub fn with_live_module(self, module: &'static [u8], lacking: &'static [&'static str]) -> Self {
         Self { module: Some((module, lacking)), ..self }

@@ -24,6 +24,8 @@ pub(crate) mod evaluation_backend;
 /// The loop over generations, with saves.
 #[cfg(feature = "command")]
 pub(crate) mod evolve;
+/// An experiment as the command sees it: a name, settings, and an evaluator.
+pub(crate) mod experiment;
 /// The fitness of a generation from the trials of all individuals.
 pub(crate) mod fitness;
 /// A file in another format, converted to a file that describes an experiment.
@@ -68,6 +70,7 @@ pub(crate) mod worker;
 /// The choice of world, where an experiment offers one.
 pub(crate) mod world_choice;
 
+pub use experiment::{Experiment, SimpleExperiment};
 pub use imported_file::{ImportedFile, LeftOut};
 pub use laboratory::{ExperimentFiles, ImportExperiment, Laboratory, ReadExperiment, Template};
 pub use world_choice::ENGINE;

@@ -7,18 +7,18 @@ use farsa_evo::{ObservationStatistics, ScoreShape};
 use farsa_num::crc32;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Paragraph, Settings, Value};
 use crate::limits::Limits;
 use crate::run::config_file::{ConfigFile, Entry};
+use crate::run::experiment::Experiment;
 use crate::run::laboratory::Laboratory;
 use crate::store::bounded;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
-use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
 /// The largest seed of a run. Bit 63 marks the trials of a test.
@@ -155,12 +155,12 @@ impl<'e> Plan<'e> {
     /// # Errors
     /// The errors of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy with other populations or genes than the
     /// experiment's.
-    pub(crate) fn strategy(&self) -> Result<Search, Error> {
+    pub(crate) fn strategy(&self) -> Result<AnyStrategy, Error> {
         self.no_observations()?;
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
         let (populations, genes, trials) =
             (task.info().populations.len(), task.info().parameters.len(), task.info().trials);
-        let (objectives, ranges) = task.behaviour().map_or((1, Vec::new()), |behaviour| {
+        let (objectives, ranges) = task.behavior().map_or((1, Vec::new()), |behaviour| {
             let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
             (1 + behaviour.objectives().len(), ranges)
         });

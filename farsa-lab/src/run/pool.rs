@@ -7,10 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::{Evaluation, Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
-use crate::experiment::lanes::{Lanes, Wanted};
+use crate::experiment::lanes::{LaneRequest, Lanes};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::settings::Settings;
 use crate::ranks::dealing::{give, take};
@@ -18,6 +17,7 @@ use crate::ranks::exchange::{Exchange, Numbered, Status};
 use crate::ranks::numbers::{AssignedBlocks, Numbers};
 use crate::run::catch_panic::catch_panic;
 use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinished, round};
+use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 
 /// An experiment prepared for each thread.
@@ -54,7 +54,7 @@ impl<'e> Pool<'e> {
     ///
     /// # Errors
     /// [`Error::Usage`] for more lanes or other instructions than the machine or the experiment has.
-    pub(crate) fn new(plan: &Plan<'e>, threads: usize, wanted: Wanted) -> Result<Self, Error> {
+    pub(crate) fn new(plan: &Plan<'e>, threads: usize, wanted: LaneRequest) -> Result<Self, Error> {
         let asked = wanted.on_this_machine()?;
         let mut first = plan.evaluator()?;
         let lanes = if first.in_lanes().is_some() { asked } else { Lanes::one() };

@@ -16,8 +16,8 @@ use crate::store::checksummed;
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Line;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::history::History;
-use crate::strategy::search::Search;
 
 /// A generation.
 #[derive(Serialize, Deserialize)]
@@ -122,7 +122,7 @@ impl RunRecord {
         if found != expected {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
-        let keeps_champion = search.keeps_champion();
+        let keeps_champion = search.champion_is_best_ever();
         Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, longest, content })
     }
 
@@ -196,7 +196,7 @@ impl RunRecordWriter {
         &mut self,
         record: &RecordWriter,
         line: &Line,
-        search: &Search,
+        search: &AnyStrategy,
         observed: Option<&ObservationStatistics>,
     ) -> Result<(), Error> {
         let Some(RecordEntry { frame, state }) = record.entry() else { return Ok(()) };

@@ -13,7 +13,7 @@ use crate::store::checksummed;
 use crate::store::checksummed::Checksummed;
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
-use crate::strategy::search::{Genome, LARGEST_STATE};
+use crate::strategy::any_strategy::{Genome, MAX_STATE_BYTES};
 
 /// `checkpoint.bin`: the state from which a run continues. It does not grow.
 #[derive(Debug, Serialize, Deserialize)]
@@ -142,7 +142,7 @@ macro_rules! sealed {
 }
 
 sealed! {
-    Checkpoint: b"farsackp", "checkpoint", LARGEST_STATE + (1 << 20);
+    Checkpoint: b"farsackp", "checkpoint", MAX_STATE_BYTES + (1 << 20);
     RecordHead: b"farsatld", "run record", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;

@@ -20,8 +20,8 @@ use crate::store::lineage::{Lineage, rows};
 use crate::store::log::Log;
 use crate::store::replace::replace;
 use crate::store::temporary_file;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::history::History;
-use crate::strategy::search::Search;
 
 /// The files of a run that grow, open at their ends.
 pub(crate) struct RunFiles {
@@ -44,7 +44,7 @@ pub(crate) fn recover(
     directory: &Directory,
     checkpoint: &Checkpoint,
     run_record: &mut RunRecord,
-    search: &Search,
+    search: &AnyStrategy,
 ) -> Result<RunFiles, Error> {
     temporary_file::sweep_run(directory.path());
     let config = plan.to_toml()?;
@@ -66,7 +66,7 @@ fn lineage(
     directory: &Directory,
     checkpoint: &Checkpoint,
     record: &Record,
-    search: &Search,
+    search: &AnyStrategy,
 ) -> Result<Option<Lineage>, Error> {
     if search.genealogy().is_none() {
         return Ok(None);

@@ -8,14 +8,14 @@ use crate::run::evaluation_backend::{EvaluationBackend, Unfinished};
 use crate::run::fitness::{Generation, Judged, Opponents, judgements_of_all};
 use crate::run::records::Best;
 use crate::store::failures::FailedEvaluation;
-use crate::strategy::opponents::{Hall, Meeting, chosen};
-use crate::strategy::search::Search;
+use crate::strategy::any_strategy::AnyStrategy;
+use crate::strategy::opponents::{HallOfFame, Pairing, chosen};
 
 /// The state of a search.
 pub(crate) struct SearchState {
-    pub(crate) search: Search,
+    pub(crate) search: AnyStrategy,
     /// The opponents from previous generations, for several populations.
-    hall: Hall,
+    hall: HallOfFame,
     /// The observation statistics of all generations so far, where observations are normalized.
     pub(crate) observed: Option<ObservationStatistics>,
     seed: u64,
@@ -39,12 +39,17 @@ pub(crate) struct GenerationResult {
 
 impl SearchState {
     /// Creates the state of a search.
-    pub(crate) fn new(search: Search, hall: Hall, observed: Option<ObservationStatistics>, seed: u64) -> Self {
+    pub(crate) fn new(
+        search: AnyStrategy,
+        hall: HallOfFame,
+        observed: Option<ObservationStatistics>,
+        seed: u64,
+    ) -> Self {
         Self { search, hall, observed, seed }
     }
 
     /// Returns the champions that are still opponents.
-    pub(crate) fn hall(&self) -> &Hall {
+    pub(crate) fn hall(&self) -> &HallOfFame {
         &self.hall
     }
 
@@ -57,7 +62,7 @@ impl SearchState {
         &mut self,
         by: &mut dyn EvaluationBackend,
         advance: &(dyn Fn() + Sync),
-        tell: impl FnOnce(&mut Search, &Scores) -> Result<(), EvoError>,
+        tell: impl FnOnce(&mut AnyStrategy, &Scores) -> Result<(), EvoError>,
     ) -> Result<GenerationResult, Unfinished> {
         let generation = self.search.generation();
         let individuals = self.search.individuals();
@@ -65,7 +70,7 @@ impl SearchState {
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
         let trials = by.info().trials;
         let parameters = self.search.parameters(by.genotype()).ok_or_else(|| lost("genomes of another length"))?;
-        let meeting = Meeting { generation, populations, size: individuals / populations, trials };
+        let meeting = Pairing { generation, populations, size: individuals / populations, trials };
         let told_apart = self.search.opponents();
         let chosen = told_apart.and_then(|_| chosen(&self.search, by.genotype(), trials));
         let opponents = match (told_apart, &chosen) {

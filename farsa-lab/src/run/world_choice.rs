@@ -35,9 +35,9 @@ pub(crate) fn visit(plan: &mut Plan<'_>, world: Option<&str>) -> Result<bool, Er
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::{Setting, Settings};
+    use crate::run::experiment::Experiment;
 
     /// An experiment with the given number of worlds.
     struct Toy(&'static [&'static str]);

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::Error;
 use crate::store::append_log::{AppendLog, Mark};
 use crate::store::bounded::read_regular;
-use crate::strategy::search::Search;
+use crate::strategy::any_strategy::AnyStrategy;
 
 /// The first line. Individuals are counted through all populations. Parents are individuals of the previous generation, separated
 /// by blanks.
@@ -18,7 +18,7 @@ const MAX_BYTES: u64 = 1 << 32;
 pub(crate) struct Lineage(AppendLog);
 
 /// Returns the lines of the current generation, which are empty for individuals without parents.
-pub(crate) fn rows(strategy: &Search) -> String {
+pub(crate) fn rows(strategy: &AnyStrategy) -> String {
     let mut text = String::new();
     let Some(genealogy) = strategy.genealogy() else { return text };
     for individual in 0..strategy.individuals() {

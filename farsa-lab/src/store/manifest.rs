@@ -28,7 +28,7 @@ pub(crate) struct Manifest {
     pub(crate) experiment: String,
     pub(crate) condition: String,
     pub(crate) seed: u64,
-    /// [`crate::VALUES_VERSION`].
+    /// [`crate::advanced::VALUES_VERSION`].
     pub(crate) values_version: u32,
     /// [`crate::Experiment::values_version`].
     pub(crate) experiment_version: u32,

@@ -6,7 +6,7 @@ use farsa_evo::{EvoError, Snapshot, Strategy};
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::{Setting, Settings};
-use crate::strategy::search::Search;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::settings::NORMALISE;
 
 /// A strategy as the command sees it: a name, a table of settings and a constructor.
@@ -14,13 +14,14 @@ use crate::strategy::settings::NORMALISE;
 /// The strategy itself is a [`farsa_evo::Strategy`] of three methods. With both traits the command runs it, writes its
 /// checkpoints, resumes it, and replays any individual of any generation.
 /// [`Experiment::strategy`](crate::Experiment::strategy) names the default of an experiment. `--strategy NAME` selects
-/// another of [`strategies`](crate::strategies) or of [`Laboratory::with_strategy`](crate::Laboratory::with_strategy).
+/// another of [`strategies`](crate::strategy::strategies) or of [`Laboratory::with_strategy`](crate::Laboratory::with_strategy).
 ///
 /// ```
 /// use std::process::ExitCode;
 ///
 /// use farsa_evo::words::RandomSearch;
-/// use farsa_lab::{Error, Experiment, Laboratory, Search, Setting, StrategyDefinition, StrategyStart};
+/// use farsa_lab::{Error, Experiment, Laboratory, Setting};
+/// use farsa_lab::strategy::{AnyStrategy, StrategyDefinition, StrategyStart};
 ///
 /// /// A generation of guesses after the other.
 /// struct Guessing;
@@ -35,7 +36,7 @@ use crate::strategy::settings::NORMALISE;
 ///             Setting::whole("evolution.population", 50, 1..=1000).doc("Guesses of a generation."),
 ///         ]
 ///     }
-///     fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+///     fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
 ///         let population = start.settings.count("evolution.population")?;
 ///         start.words(|seed| RandomSearch::new(start.genes, population, seed))
 ///     }
@@ -63,7 +64,7 @@ pub trait StrategyDefinition: Sync {
     ///
     /// # Errors
     /// [`Error::setting`] for values that do not go together, [`Error::Other`] for a problem that it cannot search.
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error>;
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error>;
 
     /// Returns whether observations are normalized by those of all previous generations, if the experiment can
     /// ([`TaskInfo::observations`](crate::TaskInfo::observations)). By default the value of the setting
@@ -129,14 +130,14 @@ impl StrategyStart<'_> {
     ///
     /// # Errors
     /// [`Error::Usage`] with the text of [`EvoError`].
-    pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
+    pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            Search::from_words(search(self.seed).map_err(|error| refused(&error))?)
+            AnyStrategy::from_words(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            Search::from_words(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
+            AnyStrategy::from_words(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
         })
     }
 
@@ -144,14 +145,14 @@ impl StrategyStart<'_> {
     ///
     /// # Errors
     /// [`Error::Usage`] with the text of [`EvoError`].
-    pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
+    pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy<f64> + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            Search::from_reals(search(self.seed).map_err(|error| refused(&error))?)
+            AnyStrategy::from_reals(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            Search::from_reals(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
+            AnyStrategy::from_reals(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
         })
     }
 }

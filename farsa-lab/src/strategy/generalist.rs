@@ -5,8 +5,8 @@ use farsa_evo::coevolution::{GeneralistCoevolution, GeneralistConfig};
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition as _};
-use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 use crate::strategy::simple::SimpleStrategy;
 use crate::strategy::truncation::{RATE, Truncation};
@@ -75,7 +75,7 @@ pub(super) static GENERALIST: SimpleStrategy = SimpleStrategy {
             EvoError::OutOfRange { field: "the number of opponents", .. } => Error::setting(OPPONENTS, error),
             _ => Error::setting(POPULATION, error),
         };
-        Ok(Search::from_words(GeneralistCoevolution::new(config, start.seed).map_err(refused)?))
+        Ok(AnyStrategy::from_words(GeneralistCoevolution::new(config, start.seed).map_err(refused)?))
     },
     diagnostics: Some(Diagnostics {
         file: "strategy",

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use farsa_evo::{ObservationStatistics, Population, Record};
 
 use crate::error::Error;
-use crate::strategy::search::{Genome, Genomes, Search};
+use crate::strategy::any_strategy::{AnyStrategy, Genome, Genomes};
 
 /// Makes the strategy of a run, at its first generation.
-pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Search, Error> + 'h>;
+pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<AnyStrategy, Error> + 'h>;
 
 /// The finished generations of a run, and their file.
 pub(crate) struct History<'h> {
@@ -156,7 +156,7 @@ impl<'h> History<'h> {
     ///
     /// # Errors
     /// As [`visit`](Self::visit).
-    pub(crate) fn met(
+    pub(crate) fn opponents_of(
         &self,
         generation: u32,
         individual: usize,
@@ -168,7 +168,7 @@ impl<'h> History<'h> {
             return Ok(None);
         }
         search.rebuild(record, generation).map_err(|error| Error::damaged(&self.path, error))?;
-        Ok(trials.map(|trial| search.met(individual, trial)).collect())
+        Ok(trials.map(|trial| search.opponents_of(individual, trial)).collect())
     }
 
     /// Builds the error about a generation or individual that does not exist.

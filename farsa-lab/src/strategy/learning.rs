@@ -6,12 +6,12 @@ use crate::error::Error;
 use crate::experiment::evaluator::{Evaluator, Iteration};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::Setting;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition, StrategyStart};
-use crate::strategy::search::Search;
 use crate::strategy::settings::GENERATIONS;
 
 /// Nothing is selected: a generation is one individual, which is trained by an iteration after it was evaluated,
-/// [`Learner::iterate`](crate::Learner::iterate).
+/// [`Learner::iterate`](crate::advanced::Learner::iterate).
 ///
 /// The log of such a run repeats one fitness three times. The errors are in `learning.csv`.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,7 @@ impl StrategyDefinition for Learning {
         )]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
         if start.populations != 1 {
             return Err(Error::Other(format!("{} populations that learn", start.populations)));
         }
@@ -45,7 +45,7 @@ impl StrategyDefinition for Learning {
         let genotype = Genotype::new(&evaluator.info().parameters, start.gene_bits);
         let population = individual(&genotype, &learned).map_err(|error| Error::Other(error.to_string()))?;
         let latest = None;
-        Ok(Search::from_words(Trainee {
+        Ok(AnyStrategy::from_words(Trainee {
             evaluator,
             genotype,
             seed: start.seed,
@@ -214,7 +214,7 @@ mod tests {
             evaluator: &evaluator,
         };
         match Learning.start(&start).unwrap() {
-            Search::Words(strategy) => strategy,
+            AnyStrategy::Words(strategy) => strategy,
             other => panic!("{other:?}"),
         }
     }

@@ -1,5 +1,7 @@
 //! Strategies as the command sees them, and the reconstruction of generations from their record.
 
+/// A strategy over integer or real genes.
+pub(crate) mod any_strategy;
 /// The interface between a strategy and the command.
 pub(crate) mod definition;
 /// Competitive coevolution of two populations with generalist selection.
@@ -20,8 +22,6 @@ pub(crate) mod opponents;
 mod random;
 /// Strategies over real genes.
 mod reals;
-/// A strategy over integer or real genes.
-pub(crate) mod search;
 /// Settings that strategies share, and an experiment's table with those of its strategy.
 pub(crate) mod settings;
 /// A strategy of a name, a line, a table and a function.
@@ -29,10 +29,10 @@ mod simple;
 /// The truncation algorithm, in one population or several.
 pub(crate) mod truncation;
 
+pub use any_strategy::AnyStrategy;
 pub use definition::{Diagnostics, DiagnosticsChart, StrategyDefinition, StrategyStart};
 pub use known::strategies;
 pub use learning::Learning;
 pub use one_plus_one::OnePlusOne;
-pub use search::Search;
 pub use simple::SimpleStrategy;
 pub use truncation::Truncation;

@@ -5,8 +5,8 @@ use farsa_evo::words::OnePlusOneConfig;
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
-use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, mutation};
 
 const FIRST_RATE: &str = "evolution.first_rate";
@@ -48,13 +48,13 @@ impl StrategyDefinition for OnePlusOne {
         ]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
         if start.populations != 1 {
             return Err(Error::Other(format!("one parent and one mutant of {} populations", start.populations)));
         }
         let config = config(start.settings, start.genes, start.gene_bits)?;
         let search = farsa_evo::words::OnePlusOne::new(config, start.seed);
-        Ok(Search::from_words(search.map_err(|error| Error::Other(error.to_string()))?))
+        Ok(AnyStrategy::from_words(search.map_err(|error| Error::Other(error.to_string()))?))
     }
 }
 

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
+use crate::strategy::any_strategy::{AnyStrategy, Genome};
 use crate::strategy::history::History;
-use crate::strategy::search::{Genome, Search};
 
 /// An individual of another population.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub(crate) enum Opponent {
 
 /// A generation of several populations and its trials.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
+pub(crate) struct Pairing {
     pub(crate) generation: u32,
     pub(crate) populations: usize,
     /// Individuals of each population.
@@ -27,7 +27,7 @@ pub(crate) struct Meeting {
     pub(crate) trials: usize,
 }
 
-impl Meeting {
+impl Pairing {
     /// Returns the generation whose champions are the opponents in a trial. In the first half of the trials, trial t
     /// uses generation g - 1 - t. In the other half the trials use the middles of equal parts of all earlier
     /// generations.
@@ -60,17 +60,17 @@ impl Meeting {
 }
 
 /// The genomes that an individual met in each of some trials, rebuilt.
-pub(crate) fn met(
+pub(crate) fn opponents_of(
     history: &History<'_>,
     generation: u32,
     individual: usize,
     wanted: Range<u32>,
     trials: usize,
 ) -> Result<Vec<Vec<Genome>>, Error> {
-    if let Some(met) = history.met(generation, individual, wanted.clone())? {
+    if let Some(met) = history.opponents_of(generation, individual, wanted.clone())? {
         return Ok(met);
     }
-    let meeting = Meeting { generation, populations: history.populations(), size: history.size(), trials };
+    let meeting = Pairing { generation, populations: history.populations(), size: history.size(), trials };
     let mut places = Vec::new();
     for trial in wanted {
         for opponent in meeting.opponents(individual, trial) {
@@ -88,11 +88,11 @@ pub(crate) fn met(
 
 /// Returns the parameters of the opponents that a strategy chose, trial after trial, individual after individual.
 /// Returns none if it chooses none, or for genomes of another experiment.
-pub(crate) fn chosen(search: &Search, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
+pub(crate) fn chosen(search: &AnyStrategy, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
     let mut all = Vec::new();
     for trial in 0..u32::try_from(trials).ok()? {
         for individual in 0..search.individuals() {
-            for genome in search.met(individual, trial)? {
+            for genome in search.opponents_of(individual, trial)? {
                 all.push(genome.decode(genotype)?);
             }
         }
@@ -102,12 +102,12 @@ pub(crate) fn chosen(search: &Search, genotype: &Genotype, trials: usize) -> Opt
 
 /// The champions of every generation. Empty for a single population.
 #[derive(Debug, Default)]
-pub(crate) struct Hall {
+pub(crate) struct HallOfFame {
     /// For every generation the parameters of each population's champion.
     champions: Vec<Vec<Vec<f32>>>,
 }
 
-impl Hall {
+impl HallOfFame {
     /// The champions of all finished generations.
     pub(crate) fn before(history: &History<'_>, genotype: &Genotype) -> Result<Self, Error> {
         let populations = history.populations();
@@ -144,7 +144,7 @@ impl Hall {
 
     /// Returns the parameters of all opponents, trial after trial, individual after individual. Returns none if an
     /// opponent is missing.
-    pub(crate) fn opponents<'g>(&'g self, meeting: Meeting, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
+    pub(crate) fn opponents<'g>(&'g self, meeting: Pairing, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
         let mut all = Vec::new();
         for trial in 0..u32::try_from(meeting.trials).ok()? {
             for individual in 0..peers.len() {
@@ -172,20 +172,20 @@ mod tests {
 
     #[test]
     fn earlier_champions_come_first_then_peers() {
-        let meeting = Meeting { generation: 2, populations: 3, size: 4, trials: 8 };
+        let meeting = Pairing { generation: 2, populations: 3, size: 4, trials: 8 };
         let met = |individual, trial| meeting.opponents(individual, trial).collect::<Vec<_>>();
         let champion = |population, generation| Opponent::Champion { population, generation };
         assert_eq!(met(0, 0), [champion(1, 1), champion(2, 1)]);
         assert_eq!(met(7, 1), [champion(0, 0), champion(2, 0)]);
         assert_eq!(met(8, 2), [Opponent::Peer(2), Opponent::Peer(6)]);
         assert_eq!(met(3, 5), [Opponent::Peer(5), Opponent::Peer(9)]);
-        assert_eq!(Meeting { populations: 1, ..meeting }.opponents(3, 0).count(), 0);
+        assert_eq!(Pairing { populations: 1, ..meeting }.opponents(3, 0).count(), 0);
     }
 
     #[test]
     fn half_of_the_champions_are_the_latest_and_half_of_all_times() {
         let earlier = |generation, trials| {
-            let meeting = Meeting { generation, populations: 2, size: 4, trials };
+            let meeting = Pairing { generation, populations: 2, size: 4, trials };
             (0..trials as u32).map(|trial| meeting.earlier(trial)).collect::<Vec<_>>()
         };
         assert_eq!(earlier(0, 6), [None; 6]);
@@ -204,16 +204,16 @@ mod tests {
         let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
         let mut all = Populations::truncation(&[config; 3], 4).unwrap();
         let mut record = Record::new(&mut all).unwrap();
-        let mut hall = Hall::default();
+        let mut hall = HallOfFame::default();
         let history = |record: &Record| {
-            let fresh = move || Ok(Search::from_words(Populations::truncation(&[config; 3], 4).unwrap()));
+            let fresh = move || Ok(AnyStrategy::from_words(Populations::truncation(&[config; 3], 4).unwrap()));
             History::new("record".into(), record.clone(), Box::new(fresh))
         };
         for generation in 0..7 {
-            let meeting = Meeting { generation, populations: 3, size: 6, trials: TRIALS };
+            let meeting = Pairing { generation, populations: 3, size: 6, trials: TRIALS };
             let peers = genotype.decode_all(all.ask()).unwrap();
             let opponents = hall.opponents(meeting, &peers).unwrap();
-            let resumed = Hall::before(&history(&record), &genotype).unwrap();
+            let resumed = HallOfFame::before(&history(&record), &genotype).unwrap();
             assert_eq!(resumed.opponents(meeting, &peers).unwrap(), opponents);
             assert_eq!(opponents.len(), TRIALS * 18 * 2);
             let opponents: Vec<Vec<f32>> = opponents.into_iter().map(<[f32]>::to_vec).collect();
@@ -224,7 +224,7 @@ mod tests {
             hall.add(best);
             let history = history(&record);
             for individual in 0..18 {
-                let genes = met(&history, generation, individual, 0..TRIALS as u32, TRIALS).unwrap();
+                let genes = opponents_of(&history, generation, individual, 0..TRIALS as u32, TRIALS).unwrap();
                 for (trial, genes) in genes.iter().enumerate() {
                     let first = 2 * (18 * trial + individual);
                     let met: Vec<Vec<f32>> = genes.iter().map(|genes| genes.decode(&genotype).unwrap()).collect();

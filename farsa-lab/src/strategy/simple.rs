@@ -2,14 +2,15 @@
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart};
-use crate::strategy::search::Search;
 
 /// A [`StrategyDefinition`] of a name, a line, a table and a function.
 ///
 /// ```
 /// use farsa_evo::gradient::{Snes, SnesConfig};
-/// use farsa_lab::{Setting, SimpleStrategy};
+/// use farsa_lab::Setting;
+/// use farsa_lab::strategy::SimpleStrategy;
 ///
 /// static NARROW: SimpleStrategy = SimpleStrategy {
 ///     name: "narrow-snes",
@@ -28,7 +29,7 @@ pub struct SimpleStrategy {
     /// Its settings with their defaults.
     pub settings: fn() -> Vec<Setting>,
     /// Makes the strategy, at its first generation.
-    pub start: fn(&StrategyStart<'_>) -> Result<Search, Error>,
+    pub start: fn(&StrategyStart<'_>) -> Result<AnyStrategy, Error>,
     /// Form of its [`diagnostics`](farsa_evo::Strategy::diagnostics) in files and pictures, if there are any.
     pub diagnostics: Option<Diagnostics>,
 }
@@ -46,7 +47,7 @@ impl StrategyDefinition for SimpleStrategy {
         (self.settings)()
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
         (self.start)(start)
     }
 

@@ -6,8 +6,8 @@ use farsa_evo::words::{GaConfig, TruncationGa};
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
-use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 
 const PARENTS: &str = "evolution.parents";
@@ -45,13 +45,13 @@ impl StrategyDefinition for Truncation {
         ]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
         let config = config(start.settings, start.genes, start.gene_bits)?;
         let refused = |error: EvoError| Error::Other(error.to_string());
         Ok(if start.populations == 1 {
-            Search::from_words(TruncationGa::new(config, start.seed).map_err(refused)?)
+            AnyStrategy::from_words(TruncationGa::new(config, start.seed).map_err(refused)?)
         } else {
-            Search::from_words(Populations::truncation(&vec![config; start.populations], start.seed).map_err(refused)?)
+            AnyStrategy::from_words(Populations::truncation(&vec![config; start.populations], start.seed).map_err(refused)?)
         })
     }
 }

@@ -145,9 +145,9 @@ fn folder(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::{Setting, Settings};
+    use crate::run::experiment::Experiment;
 
     struct Toy;
 

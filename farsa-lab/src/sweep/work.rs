@@ -29,7 +29,7 @@ pub(crate) struct Sweep<'s, 'e> {
 
 /// The selected runs, counted from 0. All runs are selected by default.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Which {
+pub(crate) struct Selection {
     pub(crate) point: Option<usize>,
     pub(crate) replication: Option<usize>,
 }
@@ -71,7 +71,7 @@ impl<'s, 'e> Sweep<'s, 'e> {
     ///
     /// # Errors
     /// [`Error::Usage`] for a number above the last.
-    fn wanted(&self, which: Which) -> Result<Vec<(usize, usize)>, Error> {
+    fn wanted(&self, which: Selection) -> Result<Vec<(usize, usize)>, Error> {
         let range = |option: &str, only: Option<usize>, count: usize| match only {
             None => Ok(0..count),
             Some(number) if number < count => Ok(number..number + 1),
@@ -122,7 +122,7 @@ impl<'s, 'e> Sweep<'s, 'e> {
     /// [`Queue::work`].
     pub(crate) fn work(
         &self,
-        which: Which,
+        which: Selection,
         ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>,
         pool: &dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
         stop: impl FnOnce() -> &'static AtomicBool,
@@ -142,7 +142,11 @@ impl<'s, 'e> Sweep<'s, 'e> {
     ///
     /// # Errors
     /// The errors of [`work`](Self::work) before its first evaluation.
-    pub(crate) fn list(&self, which: Which, ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<Found, Error> {
+    pub(crate) fn list(
+        &self,
+        which: Selection,
+        ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>,
+    ) -> Result<Found, Error> {
         let runs = self.wanted(which)?;
         self.check(&runs, ready)?;
         let states = runs.iter().map(|run| {

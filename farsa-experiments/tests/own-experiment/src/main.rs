@@ -1,8 +1,10 @@
 //! A custom experiment: a cart learns to stop at the middle of its track.
 
 use farsa_body::Recorder;
-use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};
-use farsa_lab::{Schema, Task, TaskInfo, cli, record_row};
+use farsa_lab::advanced::Description;
+use farsa_lab::advanced::{Schema, record_row};
+use farsa_lab::{Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};
+use farsa_lab::{Task, TaskInfo, cli};
 use farsa_num::{Domain, Stream};
 
 fn settings(condition: &str) -> Vec<Setting> {

@@ -6,9 +6,9 @@ use clap::{Args, ValueHint, value_parser};
 
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs};
 use crate::error::Error;
-use crate::evaluation::evaluate::GivenGenes;
-use crate::experiment::definition::Experiment;
+use crate::evaluation::evaluate::GeneArguments;
 use crate::experiment::settings::Value;
+use crate::run::experiment::Experiment;
 use crate::run::plan::{MAX_SEED, Plan};
 
 /// The setting of `--ir-tables`.
@@ -91,8 +91,8 @@ pub(crate) struct EvaluateArgs {
 }
 
 impl EvaluateArgs {
-    pub(crate) fn genes(&self) -> GivenGenes {
-        GivenGenes { lists: self.genes.clone(), files: self.genes_file.clone(), numbers: self.genotype.clone() }
+    pub(crate) fn genes(&self) -> GeneArguments {
+        GeneArguments { lists: self.genes.clone(), files: self.genes_file.clone(), numbers: self.genotype.clone() }
     }
 }
 

@@ -6,10 +6,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, value_parser};
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
-use crate::experiment::lanes::{SIMD, Wanted};
+use crate::experiment::lanes::{LaneRequest, SIMD};
 use crate::experiment::settings::Value;
 use crate::run::config_file;
+use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
@@ -83,7 +83,7 @@ impl WorkerArgs {
         self.threads.count()
     }
 
-    pub(crate) fn lanes(&self) -> Wanted {
+    pub(crate) fn lanes(&self) -> LaneRequest {
         self.lanes.wanted()
     }
 }
@@ -130,7 +130,7 @@ fn simd() -> impl clap::builder::TypedValueParser<Value = Simd> {
 }
 
 impl LanesArgs {
-    fn wanted(&self) -> Wanted {
-        Wanted { count: self.lanes.parse().ok(), simd: self.simd.0 }
+    fn wanted(&self) -> LaneRequest {
+        LaneRequest { count: self.lanes.parse().ok(), simd: self.simd.0 }
     }
 }

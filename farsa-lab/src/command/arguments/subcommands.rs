@@ -14,9 +14,9 @@ use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
 use crate::error::Error;
-use crate::evaluation::protocols::chosen::Choice;
-use crate::evaluation::protocols::sheet::Wish;
-use crate::evaluation::replay::{Which, WhichTrial};
+use crate::evaluation::protocols::selected_cases::CaseSelection;
+use crate::evaluation::protocols::sheet::DrawRequest;
+use crate::evaluation::replay::{Selection, TrialSelector};
 use crate::report::outcome::Success;
 use crate::run::plan::MAX_SEED;
 
@@ -223,9 +223,13 @@ pub(crate) struct TestArgs {
 
 impl TestArgs {
     /// Returns the individual of the options, or `None` for the champion.
-    pub(crate) fn which(&self) -> Option<Which> {
+    pub(crate) fn which(&self) -> Option<Selection> {
         let Self { generation, individual, .. } = *self;
-        (generation.is_some() || individual.is_some()).then(|| Which { generation, individual, ..Which::default() })
+        (generation.is_some() || individual.is_some()).then(|| Selection {
+            generation,
+            individual,
+            ..Selection::default()
+        })
     }
 }
 
@@ -240,21 +244,21 @@ pub(crate) struct WhichArgs {
     individual: Option<u32>,
     /// The trial, from 0, or `best`, the one of highest fitness [default: all]
     #[arg(long, value_name = "N", value_parser = which_trial)]
-    trial: Option<WhichTrial>,
+    trial: Option<TrialSelector>,
 }
 
 impl WhichArgs {
-    pub(crate) fn which(&self) -> Which {
+    pub(crate) fn which(&self) -> Selection {
         let trial = self.trial.unwrap_or_default();
-        Which { generation: self.generation, individual: self.individual, trial }
+        Selection { generation: self.generation, individual: self.individual, trial }
     }
 }
 
 /// Parses the number of a trial or `best`.
-fn which_trial(text: &str) -> Result<WhichTrial, String> {
+fn which_trial(text: &str) -> Result<TrialSelector, String> {
     match text {
-        "best" => Ok(WhichTrial::Best),
-        number => number.parse().map(WhichTrial::Number).map_err(|_| "neither a number from 0 nor `best`".into()),
+        "best" => Ok(TrialSelector::Best),
+        number => number.parse().map(TrialSelector::Number).map_err(|_| "neither a number from 0 nor `best`".into()),
     }
 }
 
@@ -294,7 +298,7 @@ impl ReplayArgs {
     ///
     /// # Errors
     /// [`Error::Usage`] for a trial without a number.
-    pub(crate) fn choice(&self) -> Result<Option<Choice<'_>>, Error> {
+    pub(crate) fn choice(&self) -> Result<Option<CaseSelection<'_>>, Error> {
         self.protocol.as_deref().map(|protocol| self.cases.choice(protocol, self.which.trial)).transpose()
     }
 }
@@ -311,15 +315,15 @@ pub(crate) struct CaseArgs {
 }
 
 impl CaseArgs {
-    fn choice<'c>(&'c self, protocol: &'c str, trial: Option<WhichTrial>) -> Result<Choice<'c>, Error> {
+    fn choice<'c>(&'c self, protocol: &'c str, trial: Option<TrialSelector>) -> Result<CaseSelection<'c>, Error> {
         let trial = match trial {
-            None | Some(WhichTrial::All) => 0,
-            Some(WhichTrial::Number(trial)) => trial,
-            Some(WhichTrial::Best) => {
+            None | Some(TrialSelector::All) => 0,
+            Some(TrialSelector::Number(trial)) => trial,
+            Some(TrialSelector::Best) => {
                 return Err(Error::Usage("--trial best: a case of a protocol needs the number of a trial".into()));
             }
         };
-        Ok(Choice { protocol, cases: &self.cases, trial, seed: self.seed })
+        Ok(CaseSelection { protocol, cases: &self.cases, trial, seed: self.seed })
     }
 }
 
@@ -372,7 +376,7 @@ pub(crate) struct DrawArgs {
     individual: Option<u32>,
     /// The trial, from 0, or `best`, the one of highest fitness [default: 0]
     #[arg(long, value_name = "N", value_parser = which_trial)]
-    trial: Option<WhichTrial>,
+    trial: Option<TrialSelector>,
     /// The time in seconds [default: the end]
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
@@ -398,19 +402,19 @@ pub(crate) struct DrawArgs {
 }
 
 impl DrawArgs {
-    pub(crate) fn which(&self) -> Which {
-        let trial = self.trial.unwrap_or(WhichTrial::Number(0));
-        Which { generation: self.generation, individual: self.individual, trial }
+    pub(crate) fn which(&self) -> Selection {
+        let trial = self.trial.unwrap_or(TrialSelector::Number(0));
+        Selection { generation: self.generation, individual: self.individual, trial }
     }
 
     /// Returns the request for a sheet of a protocol, if any.
     ///
     /// # Errors
     /// [`Error::Usage`] for a trial without a number.
-    pub(crate) fn sheet(&self) -> Result<Option<Wish<'_>>, Error> {
+    pub(crate) fn sheet(&self) -> Result<Option<DrawRequest<'_>>, Error> {
         let Some(protocol) = self.protocol.as_deref() else { return Ok(None) };
         let choice = self.cases.choice(protocol, self.trial)?;
-        Ok(Some(Wish { choice, camera: self.camera.as_deref(), size: self.size }))
+        Ok(Some(DrawRequest { choice, camera: self.camera.as_deref(), size: self.size }))
     }
 }
 

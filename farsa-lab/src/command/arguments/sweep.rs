@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueHint, value_parser};
 
 use crate::command::arguments::shared::WorkerArgs;
-use crate::sweep::work::Which;
+use crate::sweep::work::Selection;
 
 #[derive(Args)]
 pub(crate) struct SweepArgs {
@@ -32,9 +32,9 @@ pub(crate) struct SweepArgs {
 }
 
 impl SweepArgs {
-    pub(crate) fn which(&self) -> Which {
+    pub(crate) fn which(&self) -> Selection {
         let from_0 = |number: Option<u32>| number.map(|number| number as usize - 1);
-        Which { point: from_0(self.point), replication: from_0(self.replication) }
+        Selection { point: from_0(self.point), replication: from_0(self.replication) }
     }
 
     pub(crate) fn root(&self) -> PathBuf {

@@ -2,8 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::evaluation::lines::request::Wanted;
-use crate::experiment::behaviour::Behaviour;
+use crate::evaluation::lines::request::RequestSchema;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::outcome::{Note, Outcome};
 use crate::experiment::parameter::Parameter;
@@ -47,8 +47,13 @@ impl From<&Parameter> for Ranged {
 }
 
 impl<'d> Introduction<'d> {
-    pub(super) fn new(condition: &'d str, wanted: &'d Wanted, evaluator: &dyn Evaluator, longest_line: usize) -> Self {
-        let behaviour = evaluator.behaviour();
+    pub(super) fn new(
+        condition: &'d str,
+        wanted: &'d RequestSchema,
+        evaluator: &dyn Evaluator,
+        longest_line: usize,
+    ) -> Self {
+        let behaviour = evaluator.behavior();
         Self {
             experiment: wanted.experiment,
             condition,
@@ -57,8 +62,8 @@ impl<'d> Introduction<'d> {
             population_size: (wanted.size > 0).then_some(wanted.size),
             trials: evaluator.info().trials,
             terms: evaluator.info().terms,
-            objectives: behaviour.map(Behaviour::objectives).unwrap_or_default(),
-            behaviour: behaviour.map(Behaviour::descriptors).unwrap_or_default().iter().map(Ranged::from).collect(),
+            objectives: behaviour.map(Behavior::objectives).unwrap_or_default(),
+            behaviour: behaviour.map(Behavior::descriptors).unwrap_or_default().iter().map(Ranged::from).collect(),
             longest_line,
             parameters: wanted.parameters.iter().map(Ranged::from).collect(),
         }
@@ -103,7 +108,7 @@ pub(super) struct Answer<'a> {
     pub(super) id: Option<serde_json::Value>,
     /// Fitness of every individual. Null for a failed one.
     pub(super) fitness: ByPopulation<'a, Vec<Option<f64>>>,
-    pub(super) individuals: ByPopulation<'a, Vec<Judged>>,
+    pub(super) individuals: ByPopulation<'a, Vec<IndividualResult>>,
 }
 
 /// A refused line with the reason.
@@ -115,7 +120,7 @@ pub(super) struct Refusal<'a> {
 
 /// The result of an individual.
 #[derive(Serialize)]
-pub(super) struct Judged {
+pub(super) struct IndividualResult {
     pub(super) fitness: Option<f64>,
     #[serde(skip_serializing_if = "Named::is_empty")]
     objectives: Named<String, f64>,
@@ -129,7 +134,7 @@ pub(super) struct Judged {
     trials: Vec<Trial>,
 }
 
-impl Judged {
+impl IndividualResult {
     /// Builds the result from a row of fitness, objectives and measures, and from the trials.
     pub(super) fn new(found: Result<Individual, FailedTrial>, evaluator: &dyn Evaluator) -> Self {
         let (objectives, behaviour) = (Named(Vec::new()), Named(Vec::new()));
@@ -140,9 +145,9 @@ impl Judged {
                 return Self { fitness: None, objectives, behaviour, failed, failed_trial, trials };
             }
         };
-        let described = evaluator.behaviour();
-        let objectives = described.map(Behaviour::objectives).unwrap_or_default();
-        let behaviour = described.map(Behaviour::descriptors).unwrap_or_default().into_iter().map(|one| one.name);
+        let described = evaluator.behavior();
+        let objectives = described.map(Behavior::objectives).unwrap_or_default();
+        let behaviour = described.map(Behavior::descriptors).unwrap_or_default().into_iter().map(|one| one.name);
         let mut row = row.into_iter();
         let fitness = row.next();
         let objectives = Named(objectives.into_iter().zip(row.by_ref()).collect());

@@ -5,12 +5,12 @@ mod answer;
 /// Input lines of bounded length.
 mod bounded_line;
 /// Vectors of numbers in a line.
-mod given;
+mod parameter_vectors;
 /// Requests: the content of an input line.
 mod request;
 /// The loop over lines.
 mod serve;
 
 #[cfg(feature = "fuzzing")]
-pub(crate) use request::{Request, Wanted};
+pub(crate) use request::{Request, RequestSchema};
 pub(crate) use serve::serve;

@@ -5,7 +5,7 @@ use serde_json::value::RawValue;
 
 use crate::error::Error;
 use crate::escaped::{OneLine, Quoted, shortened};
-use crate::evaluation::lines::given::{Given, Vectors};
+use crate::evaluation::lines::parameter_vectors::{ParameterVectors, Vectors};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::MAX_SEED;
@@ -18,7 +18,7 @@ const LARGEST_INDIVIDUAL: u32 = 1_000_000_000;
 const LONGEST_ID: usize = 4096;
 
 /// The shape of valid requests.
-pub(crate) struct Wanted {
+pub(crate) struct RequestSchema {
     pub(crate) experiment: &'static str,
     /// The names of the populations, in their order.
     pub(crate) populations: Vec<String>,
@@ -39,8 +39,8 @@ struct Line<'l> {
     seed: Option<u64>,
     generation: Option<u32>,
     individual: Option<u32>,
-    parameters: Option<Given>,
-    genes: Option<Given>,
+    parameters: Option<ParameterVectors>,
+    genes: Option<ParameterVectors>,
     evaluate: Option<Vec<String>>,
 }
 
@@ -64,7 +64,7 @@ impl Request {
     ///
     /// # Errors
     /// Returns the fault as text.
-    pub(crate) fn from_line(bytes: &[u8], wanted: &Wanted) -> Result<Self, String> {
+    pub(crate) fn from_line(bytes: &[u8], wanted: &RequestSchema) -> Result<Self, String> {
         let text = std::str::from_utf8(bytes).map_err(|error| format!("byte {}: is no UTF-8", error.valid_up_to()))?;
         if text.trim().is_empty() {
             return Err("is empty".into());
@@ -124,7 +124,7 @@ fn unreadable(text: &str, error: &serde_json::Error) -> String {
     format!("column {}: {why}{hint}", error.column())
 }
 
-impl Wanted {
+impl RequestSchema {
     /// Names of the evaluated populations.
     fn evaluated(&self, named: Option<&[String]>) -> Result<Vec<bool>, String> {
         let Some(named) = named else { return Ok(vec![true; self.populations.len()]) };
@@ -142,15 +142,15 @@ impl Wanted {
     }
 
     /// The vectors of each population, in their order.
-    fn divided(&self, what: &str, given: Given) -> Result<Vec<Vectors>, String> {
+    fn divided(&self, what: &str, given: ParameterVectors) -> Result<Vec<Vectors>, String> {
         let names = &self.populations;
         match given {
-            Given::Unnamed(vectors) if names.len() == 1 => Ok(vec![vectors]),
-            Given::Unnamed(_) => {
+            ParameterVectors::Unnamed(vectors) if names.len() == 1 => Ok(vec![vectors]),
+            ParameterVectors::Unnamed(_) => {
                 let example = names.iter().map(|name| format!("{name:?}: [..]")).collect::<Vec<_>>().join(", ");
                 Err(format!("{what}: {} has {} populations: {{{example}}}", self.experiment, names.len()))
             }
-            Given::Named(mut all) => {
+            ParameterVectors::Named(mut all) => {
                 if let Some((other, _)) = all.iter().find(|(name, _)| !names.contains(name)) {
                     return Err(self.unknown(what, other));
                 }
@@ -213,14 +213,14 @@ impl Wanted {
 mod tests {
     use super::*;
 
-    fn wanted(populations: &[&str], size: usize) -> Wanted {
+    fn wanted(populations: &[&str], size: usize) -> RequestSchema {
         let parameters = vec![Parameter::new("gain", [-5.0, 5.0]), Parameter::new("bias", [1.0, 0.0])];
         let genotype = Genotype::new(&parameters, 16);
         let populations = populations.iter().map(|&name| name.into()).collect();
-        Wanted { experiment: "toy", populations, parameters, genotype, size, seed: 4 }
+        RequestSchema { experiment: "toy", populations, parameters, genotype, size, seed: 4 }
     }
 
-    fn read(text: &str, wanted: &Wanted) -> Result<Request, String> {
+    fn read(text: &str, wanted: &RequestSchema) -> Result<Request, String> {
         Request::from_line(text.as_bytes(), wanted)
     }
 
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!((found.seed, found.generation, found.individual), (9, 3, 7));
         assert_eq!(found.id, Some(serde_json::json!({"a": [1]})));
         // 0.1 in single precision is a little more than 0.1.
-        let close = Wanted { parameters: vec![Parameter::new("x", [0.0, 0.1])], ..wanted(&["0"], 0) };
+        let close = RequestSchema { parameters: vec![Parameter::new("x", [0.0, 0.1])], ..wanted(&["0"], 0) };
         assert_eq!(
             read(&format!(r#"{{"parameters": [{:?}]}}"#, f64::from(0.1_f32)), &close).unwrap().parameters[0][0],
             [0.1]

@@ -7,9 +7,9 @@ use farsa_evo::ScoreShape;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::lines::answer::{Answer, ByPopulation, Introduction, Judged, Refusal};
+use crate::evaluation::lines::answer::{Answer, ByPopulation, IndividualResult, Introduction, Refusal};
 use crate::evaluation::lines::bounded_line::{BoundedLine, next_line};
-use crate::evaluation::lines::request::{Request, Wanted};
+use crate::evaluation::lines::request::{Request, RequestSchema};
 use crate::experiment::episode::EpisodeId;
 use crate::run::fitness::{Generation, Opponents, individuals};
 use crate::run::plan::Plan;
@@ -35,7 +35,7 @@ pub(crate) fn serve(
         return Err(Error::Usage(why.into()));
     }
     let populations = pool.info().populations.clone();
-    let wanted = Wanted {
+    let wanted = RequestSchema {
         experiment: plan.experiment.name(),
         size: if populations.len() > 1 { plan.size()? } else { 0 },
         populations,
@@ -76,14 +76,19 @@ fn write(output: &mut impl Write, value: &impl Serialize) -> Result<(), Error> {
 }
 
 /// Evaluates a request, one population after the other.
-fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'_>) -> Result<Answer<'w>, Error> {
+fn answer<'w>(
+    line: u64,
+    request: Request,
+    wanted: &'w RequestSchema,
+    pool: &mut Pool<'_>,
+) -> Result<Answer<'w>, Error> {
     let Request { id, seed, generation, individual, parameters, evaluated } = request;
-    let behaviour = pool.evaluator().behaviour();
+    let behaviour = pool.evaluator().behavior();
     let (objectives, descriptors) =
         behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
     let shape = ScoreShape::new(1 + objectives, descriptors);
     let trials = pool.info().trials;
-    let mut all: Vec<(&str, Vec<Judged>)> = Vec::new();
+    let mut all: Vec<(&str, Vec<IndividualResult>)> = Vec::new();
     for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {
         let met = opponents(&parameters, own, trials);
         let opponents = Opponents { parameters: &met, each: parameters.len() - 1, told_apart: None };
@@ -92,9 +97,9 @@ fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'
         let of = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
         let found = individuals(&mut pool.until(&AtomicBool::new(false)), of, shape, |_| {})?;
         let evaluator = pool.evaluator();
-        all.push((name, found.into_iter().map(|found| Judged::new(found, evaluator)).collect()));
+        all.push((name, found.into_iter().map(|found| IndividualResult::new(found, evaluator)).collect()));
     }
-    let fitness = |judged: &[Judged]| judged.iter().map(|one| one.fitness).collect::<Vec<_>>();
+    let fitness = |judged: &[IndividualResult]| judged.iter().map(|one| one.fitness).collect::<Vec<_>>();
     let fitness: Vec<_> = all.iter().map(|(name, judged)| (*name, fitness(judged))).collect();
     Ok(Answer {
         line,

@@ -1,13 +1,13 @@
 //! `farsa test --protocol`: the champion in every case of a table.
 
-/// A champion in selected cases, for `draw` and `replay`.
-pub(crate) mod chosen;
+/// Summaries of the trials of each case.
+pub(crate) mod case_summary;
 /// The files of a protocol's results in a run's directory.
 pub(crate) mod files;
-/// Summaries of the trials of each case.
-pub(crate) mod found;
 /// `farsa replay --protocol`: a trial of a case, step by step.
 pub(crate) mod replay;
+/// A champion in selected cases, for `draw` and `replay`.
+pub(crate) mod selected_cases;
 /// `farsa draw --protocol`: the end of a trial of each case, side by side.
 pub(crate) mod sheet;
 /// `protocols/NAME.states.csv`: neuron states of the first trials, step by step.

@@ -8,8 +8,8 @@ use farsa_view::Table;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::kept::Kept;
-use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
+use crate::evaluation::memory_budget::MemoryUse;
+use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
 use crate::evaluation::trials::{came_to, facts, fitness};
@@ -105,7 +105,7 @@ impl InWords for CasesSummary {
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
-    choice: Choice<'_>,
+    choice: CaseSelection<'_>,
     out: impl FnOnce() -> Result<W, Error>,
 ) -> Result<Replayed<CasesSummary>, Error> {
     let mut trials = CaseTrials::find(plan, directory, choice)?;
@@ -130,14 +130,14 @@ pub(crate) fn replay<W: Write>(
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
-    choice: Choice<'_>,
+    choice: CaseSelection<'_>,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
 ) -> Result<Replayed<CasesSummary>, Error> {
     let what = format!(", {}", choice.protocol);
     replayed::page((plan, directory), compare, &what, path, |page, plan, directory| {
         let mut trials = CaseTrials::find(plan, directory, choice)?;
-        let (mut outcomes, mut kept) = (Vec::new(), Kept::new());
+        let (mut outcomes, mut kept) = (Vec::new(), MemoryUse::new());
         for case in trials.cases.clone() {
             let mut recording = kept.recording(trials.schema());
             let outcome = trials.run(case, &mut recording)?;

@@ -7,8 +7,8 @@ use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::kept::Kept;
-use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
+use crate::evaluation::memory_budget::MemoryUse;
+use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::test::Subject;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::svg::{FONT, INK, MARGIN, OUTLINE, PAPER};
@@ -29,8 +29,8 @@ const GAP: u32 = 12;
 const TITLE_LETTER: u32 = 10;
 
 /// Which trials are drawn, and how.
-pub(crate) struct Wish<'w> {
-    pub(crate) choice: Choice<'w>,
+pub(crate) struct DrawRequest<'w> {
+    pub(crate) choice: CaseSelection<'w>,
     pub(crate) camera: Option<&'w str>,
     /// Size of each picture.
     pub(crate) size: Option<(u32, u32)>,
@@ -67,7 +67,12 @@ struct DrawnCase {
 /// # Errors
 /// As for [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Io`], [`Error::Usage`] for a file that is not an SVG,
 /// an invalid size, and trials without bodies.
-pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path: &Path) -> Result<Sheet, Error> {
+pub(crate) fn draw(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    wish: &DrawRequest<'_>,
+    path: &Path,
+) -> Result<Sheet, Error> {
     if path.extension().is_none_or(|end| !end.eq_ignore_ascii_case("svg")) {
         return Err(Error::Usage(format!("{}: the name of a sheet of pictures ends in .svg", path.display())));
     }
@@ -106,7 +111,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
 fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
     for number in trials.cases.clone() {
-        let mut kept = Kept::new();
+        let mut kept = MemoryUse::new();
         let mut recording = kept.recording(trials.schema());
         let outcome = trials.run(number, &mut recording)?;
         kept.add(&recording)?;

@@ -5,14 +5,14 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::protocols::case_summary::{self, CaseSummary};
 use crate::evaluation::protocols::files::{self, ProtocolRecord};
-use crate::evaluation::protocols::found::{self, FoundCase};
 use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
 use crate::evaluation::replay::parts;
-use crate::evaluation::test::{Asked, Subject, TRIALS, Trials, failure, run_trials, whose};
+use crate::evaluation::test::{Subject, TRIALS, TrialCondition, Trials, failure, run_trials, whose};
 use crate::experiment::intervention::Intervention;
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::protocol::{CaseId, Protocol};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
@@ -37,7 +37,7 @@ pub(crate) struct ProtocolRun {
     seed: u64,
     /// Trials per case.
     trials: usize,
-    cases: Vec<FoundCase>,
+    cases: Vec<CaseSummary>,
     /// That the champion may behave otherwise than in its run.
     warning: Option<String>,
     /// Why the first of the trials that failed did, if any did.
@@ -58,7 +58,7 @@ impl ProtocolRun {
         let mut text = String::new();
         let _ = writeln!(text, "{}: {}", protocol.name, protocol.summary);
         let _ = writeln!(text, "{whose}, {trials} trials a case, test seed {seed}\n");
-        text.push_str(&found::text(protocol, &self.cases));
+        text.push_str(&case_summary::text(protocol, &self.cases));
         if let Some(warning) = &self.warning {
             let _ = writeln!(text, "warning: {warning}");
         }
@@ -71,12 +71,12 @@ impl ProtocolRun {
 
 /// Options of a test.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Effort {
+pub(crate) struct TestOptions {
     /// Trials per case. By default those of the protocol.
     pub(crate) trials: Option<usize>,
     pub(crate) seed: u64,
     pub(crate) threads: usize,
-    pub(crate) lanes: Wanted,
+    pub(crate) lanes: LaneRequest,
     pub(crate) quiet: bool,
 }
 
@@ -88,7 +88,12 @@ pub(crate) struct Effort {
 /// # Errors
 /// As for [`Protocol::find`], [`Subject::read`] and [`States::record`], [`Error::Usage`] for more than 10^8 trials,
 /// [`Error::Io`].
-pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: Effort) -> Result<ProtocolRun, Error> {
+pub(crate) fn test(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    name: &str,
+    effort: TestOptions,
+) -> Result<ProtocolRun, Error> {
     let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
     let (number, protocol) = protocol(plan, &pool, name)?;
     let trials = trials_of(&protocol, effort)?;
@@ -120,14 +125,14 @@ pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: E
 /// one list of changes. Writes no file.
 ///
 /// # Errors
-/// As for [`Protocol::find`], [`Subject::read`], [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention),
+/// As for [`Protocol::find`], [`Subject::read`], [`parts`] and [`Anatomy::intervention`](crate::advanced::Anatomy::intervention),
 /// [`Error::Usage`] for several lists with a protocol, and more than 10^8 trials.
 pub(crate) fn lesions(
     plan: &Plan<'_>,
     directory: &Directory,
     name: Option<&str>,
     lists: &[String],
-    effort: Effort,
+    effort: TestOptions,
 ) -> Result<ProtocolRun, Error> {
     let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
     let anatomy = parts(pool.evaluator(), plan)?;
@@ -145,8 +150,8 @@ pub(crate) fn lesions(
         (None, changes) => {
             let names = std::iter::once("intact").chain(lists.iter().map(String::as_str));
             let protocol = Protocol::from_list("lesion", "with these parts of the controller changed", names);
-            let with = |change| Asked { case: None, intervention: Some(change) };
-            let asked = std::iter::once(Asked::default()).chain(changes.iter().map(with)).collect();
+            let with = |change| TrialCondition { case: None, intervention: Some(change) };
+            let asked = std::iter::once(TrialCondition::default()).chain(changes.iter().map(with)).collect();
             (protocol.with_trials(TRIALS as u32), asked)
         }
     };
@@ -162,12 +167,12 @@ fn protocol(plan: &Plan<'_>, pool: &Pool<'_>, name: &str) -> Result<(usize, Prot
 }
 
 /// All cases of a protocol of this number, with a change.
-fn cases(protocol: usize, intervention: Option<&Intervention>, count: usize) -> Vec<Asked<'_>> {
-    (0..count).map(|case| Asked { case: Some(CaseId { protocol, case }), intervention }).collect()
+fn cases(protocol: usize, intervention: Option<&Intervention>, count: usize) -> Vec<TrialCondition<'_>> {
+    (0..count).map(|case| TrialCondition { case: Some(CaseId { protocol, case }), intervention }).collect()
 }
 
 /// Trials of each case.
-fn trials_of(protocol: &Protocol, effort: Effort) -> Result<usize, Error> {
+fn trials_of(protocol: &Protocol, effort: TestOptions) -> Result<usize, Error> {
     let (trials, count) = (effort.trials.unwrap_or(protocol.trials as usize), protocol.cases.len());
     if trials.checked_mul(count).is_none_or(|all| all > MOST_TRIALS) {
         let why = format!("{trials} trials of each of {count} cases are more than {MOST_TRIALS} trials");
@@ -181,8 +186,8 @@ fn run(
     pool: &mut Pool<'_>,
     directory: &Directory,
     subject: &Subject,
-    (protocol, asked): (Protocol, Vec<Asked<'_>>),
-    effort: Effort,
+    (protocol, asked): (Protocol, Vec<TrialCondition<'_>>),
+    effort: TestOptions,
 ) -> Result<(ProtocolRun, ProtocolTable), Error> {
     let (trials, seed) = (trials_of(&protocol, effort)?, effort.seed);
     let progress = Progress::new(0, (trials * asked.len()) as u64, effort.quiet);
@@ -200,7 +205,7 @@ fn run(
         individuals: subject.individuals.clone(),
         seed,
         trials,
-        cases: FoundCase::all(&table, terms),
+        cases: CaseSummary::all(&table, terms),
         warning: subject.warning.clone(),
         failure: failure(&results, terms),
         protocol,

@@ -8,17 +8,17 @@ use farsa_view::Schema;
 
 use super::{Numbers, pool, rows, run, scratch};
 use crate::error::Error;
-use crate::evaluation::replay::{Replayable, Which, replay};
+use crate::evaluation::replay::{Replayable, Selection, replay};
 use crate::evaluation::test;
-use crate::experiment::behaviour::Behaviour;
-use crate::experiment::definition::Experiment;
+use crate::experiment::behavior::Behavior;
 use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings, Value};
 use crate::run::begin::create;
 use crate::run::config_file::ConfigFile;
+use crate::run::experiment::Experiment;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::record_file::history;
@@ -99,7 +99,7 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     // Any generation is replayed from its reported fitness, with the same fitness.
     let rows = rows(&whole);
     for generation in [0, 3, 6] {
-        let which = Which { generation: Some(generation), ..Which::default() };
+        let which = Selection { generation: Some(generation), ..Selection::default() };
         let replayed = replay(&again, &whole, which, None, || Ok(Vec::new())).unwrap();
         // The strategy one plus one stores means.
         if numbers.populations == 1 && name != "one-plus-one" {
@@ -119,12 +119,12 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let wanted: Vec<(u32, usize)> = wanted.collect();
     let genes: Vec<_> = champions.best.into_iter().map(|best| best.genes).collect();
     assert_eq!(history.genomes(&wanted).unwrap(), genes, "{name}");
-    let found = Replayable::find(&again, &whole, Which::default()).unwrap();
+    let found = Replayable::find(&again, &whole, Selection::default()).unwrap();
     assert_eq!((found.generation, found.individual as usize), wanted[0], "{name}");
     let of_all = Replayable::champions(&again, &whole).unwrap();
     let of_all: Vec<_> = of_all.iter().map(|found| (found.generation, found.individual as usize)).collect();
     assert_eq!(of_all, wanted, "{name}");
-    test::test(&all, &whole, None, 6, 1, 2, Wanted::ONE, true).unwrap();
+    test::test(&all, &whole, None, 6, 1, 2, LaneRequest::ONE, true).unwrap();
     drop(pool(&all, 1));
     fs::remove_dir_all(root).unwrap();
 }
@@ -211,7 +211,7 @@ fn an_archive_names_individuals_that_the_record_finds() {
 #[derive(Clone, Copy)]
 struct Described(&'static [f64]);
 
-impl Behaviour for Described {
+impl Behavior for Described {
     fn objectives(&self) -> Vec<String> {
         vec!["speed".into()]
     }
@@ -228,7 +228,7 @@ impl Task for Described {
         TaskInfo::new(vec![Parameter::new("gene", [0.0, 1.0])], Schema::from_scalars(["gene"]))
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         if self.0.is_empty() { None } else { Some(self) }
     }
 }

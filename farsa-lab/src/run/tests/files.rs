@@ -3,9 +3,9 @@
 use std::fs;
 use std::sync::atomic::AtomicBool;
 
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Selection, replay};
 use crate::evaluation::test;
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::evolve::continue_run;
@@ -27,8 +27,8 @@ fn a_run_knows_the_files_that_it_was_made_with() {
         let (five, directory) = (plan(5), Directory::open(&root.join("run")).unwrap());
         let errors = [
             continue_run(&five, &directory, pool(&five, 1), &AtomicBool::new(false), "farsa", true).unwrap_err(),
-            replay(&five, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err(),
-            test::test(&five, &directory, None, 1, 1, 1, Wanted::ONE, true).unwrap_err(),
+            replay(&five, &directory, Selection::default(), None, || Ok(Vec::new())).unwrap_err(),
+            test::test(&five, &directory, None, 1, 1, 1, LaneRequest::ONE, true).unwrap_err(),
         ];
         for error in errors.map(|error| error.to_string()) {
             assert!(error.contains(words) && error.contains("numbers \"one\".txt"), "{error}");
@@ -79,12 +79,12 @@ fn a_run_of_an_earlier_version_is_refused_by_name() {
     fs::rename(directory.record(), directory.earlier_lineage()).unwrap();
     let plan = plan(&STEADY, 4);
     let resumed = continue_run(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
-    let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
+    let replayed = replay(&plan, &directory, Selection::default(), None, || Ok(Vec::new())).unwrap_err();
     for error in [resumed, replayed] {
         let said = error.to_string();
         assert!(said.contains("has a lineage.bin of an earlier version") && said.contains("run --config "), "{said}");
     }
-    assert!(test::test(&plan, &directory, None, 1, 1, 1, Wanted::ONE, true).is_ok(), "its champion is still read");
+    assert!(test::test(&plan, &directory, None, 1, 1, 1, LaneRequest::ONE, true).is_ok(), "its champion is still read");
     fs::remove_dir_all(root).unwrap();
 }
 
@@ -267,7 +267,7 @@ fn links_in_a_strangers_run_are_not_followed() {
         symlink(&victim, directory.path().join(name)).unwrap();
     }
     run(&plan(&STEADY, 5), &directory, 1);
-    test::test(&plan(&STEADY, 5), &directory, None, 2, 1, 1, Wanted::ONE, true).unwrap();
+    test::test(&plan(&STEADY, 5), &directory, None, 2, 1, 1, LaneRequest::ONE, true).unwrap();
     assert_eq!(fs::read_to_string(&victim).unwrap(), precious);
     // A lock that is a link would create a file in another place.
     fs::remove_file(directory.path().join(".run.lock")).unwrap();
@@ -289,7 +289,7 @@ fn tests_at_the_same_time_leave_the_files_of_one() {
             scope.spawn(move || {
                 for _ in 0..10 {
                     let trials = 3 + seed as usize;
-                    test::test(&plan(&STEADY, 3), directory, None, trials, seed, 1, Wanted::ONE, true).unwrap();
+                    test::test(&plan(&STEADY, 3), directory, None, trials, seed, 1, LaneRequest::ONE, true).unwrap();
                     let (_, record) = test::read(directory).unwrap().unwrap();
                     assert!(record.is_some(), "the two files are of the same test");
                 }

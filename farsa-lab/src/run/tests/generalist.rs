@@ -3,13 +3,13 @@
 use std::fs;
 
 use super::{CHASE_ALONE, Numbers, SIZE, TRIALS, replayed, rows, run, scratch};
-use crate::evaluation::replay::Which;
+use crate::evaluation::replay::Selection;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::plan::Plan;
 use crate::run::record_file::history;
+use crate::strategy::any_strategy::Genome;
 use crate::strategy::definition::StrategyDefinition;
-use crate::strategy::search::Genome;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 use crate::strategy::{Truncation, strategies};
 
@@ -54,16 +54,16 @@ fn everyone_meets_whom_the_strategy_chose_in_the_run_and_in_its_replay() {
             let mut met_by_population = Vec::new();
             for (individual, sum) in sums.iter_mut().enumerate() {
                 let own = parameters(&history.genomes(&[(generation, individual)]).unwrap()[0]);
-                let met = history.met(generation, individual, 0..TRIALS).unwrap().unwrap();
+                let met = history.opponents_of(generation, individual, 0..TRIALS).unwrap().unwrap();
                 let others: Vec<Vec<f32>> = met.iter().map(|met| parameters(&met[0])).collect();
                 let one = |other: &Vec<f32>| Numbers::against(&own, &[other], individual / SIZE);
                 let fitness: f64 = others.iter().map(one).sum();
                 *sum += fitness;
                 if individual % 7 == 0 {
-                    let which = Which {
+                    let which = Selection {
                         generation: Some(generation),
                         individual: Some(u32::try_from(individual).unwrap()),
-                        ..Which::default()
+                        ..Selection::default()
                     };
                     let (lines, found) = replayed(&plan, &directory, which);
                     assert_eq!(found.replay.fitness, fitness, "{generation}");

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::ranks::{content, part, same};
 use super::{Numbers, plan, pool, scratch};
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Selection, replay};
 use crate::experiment::settings::Value;
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
@@ -39,7 +39,7 @@ fn a_run_ends_before_its_record_is_too_large_to_be_read() {
         "more than the 524288 that are read of it; the run ends after {generations} generations, which are kept"
     );
     assert!(said.contains(expected) && said.ends_with(&end), "{said}");
-    let last = Which { generation: Some(generations as u32 - 1), ..Which::default() };
+    let last = Selection { generation: Some(generations as u32 - 1), ..Selection::default() };
     replay(&plan, &directory, last, None, || Ok(Vec::new())).unwrap();
     // Continuing ends at once and changes nothing.
     assert_eq!(go(), said);

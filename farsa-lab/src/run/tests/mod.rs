@@ -21,25 +21,25 @@ use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::evaluation::replay::{ReplaySummary, Which, replay};
+use crate::evaluation::replay::{ReplaySummary, Selection, replay};
 use crate::evaluation::replayed::Replayed;
-use crate::experiment::behaviour::{Behaviour, NotedBehaviour};
-use crate::experiment::definition::Experiment;
+use crate::experiment::behavior::{Behavior, NotedBehavior};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Task, TaskInfo};
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings, Value};
 use crate::run::begin::create;
 use crate::run::evolve::continue_run;
+use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::records::Best;
 use crate::store::directory::Directory;
+use crate::strategy::any_strategy::Genome;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::history::History;
-use crate::strategy::search::Genome;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
 use crate::strategy::{Learning, OnePlusOne, Truncation};
 
@@ -122,13 +122,13 @@ impl Task for Numbers {
         }
     }
 
-    fn behaviour(&self) -> Option<&dyn Behaviour> {
+    fn behavior(&self) -> Option<&dyn Behavior> {
         Some(&BEHAVIOUR)
     }
 }
 
 /// The second gene has to match another number, too. The genes are the behavior.
-static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("to 200", -1.0)],
     descriptors: &[("first", [0.0, 255.0]), ("second", [0.0, 255.0])],
 };
@@ -188,7 +188,7 @@ fn plan(numbers: &Numbers, generations: i64) -> Plan<'_> {
 }
 
 fn pool<'e>(plan: &Plan<'e>, threads: usize) -> Pool<'e> {
-    Pool::new(plan, threads, Wanted::ONE).unwrap()
+    Pool::new(plan, threads, LaneRequest::ONE).unwrap()
 }
 
 fn run(plan: &Plan<'_>, directory: &Directory, threads: usize) -> String {
@@ -246,7 +246,7 @@ fn rows(directory: &Directory) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect()
 }
 
-fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, Replayed<ReplaySummary>) {
+fn replayed(plan: &Plan<'_>, directory: &Directory, which: Selection) -> (String, Replayed<ReplaySummary>) {
     let mut out = Vec::new();
     let found = replay(plan, directory, which, None, || Ok(&mut out)).unwrap();
     (String::from_utf8(out).unwrap(), found)

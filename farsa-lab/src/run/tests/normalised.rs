@@ -12,15 +12,14 @@ use farsa_view::Schema;
 
 use super::ranks::{part, same};
 use super::{pool, rows, run, scratch};
-use crate::RunDirectory;
+use crate::advanced::RunDirectory;
 use crate::error::Error;
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Selection, replay};
 use crate::evaluation::test;
-use crate::experiment::NormalisedController;
-use crate::experiment::definition::Experiment;
+use crate::experiment::NormalizedController;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings, Value};
@@ -28,6 +27,7 @@ use crate::export::files::genotype;
 use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
 use crate::run::evolve::continue_run;
+use crate::run::experiment::Experiment;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::record_file::{RunRecord, history};
@@ -102,7 +102,7 @@ impl Task for Scales {
 impl Evaluator for Scales {
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
         let Evaluation { parameters, normalisation, id, .. } = evaluation;
-        let mut control = NormalisedController::new(Perceptron::new(2, 1, 1.0, parameters).unwrap());
+        let mut control = NormalizedController::new(Perceptron::new(2, 1, 1.0, parameters).unwrap());
         assert!(control.load(normalisation));
         let (mut y, mut sum) = ([0.0], 0.0);
         for x in observed(id) {
@@ -166,7 +166,7 @@ fn a_generation_is_normalised_by_all_before_it() {
         assert!(past.normalisation(GENERATIONS as u32 + 1).is_none());
         // Each champion is replayed with the fitness that it had.
         for (generation, row) in rows(&whole).iter().enumerate() {
-            let which = Which { generation: Some(generation as u32), ..Which::default() };
+            let which = Selection { generation: Some(generation as u32), ..Selection::default() };
             let found = replay(&all, &whole, which, None, || Ok(Vec::new())).unwrap();
             assert_eq!(found.replay.fitness, row[1], "{strategy}: {}", found.summary);
         }
@@ -219,7 +219,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     let plan = plan(&SCALES, GENERATIONS);
     let directory = create(&plan, &root).unwrap();
     run(&plan, &directory, 2);
-    test::test(&plan, &directory, None, 5, 1, 2, Wanted::ONE, true).unwrap();
+    test::test(&plan, &directory, None, 5, 1, 2, LaneRequest::ONE, true).unwrap();
     let text = fs::read_to_string(directory.test()).unwrap();
     let found: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
     let best = RunDirectory::open(&root, &Laboratory::new(&[&SCALES])).unwrap().champion().unwrap();

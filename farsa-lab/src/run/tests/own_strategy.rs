@@ -6,13 +6,13 @@ use farsa_evo::{EvoError, Fitness, Population, Strategy};
 use farsa_num::{Domain, Stream};
 
 use crate::error::Error;
-use crate::evaluation::replay::Which;
+use crate::evaluation::replay::Selection;
 use crate::experiment::settings::{Setting, Value};
 use crate::run::begin::create;
 use crate::run::plan::Plan;
 use crate::run::tests::{CHASE, CHASE_ALONE, replayed, rows, run, scratch};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
-use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
 use crate::strategy::{Diagnostics, DiagnosticsChart};
 
@@ -65,12 +65,12 @@ impl StrategyDefinition for Climbing {
             Setting::whole("evolution.guesses", 4, 1..=100).doc("Guesses of a generation."),
         ]
     }
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
         let guesses = start.settings.count("evolution.guesses")?;
         let population = Population::new(guesses, start.genes).map_err(|error| Error::Other(error.to_string()))?;
         let mut climber = HillClimber { generation: 0, seed: start.seed, population };
         climber.draw(&vec![128; start.genes]);
-        Ok(Search::from_words(climber))
+        Ok(AnyStrategy::from_words(climber))
     }
     fn diagnostics(&self) -> Option<Diagnostics> {
         const COUNT: DiagnosticsChart =
@@ -115,7 +115,7 @@ fn a_strategy_of_ones_own_runs_resumes_and_replays() {
     let rows = rows(&whole);
     let plan = plan(GENERATIONS);
     for generation in [0, 5, 8] {
-        let (_, found) = replayed(&plan, &whole, Which { generation: Some(generation), ..Which::default() });
+        let (_, found) = replayed(&plan, &whole, Selection { generation: Some(generation), ..Selection::default() });
         assert_eq!(found.replay.fitness, rows[generation as usize][1]);
     }
     fs::remove_dir_all(root).unwrap();

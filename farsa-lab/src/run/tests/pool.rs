@@ -6,14 +6,14 @@ use farsa_body::Recorder;
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator, InLanes, Task, TaskInfo};
-use crate::experiment::lanes::{Lanes, Wanted};
+use crate::experiment::lanes::{LaneRequest, Lanes};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings};
 use crate::run::evaluation_backend::Unfinished;
+use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
@@ -49,7 +49,7 @@ impl Evaluator for Nothing {
 }
 
 fn pool(threads: usize) -> Pool<'static> {
-    Pool::new(&Plan::new(&Nothing, None, "").unwrap(), threads, Wanted::ONE).unwrap()
+    Pool::new(&Plan::new(&Nothing, None, "").unwrap(), threads, LaneRequest::ONE).unwrap()
 }
 
 fn task(number: usize, parameters: &[f32]) -> Evaluation<'_> {
@@ -135,7 +135,7 @@ impl InLanes for InGroups {
         self.0 = lanes.count();
         Ok(())
     }
-    fn evaluate_all<'p>(
+    fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
@@ -156,7 +156,7 @@ impl InLanes for InGroups {
 fn a_panic_in_a_lane_fails_that_lane_alone() {
     for (threads, lanes) in [(1, 1), (1, 8), (3, 8), (2, 16)] {
         let plan = Plan::new(&InGroups(1), None, "").unwrap();
-        let wanted = Wanted { count: Some(lanes), ..Wanted::ONE };
+        let wanted = LaneRequest { count: Some(lanes), ..LaneRequest::ONE };
         let mut pool = Pool::new(&plan, threads, wanted).unwrap();
         let heard = AtomicUsize::new(0);
         let done = |_, _: Option<&Outcome>| {

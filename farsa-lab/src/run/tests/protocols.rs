@@ -5,7 +5,7 @@ use std::fs;
 use super::*;
 use crate::evaluation::protocols::files;
 use crate::evaluation::protocols::states::States;
-use crate::evaluation::protocols::test::{Effort, ProtocolRun, lesions, test};
+use crate::evaluation::protocols::test::{ProtocolRun, TestOptions, lesions, test};
 use crate::evaluation::test as plain_test;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::protocol::{Case, CaseId, Protocol};
@@ -106,7 +106,7 @@ impl Evaluator for Words {
     }
 }
 
-const EFFORT: Effort = Effort { trials: None, seed: 3, threads: 1, lanes: Wanted::ONE, quiet: true };
+const EFFORT: TestOptions = TestOptions { trials: None, seed: 3, threads: 1, lanes: LaneRequest::ONE, quiet: true };
 
 fn words_plan(words: &Words) -> Plan<'_> {
     let mut plan = Plan::new(words, None, "").unwrap();
@@ -121,14 +121,14 @@ fn evolved(words: &Words, root: &std::path::Path) -> Directory {
 }
 
 fn tested(words: &Words, directory: &Directory, name: &str, threads: usize) -> Result<ProtocolRun, Error> {
-    test(&words_plan(words), directory, name, Effort { threads, ..EFFORT })
+    test(&words_plan(words), directory, name, TestOptions { threads, ..EFFORT })
 }
 
 #[test]
 fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
     let root = scratch("lesions");
     let directory = evolved(&WORDS, &root);
-    let effort = Effort { trials: Some(3), ..EFFORT };
+    let effort = TestOptions { trials: Some(3), ..EFFORT };
     let found = |name, lists: &[&str], effort| {
         let lists: Vec<String> = lists.iter().map(|&list| list.to_owned()).collect();
         lesions(&words_plan(&WORDS), &directory, name, &lists, effort)
@@ -149,7 +149,7 @@ fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
         let error = found(name, lists, effort).unwrap_err().to_string();
         assert!(error.contains(why), "{error}");
     }
-    let many = found(None, &["noise:1"], Effort { trials: Some(50_000_001), ..EFFORT }).unwrap_err().to_string();
+    let many = found(None, &["noise:1"], TestOptions { trials: Some(50_000_001), ..EFFORT }).unwrap_err().to_string();
     assert!(many.contains("50000001 trials of each of 2 cases are more than 100000000 trials"), "{many}");
 
     // An experiment without a controller is refused.
@@ -181,7 +181,7 @@ fn every_case_is_told_and_has_the_starts_of_a_plain_test() {
         "case,row,column,held_out,index,trial,steps,success,fitness,case,start,way,population"
     );
     assert_eq!(lines.len(), 1 + 4 * 4);
-    plain_test::test(&words_plan(&WORDS), &directory, None, 4, 3, 1, Wanted::ONE, true).unwrap();
+    plain_test::test(&words_plan(&WORDS), &directory, None, 4, 3, 1, LaneRequest::ONE, true).unwrap();
     let plain = read("test.csv");
     let starts: Vec<&str> = plain.lines().skip(1).map(|line| line.split(',').nth(6).unwrap()).collect();
     for (number, line) in lines[1..].iter().enumerate() {
@@ -228,7 +228,7 @@ fn what_cannot_be_tested_is_refused() {
     assert!(!root.join("protocols").exists());
     let error = refused(tested(&Words { wrong: true, ..WORDS }, &directory, "words", 1));
     assert!(error.contains("`words` is there twice"), "{error}");
-    let many = test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(25_000_001), ..EFFORT });
+    let many = test(&words_plan(&WORDS), &directory, "words", TestOptions { trials: Some(25_000_001), ..EFFORT });
     let error = refused(many);
     assert!(error.contains("25000001 trials of each of 4 cases are more than 100000000"), "{error}");
     // An untrusted file, or a link to another folder.
@@ -294,7 +294,7 @@ fn the_states_of_the_first_trials_are_recorded_case_by_case() {
     let (_, of_table) = files::read(&directory, "words").unwrap().unwrap();
     assert!(record.unwrap().same_test(&of_table.unwrap()));
     // A test of other trials has no states of this one, and neither has a protocol without states.
-    test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(1), seed: 4, ..EFFORT }).unwrap();
+    test(&words_plan(&WORDS), &directory, "words", TestOptions { trials: Some(1), seed: 4, ..EFFORT }).unwrap();
     assert_eq!(States::read(&directory, "words").unwrap().unwrap().0.trials.len(), 4);
     tested(&WORDS, &directory, "times", 1).unwrap();
     assert!(!root.join("protocols/times.states.csv").exists());

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::evaluation::replay::{Which, WhichTrial, replay};
+use crate::evaluation::replay::{Selection, TrialSelector, replay};
 use crate::evaluation::test;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Iteration, Learner};
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::bench::{Sample, bench};
@@ -64,14 +64,15 @@ fn a_steady_state_keeps_the_better_of_two() {
     assert_eq!((generation, best.len(), best[0].individual as usize), (119, 1, survivor));
     assert_eq!(*words(&best[0]), genes_of(&history, 119, survivor));
     assert_eq!(best[0].fitness.get(), rows[119][1]);
-    let (csv, found) = replayed(&plan, &directory, Which::default());
+    let (csv, found) = replayed(&plan, &directory, Selection::default());
     let summary = &found.summary;
     assert!(summary.starts_with(&format!("individual {survivor} of generation 119, 3 trials")), "{summary}");
     assert_eq!(csv.lines().nth(1).unwrap(), format!("0,0,0.0,{:?}", f64::from(words(&best[0])[0])));
     assert!(
-        replay(&plan, &directory, Which { individual: Some(2), ..Which::default() }, None, || Ok(Vec::new())).is_err()
+        replay(&plan, &directory, Selection { individual: Some(2), ..Selection::default() }, None, || Ok(Vec::new()))
+            .is_err()
     );
-    let table = test::test(&plan, &directory, None, 7, 1, 2, Wanted::ONE, true).unwrap().text();
+    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text();
     assert!(table.contains(&format!("individual {survivor} of generation 119")), "{table}");
     // Nothing but the truncation algorithm has a population to set.
     let mut plan = crate::run::tests::plan(&STEADY, GENERATIONS);
@@ -108,9 +109,9 @@ fn a_learner_is_evaluated_and_trained() {
     assert!(history.champion(0, 12).is_none());
     let Champions { generation, best, .. } = Champions::read(&plan, &directory).unwrap();
     assert_eq!((generation, words(&best[0])), (11, &genes_of(&history, 11, 0)));
-    let (csv, _) = replayed(&plan, &directory, Which { generation: Some(0), ..Which::default() });
+    let (csv, _) = replayed(&plan, &directory, Selection { generation: Some(0), ..Selection::default() });
     assert_eq!(csv.lines().nth(1).unwrap(), "0,0,0.0,0.0");
-    let table = test::test(&plan, &directory, None, 7, 1, 2, Wanted::ONE, true).unwrap().text();
+    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text();
     assert!(table.contains("individual 0 of generation 11"), "{table}");
     fs::remove_dir_all(root).unwrap();
 }
@@ -160,10 +161,11 @@ fn populations_meet_each_others_champions() {
         assert_eq!(row[4], 30.0);
         // A trial is replayed against the same opponents.
         for individual in [0, 14, 29] {
-            let which = Which { generation: Some(generation), individual: Some(individual), ..Which::default() };
+            let which =
+                Selection { generation: Some(generation), individual: Some(individual), ..Selection::default() };
             let (_, found) = replayed(&plan, &directory, which);
             assert_eq!(found.replay.fitness, all[individual as usize]);
-            let (one, _) = replayed(&plan, &directory, Which { trial: WhichTrial::Number(2), ..which });
+            let (one, _) = replayed(&plan, &directory, Selection { trial: TrialSelector::Number(2), ..which });
             let other = usize::from(individual < 10);
             let met = match rule(generation, 2) {
                 Some(earlier) => genes(earlier, history.champion(other, earlier).unwrap()),
@@ -191,7 +193,7 @@ fn populations_meet_each_others_champions() {
     assert_eq!(individuals, (0..3).map(|p| history.champion(p, 8).unwrap()).collect::<Vec<_>>());
 
     // A test runs the champions against each other, and reports every population.
-    let tested = test::test(&plan, &directory, None, 4, 1, 2, Wanted::ONE, true).unwrap();
+    let tested = test::test(&plan, &directory, None, 4, 1, 2, LaneRequest::ONE, true).unwrap();
     let text = tested.text();
     assert!(text.contains(" of generation 8 against each other"), "{text}");
     let csv = fs::read_to_string(directory.test()).unwrap();
@@ -206,7 +208,7 @@ fn populations_meet_each_others_champions() {
     let line = format!("1,1,1,{},{seeker:?},{notes},{first:?},1,{second:?},1", seeker >= 0.0);
     assert_eq!(csv.lines().nth(2).unwrap(), line);
     assert_eq!(csv.lines().count(), 5);
-    assert_eq!(text, test::test(&plan, &directory, None, 4, 1, 1, Wanted::ONE, true).unwrap().text());
+    assert_eq!(text, test::test(&plan, &directory, None, 4, 1, 1, LaneRequest::ONE, true).unwrap().text());
     fs::remove_dir_all(root).unwrap();
 }
 

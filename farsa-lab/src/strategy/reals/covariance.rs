@@ -8,8 +8,8 @@ use farsa_evo::covariance::{
 use super::{SIGMA, count_or, population_of_genes, sigma, sizes};
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyStart};
-use crate::strategy::search::Search;
 use crate::strategy::settings::POPULATION;
 use crate::strategy::simple::SimpleStrategy;
 
@@ -97,7 +97,7 @@ pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy
     diagnostics: Some(Diagnostics { file: "strategy", charts: &[SHAPE] }),
 };
 
-fn separable(start: &StrategyStart<'_>) -> Result<Search, Error> {
+fn separable(start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
     let plain = SeparableCmaEsConfig::new(vec![0.0; start.genes], start.settings.number(SIGMA)?);
     let population = count_or(start.settings, POPULATION, plain.population)?;
     start.reals(|seed| SeparableCmaEs::with_covariance(SeparableCmaEsConfig { population, ..plain.clone() }, seed))

@@ -5,8 +5,8 @@ use farsa_evo::archives::{Cells, CvtCells, Emitter, GridCells, MapElites, MapEli
 use super::{SIGMA, bounds, sizes};
 use crate::error::Error;
 use crate::experiment::settings::Setting;
+use crate::strategy::any_strategy::{AnyStrategy, MAX_STATE_BYTES};
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyStart};
-use crate::strategy::search::{LARGEST_STATE, Search};
 use crate::strategy::settings::POPULATION;
 use crate::strategy::simple::SimpleStrategy;
 
@@ -94,7 +94,7 @@ pub(in crate::strategy) static CMA_ME: SimpleStrategy = SimpleStrategy {
 };
 
 /// A search over the cells that the settings divide the experiment's descriptor into.
-fn search(start: &StrategyStart<'_>, name: &str, config: &MapElitesConfig) -> Result<Search, Error> {
+fn search(start: &StrategyStart<'_>, name: &str, config: &MapElitesConfig) -> Result<AnyStrategy, Error> {
     let (ranges, cells) = (start.wanted_descriptors(name)?, start.settings.count(CELLS)?);
     let refused = |error: farsa_evo::EvoError| Error::setting(CELLS, error);
     if start.settings.word(DIVISION)? == "cvt" {
@@ -109,16 +109,16 @@ fn over<C: Cells + Clone + 'static>(
     start: &StrategyStart<'_>,
     config: &MapElitesConfig,
     cells: &C,
-) -> Result<Search, Error> {
+) -> Result<AnyStrategy, Error> {
     // A run is not to find out when most cells have an elite.
     let one = MapElites::new(config.clone(), cells.clone(), start.seed);
     let full = one.map_or(0, |search| search.largest_state()).saturating_mul(start.populations);
-    if full as u64 > LARGEST_STATE {
+    if full as u64 > MAX_STATE_BYTES {
         let (cells, genes) = (cells.cells(), start.genes);
         return Err(Error::setting(
             CELLS,
             format!(
-                "{cells} cells of {genes} genes, when full, are {full} bytes; a checkpoint keeps at most {LARGEST_STATE}"
+                "{cells} cells of {genes} genes, when full, are {full} bytes; a checkpoint keeps at most {MAX_STATE_BYTES}"
             ),
         ));
     }

@@ -8,12 +8,12 @@ use crate::error::Error;
 const MOST_BYTES: usize = 1 << 28;
 
 /// Room for recordings.
-pub(crate) struct Kept {
+pub(crate) struct MemoryUse {
     left: usize,
     recordings: usize,
 }
 
-impl Kept {
+impl MemoryUse {
     /// All of it.
     pub(crate) const fn new() -> Self {
         Self { left: MOST_BYTES, recordings: 0 }
@@ -54,8 +54,8 @@ mod tests {
 
     #[test]
     fn all_recordings_share_the_room() {
-        let mut kept = Kept { left: 10_000, recordings: 0 };
-        let record = |kept: &Kept, ticks: u32| {
+        let mut kept = MemoryUse { left: 10_000, recordings: 0 };
+        let record = |kept: &MemoryUse, ticks: u32| {
             let mut recording = kept.recording(Schema::from_scalars(["x", "y"]));
             for tick in 0..ticks {
                 recording.scalars(&[1.0, 2.0]);
@@ -69,7 +69,7 @@ mod tests {
         let said = kept.add(&record(&kept, 10_000)).unwrap_err().to_string();
         assert!(said.starts_with("trial number 2 of these has more steps than fit into 256 MiB"), "{said}");
         let long = record(&kept, 10_000);
-        let said = Kept { left: 10_000, recordings: 0 }.add(&long).unwrap_err().to_string();
+        let said = MemoryUse { left: 10_000, recordings: 0 }.add(&long).unwrap_err().to_string();
         let steps = long.times().len();
         assert!(said.starts_with("the trial has more steps"), "{said}");
         assert!(said.contains(&format!("; {steps} do, until {}.00 s: ", steps - 1)), "{said}");

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::evaluation::protocols::trial::CaseTrial;
 use crate::evaluation::test::{Subject, whose};
 use crate::experiment::evaluator::{Bodies, Evaluator};
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::{Case, CaseId, Protocol};
 use crate::run::plan::Plan;
@@ -19,7 +19,7 @@ const MOST_CASES: usize = 60;
 
 /// Which trials of a test by a protocol.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Choice<'c> {
+pub(crate) struct CaseSelection<'c> {
     /// The protocol's name.
     pub(crate) protocol: &'c str,
     /// Names or numbers of cases. Empty for all.
@@ -47,8 +47,8 @@ impl CaseTrials {
     ///
     /// # Errors
     /// As for [`Protocol::find`], [`Protocol::case`] and [`Subject::read`], [`Error::Usage`] for too many cases.
-    pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, choice: Choice<'_>) -> Result<Self, Error> {
-        let pool = Pool::new(plan, 1, Wanted::ONE)?;
+    pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, choice: CaseSelection<'_>) -> Result<Self, Error> {
+        let pool = Pool::new(plan, 1, LaneRequest::ONE)?;
         let mut protocols = pool.info().protocols.clone();
         let number = Protocol::find(&protocols, choice.protocol, plan.experiment.name())?;
         let protocol = protocols.swap_remove(number);

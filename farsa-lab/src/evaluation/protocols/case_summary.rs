@@ -13,7 +13,7 @@ use crate::run::text_table::text_table;
 
 /// Summary of a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct FoundCase {
+pub(crate) struct CaseSummary {
     pub(crate) row: String,
     pub(crate) column: String,
     pub(crate) held_out: bool,
@@ -28,7 +28,7 @@ pub(crate) struct FoundCase {
     pub(crate) findings: Findings,
 }
 
-impl FoundCase {
+impl CaseSummary {
     /// Summarizes each case of a table. `terms` holds the names of the fitness terms.
     pub(crate) fn all(table: &ProtocolTable, terms: &[String]) -> Vec<Self> {
         table.cases.iter().map(|(case, table)| Self::new(case, table.findings(&[]), own_columns(terms))).collect()
@@ -64,7 +64,7 @@ impl FoundCase {
 }
 
 /// The cases as a table of text, the head first, and how many of its columns are words.
-pub(crate) fn rows(protocol: &Protocol, found: &[FoundCase]) -> (Vec<Vec<String>>, usize) {
+pub(crate) fn rows(protocol: &Protocol, found: &[CaseSummary]) -> (Vec<Vec<String>>, usize) {
     let [row, column] = &protocol.axes;
     let named = |name: &String, else_: &str| if name.is_empty() { else_.to_owned() } else { name.clone() };
     let (columns, held_out) =
@@ -76,7 +76,7 @@ pub(crate) fn rows(protocol: &Protocol, found: &[FoundCase]) -> (Vec<Vec<String>
     head.extend(["trials", "success", "rate", "95 % interval", "fitness"].map(str::to_owned));
     let names = means(found);
     head.extend(names.iter().map(|&name| name.to_owned()));
-    let line = |case: &FoundCase| {
+    let line = |case: &CaseSummary| {
         let mut line = vec![case.row.clone()];
         line.extend(columns.then(|| case.column.clone()));
         line.extend(held_out.then(|| if case.held_out { "held out" } else { "trained" }.to_owned()));
@@ -95,16 +95,16 @@ pub(crate) fn rows(protocol: &Protocol, found: &[FoundCase]) -> (Vec<Vec<String>
 }
 
 /// The terms and notes that are numbers in every case.
-fn means(found: &[FoundCase]) -> Vec<&str> {
-    let is_mean = |case: &FoundCase, name: &str| {
+fn means(found: &[CaseSummary]) -> Vec<&str> {
+    let is_mean = |case: &CaseSummary, name: &str| {
         case.means().any(|(own, finding)| own == name && matches!(finding, Finding::Mean(_)))
     };
-    let first = found.first().into_iter().flat_map(FoundCase::means);
+    let first = found.first().into_iter().flat_map(CaseSummary::means);
     first.map(|(name, _)| name).filter(|name| found.iter().all(|case| is_mean(case, name))).collect()
 }
 
 /// The same for a terminal, with what trained and held-out cases came to together.
-pub(crate) fn text(protocol: &Protocol, found: &[FoundCase]) -> String {
+pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
     let (rows, words) = rows(protocol, found);
     let mut text = text_table(&rows, words..usize::MAX);
     if found.iter().any(|case| case.held_out) {
@@ -130,10 +130,10 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    fn found(body: &str) -> Vec<FoundCase> {
+    fn found(body: &str) -> Vec<CaseSummary> {
         let head = "case,row,column,held_out,index,trial,steps,success,fitness,find,act,way,phase\n";
         let table = ProtocolTable::from_text(Path::new("x"), &format!("{head}{body}")).unwrap();
-        FoundCase::all(&table, &["find".into(), "act".into()])
+        CaseSummary::all(&table, &["find".into(), "act".into()])
     }
 
     const BODY: &str = "0,TOUCH,red,false,0,0,6,true,1.5,1.0,0.5,3.0,far\n0,TOUCH,red,false,1,1,6,true,0.5,0.5,0.0,1.0,near\n\

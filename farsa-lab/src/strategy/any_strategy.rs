@@ -10,14 +10,14 @@ use farsa_evo::{
 use crate::experiment::genotype::Genotype;
 
 /// Bytes of the largest state of a search that a checkpoint keeps. Tests have one that is soon full.
-pub(crate) const LARGEST_STATE: u64 = if cfg!(test) { 1 << 18 } else { 256 << 20 };
+pub(crate) const MAX_STATE_BYTES: u64 = if cfg!(test) { 1 << 18 } else { 256 << 20 };
 
-/// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::StrategyDefinition::start) makes it.
+/// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::strategy::StrategyDefinition::start) makes it.
 ///
 /// A [`Genotype`] decodes both. An integer gene is linear over the range of its parameter. A real gene maps -1 to the
 /// first end, 0 to the middle and 1 to the other end, and is reflected beyond.
 #[non_exhaustive]
-pub enum Search {
+pub enum AnyStrategy {
     /// Over 16-bit words.
     Words(Box<dyn Strategy>),
     /// Over reals.
@@ -28,13 +28,13 @@ pub enum Search {
 macro_rules! each {
     ($search:expr, $strategy:ident => $done:expr) => {
         match $search {
-            Search::Words($strategy) => $done,
-            Search::Reals($strategy) => $done,
+            AnyStrategy::Words($strategy) => $done,
+            AnyStrategy::Reals($strategy) => $done,
         }
     };
 }
 
-impl Search {
+impl AnyStrategy {
     /// A strategy over words.
     pub fn from_words(strategy: impl Strategy + 'static) -> Self {
         Self::Words(Box::new(strategy))
@@ -117,7 +117,7 @@ impl Search {
     }
 
     /// Returns the genomes of the opponents that the strategy chose for a trial, one of each other population.
-    pub(crate) fn met(&self, individual: usize, trial: u32) -> Option<Vec<Genome>> {
+    pub(crate) fn opponents_of(&self, individual: usize, trial: u32) -> Option<Vec<Genome>> {
         let number = |count: usize| trial as usize % count.max(1);
         Some(match self {
             Self::Words(strategy) => {
@@ -139,7 +139,7 @@ impl Search {
     }
 
     /// Returns whether the champion is the best of all generations instead of the last.
-    pub(crate) fn keeps_champion(&self) -> bool {
+    pub(crate) fn champion_is_best_ever(&self) -> bool {
         each!(self, strategy => strategy.champion_is_best_ever())
     }
 
@@ -173,7 +173,7 @@ impl Search {
     }
 }
 
-impl fmt::Debug for Search {
+impl fmt::Debug for AnyStrategy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = if matches!(self, Self::Words(_)) { "Words" } else { "Reals" };
         f.debug_struct(kind).field("generation", &self.generation()).finish_non_exhaustive()

@@ -21,10 +21,10 @@ const LIMIT: f32 = 10.0;
 ///
 /// ```
 /// use farsa_evo::ObservationStatistics;
-/// use farsa_lab::NormalisedController;
+/// use farsa_lab::advanced::NormalizedController;
 /// use farsa_nn::{Controller, Perceptron};
 ///
-/// let mut control = NormalisedController::new(Perceptron::new(1, 1, 1.0, [1.0, 0.0])?);
+/// let mut control = NormalizedController::new(Perceptron::new(1, 1, 1.0, [1.0, 0.0])?);
 /// let mut before = ObservationStatistics::new(1)?;
 /// for x in [190.0, 210.0] {
 ///     before.push(&[x]);
@@ -41,7 +41,7 @@ const LIMIT: f32 = 10.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct NormalisedController<C> {
+pub struct NormalizedController<C> {
     controller: C,
     /// Statistics of earlier observations, and since [`load`](Self::load). None without normalization.
     statistics: Option<[ObservationStatistics; 2]>,
@@ -78,7 +78,7 @@ impl<C> Changed<C> {
     }
 }
 
-impl<C: Controller> NormalisedController<C> {
+impl<C: Controller> NormalizedController<C> {
     /// This controller, with observations as they are.
     pub fn new(controller: C) -> Self {
         let x = vec![0.0; controller.inputs()];
@@ -134,7 +134,7 @@ impl<C: Controller> NormalisedController<C> {
     }
 }
 
-impl<C: Controller> Controller for NormalisedController<C> {
+impl<C: Controller> Controller for NormalizedController<C> {
     fn inputs(&self) -> usize {
         self.controller.inputs()
     }
@@ -180,13 +180,13 @@ mod tests {
     use farsa_nn::{Leak, LeakyLayout, LeakyNetwork};
 
     /// Two inputs, two hidden neurons, one output. All weights are 1.
-    fn network() -> NormalisedController<LeakyNetwork<Vec<f32>, Vec<f32>>> {
+    fn network() -> NormalizedController<LeakyNetwork<Vec<f32>, Vec<f32>>> {
         let layout = LeakyLayout::new(2, 2, 1);
         let (parameters, state) = (vec![1.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
-        NormalisedController::new(LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap())
+        NormalizedController::new(LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap())
     }
 
-    fn response(control: &mut NormalisedController<LeakyNetwork<Vec<f32>, Vec<f32>>>, x: [f32; 2]) -> Vec<f32> {
+    fn response(control: &mut NormalizedController<LeakyNetwork<Vec<f32>, Vec<f32>>>, x: [f32; 2]) -> Vec<f32> {
         control.reset();
         let mut y = [0.0];
         (0..5)
@@ -270,7 +270,7 @@ mod tests {
     fn observations_are_normalised_by_those_before_and_kept_as_they_were() {
         let rows = [[1.0, -4.0], [2.0, 8.0], [6.0, 2.0]];
         let before = statistics(&rows);
-        let mut control = NormalisedController::new(Echo);
+        let mut control = NormalizedController::new(Echo);
         assert!(control.load(Some(&before)));
         let mut y = [0.0; 2];
         let seen = [[4.0, 0.5], [-3.0, 1e9]];
@@ -295,7 +295,7 @@ mod tests {
     fn nothing_changes_before_there_are_two_observations() {
         for count in 0..2 {
             let before = statistics(&[[1.0, -4.0]][..count]);
-            let mut control = NormalisedController::new(Echo);
+            let mut control = NormalizedController::new(Echo);
             assert!(control.load(Some(&before)));
             let mut y = [0.0; 2];
             control.step(&[0.25, 30.0], &mut y);
@@ -305,7 +305,7 @@ mod tests {
 
     #[test]
     fn other_channels_are_refused() {
-        let mut control = NormalisedController::new(Echo);
+        let mut control = NormalizedController::new(Echo);
         assert!(!control.load(Some(&ObservationStatistics::new(3).unwrap())));
         assert!(control.observed().is_none() && control.load(None));
     }

@@ -3,12 +3,12 @@
 use crate::experiment::outcome::{Note, Outcome};
 use crate::experiment::parameter::Parameter;
 
-/// Objectives and measures of an individual in addition to its fitness, [`Task::behaviour`](crate::Task::behaviour).
+/// Objectives and measures of an individual in addition to its fitness, [`Task::behavior`](crate::Task::behavior).
 /// NSGA-II searches for several objectives, MAP-Elites for individuals with different measures.
 ///
-/// The fitness is the first objective of every strategy, and these follow. [`NotedBehaviour`] builds them from a table
+/// The fitness is the first objective of every strategy, and these follow. [`NotedBehavior`] builds them from a table
 /// of [`Outcome::notes`].
-pub trait Behaviour {
+pub trait Behavior {
     /// Returns the names of the further objectives, in order. More is better. By default none.
     fn objectives(&self) -> Vec<String> {
         Vec::new()
@@ -25,12 +25,13 @@ pub trait Behaviour {
     fn describe(&self, trials: &[Outcome]) -> Vec<f64>;
 }
 
-/// A [`Behaviour`] of means over the trials of [notes](Outcome::notes) that are numbers.
+/// A [`Behavior`] of means over the trials of [notes](Outcome::notes) that are numbers.
 ///
 /// ```
-/// use farsa_lab::{Behaviour, NotedBehaviour, Outcome};
+/// use farsa_lab::Outcome;
+/// use farsa_lab::advanced::{Behavior, NotedBehavior};
 ///
-/// static WALK: NotedBehaviour = NotedBehaviour {
+/// static WALK: NotedBehavior = NotedBehavior {
 ///     objectives: &[("work [J]", -1.0)],
 ///     descriptors: &[("left foot on the ground", [0.0, 1.0])],
 /// };
@@ -42,14 +43,14 @@ pub trait Behaviour {
 /// assert_eq!(WALK.objectives(), ["minus work [J]"]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NotedBehaviour {
+pub struct NotedBehavior {
     /// The notes that are objectives, with 1 where more is better and -1 where less is.
     pub objectives: &'static [(&'static str, f64)],
     /// The notes that describe a behaviour, with their ranges, low to high.
     pub descriptors: &'static [(&'static str, [f64; 2])],
 }
 
-impl Behaviour for NotedBehaviour {
+impl Behavior for NotedBehavior {
     fn objectives(&self) -> Vec<String> {
         let named = |(note, sign): &(&str, f64)| if *sign < 0.0 { format!("minus {note}") } else { (*note).into() };
         self.objectives.iter().map(named).collect()

@@ -12,7 +12,7 @@ const MOST_NAMES: usize = 1000;
 
 /// Vectors of numbers: `[..]` is one, `[[..], [..]]` are several, and an object has those of populations by their names.
 #[derive(Debug, PartialEq)]
-pub(super) enum Given {
+pub(super) enum ParameterVectors {
     /// Vectors of the only population.
     Unnamed(Vectors),
     /// Vectors of each named population, in the order of the line.
@@ -41,18 +41,18 @@ impl Vectors {
     }
 }
 
-impl<'de> Deserialize<'de> for Given {
+impl<'de> Deserialize<'de> for ParameterVectors {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Whole;
         impl<'de> Visitor<'de> for Whole {
-            type Value = Given;
+            type Value = ParameterVectors;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a list of numbers, a list of such lists, or an object of them by population")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Given, A::Error> {
-                vectors(seq).map(Given::Unnamed)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ParameterVectors, A::Error> {
+                vectors(seq).map(ParameterVectors::Unnamed)
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Given, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ParameterVectors, A::Error> {
                 let mut all: Vec<(String, Vectors)> = Vec::new();
                 while let Some((name, vectors)) = map.next_entry::<String, Vectors>()? {
                     if all.iter().any(|(other, _)| *other == name) {
@@ -64,7 +64,7 @@ impl<'de> Deserialize<'de> for Given {
                     }
                     all.push((name, vectors));
                 }
-                Ok(Given::Named(all))
+                Ok(ParameterVectors::Named(all))
             }
         }
         deserializer.deserialize_any(Whole)
@@ -153,12 +153,12 @@ mod tests {
 
     #[test]
     fn one_or_several_vectors() {
-        let read = |text: &str| serde_json::from_str::<Given>(text).map_err(|error| error.to_string());
-        assert_eq!(read("[1, -2, 0.5]").unwrap(), Given::Unnamed(vectors(&[&[1.0, -2.0, 0.5]])));
-        assert_eq!(read("[[1], [2e3]]").unwrap(), Given::Unnamed(vectors(&[&[1.0], &[2000.0]])));
-        assert_eq!(read("[]").unwrap(), Given::Unnamed(vectors(&[])));
+        let read = |text: &str| serde_json::from_str::<ParameterVectors>(text).map_err(|error| error.to_string());
+        assert_eq!(read("[1, -2, 0.5]").unwrap(), ParameterVectors::Unnamed(vectors(&[&[1.0, -2.0, 0.5]])));
+        assert_eq!(read("[[1], [2e3]]").unwrap(), ParameterVectors::Unnamed(vectors(&[&[1.0], &[2000.0]])));
+        assert_eq!(read("[]").unwrap(), ParameterVectors::Unnamed(vectors(&[])));
         let named = vec![("b".into(), vectors(&[&[1.0]])), ("a".into(), vectors(&[&[2.0], &[3.0]]))];
-        assert_eq!(read(r#"{"b": [1], "a": [[2], [3]]}"#).unwrap(), Given::Named(named));
+        assert_eq!(read(r#"{"b": [1], "a": [[2], [3]]}"#).unwrap(), ParameterVectors::Named(named));
         for (text, why) in [
             ("3", "expected a list of numbers, a list of such lists, or an object"),
             ("[1, [2]]", "side by side"),
@@ -186,9 +186,9 @@ mod tests {
     fn more_names_than_populations_can_be_are_not_compared() {
         let named = |count: usize| {
             let names: Vec<String> = (0..count).map(|name| format!("\"{name}\": []")).collect();
-            serde_json::from_str::<Given>(&format!("{{{}}}", names.join(",")))
+            serde_json::from_str::<ParameterVectors>(&format!("{{{}}}", names.join(",")))
         };
-        assert!(matches!(named(MOST_NAMES), Ok(Given::Named(all)) if all.len() == MOST_NAMES));
+        assert!(matches!(named(MOST_NAMES), Ok(ParameterVectors::Named(all)) if all.len() == MOST_NAMES));
         assert!(named(MOST_NAMES + 1).unwrap_err().to_string().starts_with("more than 1000 populations"));
     }
 }
