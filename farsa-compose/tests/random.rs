@@ -56,7 +56,7 @@ fn drawn_files_live_and_lanes_change_no_bit() {
         let side_by_side = lanes.in_lanes().expect("both worlds have lanes");
         side_by_side.use_lanes(Lanes::best()).expect("a batch");
         let (mut next, mut found) = (jobs.iter(), vec![None; jobs.len()]);
-        side_by_side.evaluate_all(&mut || next.next().copied(), &mut |number, outcome| found[number] = Some(outcome));
+        side_by_side.run_in_lanes(&mut || next.next().copied(), &mut |number, outcome| found[number] = Some(outcome));
         for (found, outcome) in found.into_iter().zip(&expected) {
             assert_eq!(found.as_ref(), Some(outcome), "{text}");
         }

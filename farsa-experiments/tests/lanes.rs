@@ -103,7 +103,7 @@ fn in_lanes_as_alone(
         // Twice: nothing of the first time is left.
         for _ in 0..2 {
             let (mut rest, mut ended) = (evaluations.iter().copied(), vec![None; alone.len()]);
-            lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| {
+            lanes.run_in_lanes(&mut || rest.next(), &mut |number, outcome| {
                 assert!(ended[number].replace(outcome).is_none(), "{number} twice");
             });
             for (number, (ended, alone)) in ended.iter().zip(&alone).enumerate() {

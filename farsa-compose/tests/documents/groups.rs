@@ -104,7 +104,7 @@ fn lanes_have_the_bits_of_one_world() {
     let side_by_side = lanes.in_lanes().expect("the arena has lanes");
     side_by_side.use_lanes(Lanes::best()).expect("a batch");
     let (mut next, mut found) = (jobs.iter(), vec![None; jobs.len()]);
-    side_by_side.evaluate_all(&mut || next.next().copied(), &mut |number, outcome| found[number] = Some(outcome));
+    side_by_side.run_in_lanes(&mut || next.next().copied(), &mut |number, outcome| found[number] = Some(outcome));
     for (found, outcome) in found.into_iter().zip(&expected) {
         assert_eq!(found.as_ref(), Some(outcome));
     }

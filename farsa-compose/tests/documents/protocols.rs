@@ -320,7 +320,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>) {
     let lanes = evaluator.in_lanes().expect("lanes");
     lanes.use_lanes(Lanes::new(8, Instructions::detect()).expect("lanes")).expect("a batch");
     let (mut rest, mut found) = (all.iter().copied(), vec![None; all.len()]);
-    lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
+    lanes.run_in_lanes(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
     assert!(found.into_iter().eq(alone.into_iter().map(Some)));
 }
 

@@ -36,7 +36,7 @@ fn cameras_see_coloured_things_in_their_plane() {
     let lanes = evaluator.in_lanes().expect("lanes");
     lanes.use_lanes(farsa_lab::advanced::Lanes::best()).expect("a batch");
     let (mut next, mut in_lanes) = (Some(evaluation), Vec::new());
-    lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
+    lanes.run_in_lanes(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
     assert_eq!(in_lanes, [alone]);
     let found = refused(&watching(1.0, "[2.0, 0.0, 1.0]").replace("body = \"rod\"", "body = \"rot\""));
     assert!(found.contains("body `rot`") || found.contains("rod"), "{found}");

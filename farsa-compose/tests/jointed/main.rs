@@ -239,7 +239,7 @@ fn shown_in_lanes(file: &str) {
         let lanes = one.in_lanes().expect("lanes");
         lanes.use_lanes(farsa_lab::advanced::Lanes::best()).expect("a batch");
         let mut next = Some(Evaluation::new(&parameters, id));
-        lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
+        lanes.run_in_lanes(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
         assert_eq!(in_lanes, [found[0].clone()]);
     }
 }

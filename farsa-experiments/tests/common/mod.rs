@@ -36,7 +36,7 @@ pub(crate) fn assert_lanes_are_alone(evaluator: &mut dyn Evaluator, count: usize
             in_lanes.use_lanes(Lanes::new(lanes, instructions).unwrap()).unwrap();
             let mut left = evaluations.iter().copied();
             let mut together: Vec<Option<Outcome>> = vec![None; alone.len()];
-            in_lanes.evaluate_all(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
+            in_lanes.run_in_lanes(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
             for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
                 assert_eq!(Some(one), other.as_ref(), "{lanes} lanes, {instructions:?}, evaluation {number}");
             }

@@ -187,7 +187,7 @@ fn what_is_not_heard_changes_the_course_and_lanes_do_not() {
         if let Some(lanes) = evaluator.in_lanes() {
             lanes.use_lanes(Lanes::new(8, Instructions::detect()).unwrap()).unwrap();
             let (mut rest, mut found) = (all.iter().copied(), vec![None; all.len()]);
-            lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
+            lanes.run_in_lanes(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
             assert!(found.into_iter().eq(alone.into_iter().map(Some)), "{name}");
         }
     }

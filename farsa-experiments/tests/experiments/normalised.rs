@@ -72,7 +72,7 @@ fn check(experiment: &dyn Experiment, condition: &str) -> Option<usize> {
             ..Evaluation::new(&parameters[number as usize], id(number))
         };
         let (mut rest, mut found) = ((0..TRIALS).map(evaluation), vec![None; TRIALS as usize]);
-        lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
+        lanes.run_in_lanes(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
         assert!(found.into_iter().eq(normalised.into_iter().map(Some)), "{name}: in lanes");
     }
     Some(channels)

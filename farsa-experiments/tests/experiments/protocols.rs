@@ -99,7 +99,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>, most: usize) {
     if let Some(lanes) = evaluator.in_lanes() {
         lanes.use_lanes(Lanes::new(8, Instructions::detect()).unwrap()).unwrap();
         let (mut rest, mut found) = (all.iter().copied(), vec![None; all.len()]);
-        lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
+        lanes.run_in_lanes(&mut || rest.next(), &mut |number, outcome| found[number] = Some(outcome));
         assert!(found.into_iter().eq(alone.into_iter().map(Some)));
     }
 }

@@ -137,7 +137,9 @@ impl StrategyStart<'_> {
         Ok(if self.populations == 1 {
             AnyStrategy::from_words(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            AnyStrategy::from_words(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
+            AnyStrategy::from_words(
+                Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?,
+            )
         })
     }
 
@@ -152,7 +154,9 @@ impl StrategyStart<'_> {
         Ok(if self.populations == 1 {
             AnyStrategy::from_reals(search(self.seed).map_err(|error| refused(&error))?)
         } else {
-            AnyStrategy::from_reals(Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?)
+            AnyStrategy::from_reals(
+                Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?,
+            )
         })
     }
 }

@@ -51,7 +51,9 @@ impl StrategyDefinition for Truncation {
         Ok(if start.populations == 1 {
             AnyStrategy::from_words(TruncationGa::new(config, start.seed).map_err(refused)?)
         } else {
-            AnyStrategy::from_words(Populations::truncation(&vec![config; start.populations], start.seed).map_err(refused)?)
+            AnyStrategy::from_words(
+                Populations::truncation(&vec![config; start.populations], start.seed).map_err(refused)?,
+            )
         })
     }
 }
