@@ -1,18 +1,11 @@
 //! A custom experiment: a Khepera learns to find a lamp.
 
-use farsa::body::motors::WheelVelocity;
-use farsa::body::ports::BodyId;
-use farsa::body::robots::MobileRobot;
-use farsa::body::sensors::{Beam, LightSensors};
-use farsa::body::{Pose, Twist};
-use farsa::num::{Domain, Stream};
+use farsa::body::sensors::Beam;
 use farsa::physics::arena::{Arena, Cylinder};
-use farsa_lab::advanced::PlanarWorld;
-use farsa_lab::advanced::Schema;
-use farsa_lab::{Controlled, EpisodeId, Error, Evaluator, InWorld, Neurocontroller, Objective};
-use farsa_lab::{Setting, Settings, SimpleExperiment, Trials, cli};
+use farsa::prelude::*;
+use farsa_lab::{cli, prelude::*};
 
-const LAMP: [f64; 2] = [0.8, 0.4]; // metres
+const LAMP: [f64; 2] = [0.8, 0.4]; // meters
 
 fn settings(_condition: &str) -> Vec<Setting> {
     vec![Setting::whole("trial.steps", 400, 1..=1_000_000).doc("Steps of 50 ms.")]

@@ -51,6 +51,7 @@ impl FromStr for Engine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(not(feature = "rapier"))]
     use farsa_lab::advanced::{ENGINE, Value};
     #[cfg(not(feature = "rapier"))]
     use farsa_lab::{Experiment, Settings};

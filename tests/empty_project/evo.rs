@@ -1,5 +1,4 @@
-use farsa_evo::{EvoError, Fitness, Strategy};
-use farsa_evo::words::{GaConfig, TruncationGa};
+use farsa_evo::{EvoError, Fitness, Strategy, words::GaConfig, words::TruncationGa};
 
 fn main() -> Result<(), EvoError> {
     let mut evolution = TruncationGa::new(GaConfig::new(8), 42)?;

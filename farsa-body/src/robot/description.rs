@@ -459,12 +459,8 @@ mod tests {
 
     fn pendulum() -> Robot {
         let mut robot = Robot::new("pendulum");
-        let base = robot.add_segment(Segment::new(
-            "base",
-            None,
-            Joint::fixed(Pose::identity()),
-            MassProperties::sphere(0.0, 0.0),
-        ));
+        let fixed = Joint::fixed(Pose::identity());
+        let base = robot.add_segment(Segment::new("base", None, fixed, MassProperties::sphere(0.0, 0.0)));
         let joint = Joint::revolute("hinge", [0.0, 1.0, 0.0], Pose::identity(), [-1.0, 1.0]).with_damping(0.1);
         let bob = robot.add_segment(Segment::new("bob", Some(base), joint, MassProperties::sphere(1.0, 0.1)));
         let ball =

@@ -54,7 +54,11 @@ fn a_case_is_replayed_as_it_was_tested() {
         (farsa(), format!("{chosen} --case {row}s --html new.html"), "the nearest is"),
         (farsa(), format!("{chosen} --out new.csv"), "3 cases of protocol `labels`: steps are written of one"),
         (farsa(), format!("{chosen} --generation 0 --html new.html"), "cannot be used with"),
-        (farsa(), "replay arm --protocol labels --trial best --html new.html".into(), "name the trial by its number"),
+        (
+            farsa(),
+            "replay arm --protocol labels --trial best --html new.html".into(),
+            "a case of a protocol needs the number of a trial",
+        ),
         (farsa(), "replay arm --case 1 --html new.html".into(), "--protocol"),
         (farsa(), "replay arm --seed 1 --html new.html".into(), "--protocol"),
         (farsa(), "replay arm --protocol label --html new.html".into(), "the nearest is `labels`"),

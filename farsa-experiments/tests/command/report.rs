@@ -264,7 +264,7 @@ fn each_population_has_curves_and_columns_of_its_own() {
     }
     let picture = fs::read_to_string(here.join("runs/predator-prey-1/fitness.svg")).expect("the picture");
     for title in ["predator-prey-1: predator", "predator-prey-1: prey"] {
-        assert_eq!(picture.matches(&format!("\n{title}\n")).count(), 1, "{title}");
+        assert_eq!(picture.matches(&format!(">{title}<")).count(), 1, "{title}");
     }
     // What the log has for each: best, mean and worst from column 6 on.
     let last = |column: usize| short_of(&log(&here, "predator-prey-1", column));

