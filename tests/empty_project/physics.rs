@@ -1,5 +1,4 @@
-use farsa_body::ports::{Actuated, Kinematics, World as _};
-use farsa_body::robots::MobileRobot;
+use farsa_body::{ports::Actuated, ports::Kinematics, ports::World as _, robots::MobileRobot};
 use farsa_physics::arena::{Arena, ArenaError, World};
 
 fn main() -> Result<(), ArenaError> {

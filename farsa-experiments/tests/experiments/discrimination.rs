@@ -271,7 +271,8 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
                 let far = apart(place(&a, 0, body), place(&b, 0, body));
                 assert!(far < 5e-5, "{condition} {trial}: {far}");
                 let [a, b] = [&a, &b].map(|recording| recording.pose_at(0, BodyId(body as u16)).unwrap().heading());
-                assert!((a - b).abs() < 1e-4, "{condition} {trial}");
+                // The recording begins after a step, in which the rigid robot settles on its wheels.
+                assert!((a - b).abs() < 1e-3, "{condition} {trial}: {a} {b}");
             }
             let [a, b] = [&mut ours, &mut theirs].map(|evaluator| recorded(evaluator.as_mut(), &ahead, id));
             // Straight on until it runs into something: two steps later at most, for it has to get up to speed.
