@@ -17,7 +17,7 @@ use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
 use crate::push_box::config::PushConfig;
-use crate::wheeled::{place_and_heading, record_step, wheel_speeds};
+use crate::push_box::layer::{place_and_heading, record_step, wheel_speeds};
 
 /// Values that a controller gives: left and right wheel.
 pub(crate) const OUTPUTS: usize = 2;

@@ -10,6 +10,9 @@ mod config;
 mod episode;
 /// Its name, conditions and settings, and what runs its trials.
 mod experiment;
+/// Recording, protocols and wheels of its layer.
+#[cfg(feature = "rapier")]
+mod layer;
 /// Its description, and episodes over parameters.
 #[cfg(feature = "rapier")]
 mod task;

@@ -5,7 +5,8 @@ use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
-use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
+use crate::push_box::layer::{applied, layer_protocols, wheel_exports};
+use crate::wheeled::infrared_exports;
 use farsa_lab::advanced::{
     Anatomy, Behavior, ChannelGroup, Description, NormalizedController, NotedBehavior, Rollout, mean_of_trials,
 };
