@@ -2,9 +2,9 @@
 
 use farsa::body::ports::World as _;
 use farsa::body::robots::{ArmAndHand, Tabletop};
-use farsa::evo::{EvoError, Strategy};
 use farsa::evo::covariance::{CmaEs, CmaEsConfig};
 use farsa::evo::words::{GaConfig, TruncationGa};
+use farsa::evo::{EvoError, Strategy};
 use farsa::physics::articulated::{Model, Options, World};
 
 /// Ten control steps, and two searches that have to find what they search for.

@@ -2,9 +2,11 @@
 
 use farsa_body::Recorder;
 use farsa_compose::{ComposedExperiment, Limits};
-use farsa_lab::{Error, Evaluation, Evaluator, Experiment, Laboratory, Outcome, Parameter, Setting, Settings, Task, TaskInfo};
 use farsa_lab::advanced::{Behavior, ExperimentFiles, Iteration, Learner, NotedBehavior, ReadExperiment, Schema};
 use farsa_lab::strategy::{StrategyDefinition, Truncation};
+use farsa_lab::{
+    Error, Evaluation, Evaluator, Experiment, Laboratory, Outcome, Parameter, Setting, Settings, Task, TaskInfo,
+};
 use farsa_num::{Domain, Stream};
 
 /// Individuals of a population.

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use farsa_lab::fuzzing::RunReader;
 use farsa_lab::advanced::RunDirectory;
+use farsa_lab::fuzzing::RunReader;
 use farsa_lab::strategy::strategies;
 
 thread_local! {
