@@ -1,4 +1,4 @@
-//! Settings that are joint angles of an iCub.
+//! Settings that contain joint angles of an iCub.
 
 use farsa_body::robots::{Chain, Icub};
 use farsa_lab::Error;

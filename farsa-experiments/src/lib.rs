@@ -39,7 +39,7 @@ pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
-/// The laboratory of the command `farsa`: the experiments, all strategies, and files that describe experiments.
+/// Returns the laboratory of the `farsa` command with all experiments, all strategies and support for experiment files.
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     let files = farsa_compose::FILES;
     #[cfg(feature = "command")]
@@ -50,7 +50,7 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     laboratory
 }
 
-/// The experiments in the order in which `farsa list` shows them.
+/// Returns all experiments in the order of the `farsa list` command.
 pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
     [
         &ReachGraspLift,

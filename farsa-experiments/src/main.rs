@@ -1,4 +1,4 @@
-//! The `farsa` command over the reference experiments and files.
+//! The `farsa` command with the reference experiments.
 
 use std::process::ExitCode;
 

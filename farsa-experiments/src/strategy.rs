@@ -1,4 +1,4 @@
-//! The strategy that an experiment is searched by unless another one is asked for.
+//! The strategies that the experiments use by default.
 
 use farsa_lab::strategy::{StrategyDefinition, Truncation, strategies};
 

@@ -1,4 +1,4 @@
-//! Exports of robots on wheels, for the experiments that have them.
+//! Exports of wheeled robots for the experiments that use them.
 
 use farsa_body::robots::MobileRobot;
 use farsa_lab::exports::{SensorExport, SensorReading};

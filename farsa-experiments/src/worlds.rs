@@ -1,16 +1,16 @@
-//! The worlds that experiments can run in.
+//! The worlds in which experiments can be simulated.
 
 use std::str::FromStr;
 
 use farsa_lab::Error;
 
-/// The physics of an experiment that has a choice.
+/// The physics engine of experiments that support several engines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Engine {
-    /// Our articulated world, `farsa_physics::articulated`.
+    /// The articulated world of `farsa_physics::articulated`.
     #[default]
     Articulated,
-    /// rapier, `farsa_physics::rapier`, only in builds with the feature of that name.
+    /// The world of `farsa_physics::rapier`. It is only available if the feature `rapier` is enabled.
     Rapier,
 }
 
@@ -18,7 +18,7 @@ impl Engine {
     /// The names on the command line.
     pub(crate) const NAMES: [&'static str; 2] = ["articulated", "rapier"];
 
-    /// The name on the command line.
+    /// Returns the name that is used on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }

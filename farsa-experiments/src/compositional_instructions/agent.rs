@@ -1,4 +1,4 @@
-//! The network of an agent, whole or changed by a test.
+//! The controller of an agent, with the changes that the test protocols make to it.
 
 use farsa_lab::advanced::{Intervention, NormalizedController};
 use farsa_lab::{EpisodeId, Error};
@@ -6,7 +6,7 @@ use farsa_nn::{Controller, Ctrnn};
 
 use crate::compositional_instructions::network::{LAYOUT, Wiring};
 
-/// A network that is made of genes and that tests can change.
+/// A network whose parameters are decoded from genes, and which the test protocols can modify.
 #[derive(Clone, Debug)]
 pub struct Agent {
     network: NormalizedController<Ctrnn<Vec<f32>, Vec<f32>>>,
@@ -15,10 +15,10 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// An agent whose network has the first ends of all ranges.
+    /// Creates an agent whose parameters are the lower ends of their ranges.
     ///
     /// # Errors
-    /// [`Error::Other`] for values that make no network.
+    /// Returns [`Error::Other`] if no network can be built from these values.
     pub fn new(wiring: &Wiring, time_step: f64) -> Result<Self, Error> {
         let wrong = |error: farsa_nn::Error| Error::Other(format!("compositional-instructions: {error}"));
         let first: Vec<f32> = wiring.parameters().iter().map(|parameter| parameter.ends[0] as f32).collect();
@@ -29,21 +29,23 @@ impl Agent {
         Ok(Self { network: NormalizedController::new(network), genes, parameters })
     }
 
-    /// Sets the parameters and clears all changes. Returns false for another count of numbers, or for numbers that make no network.
+    /// Sets the parameters and removes all changes. Returns `false` if the number of values is wrong, or if they do not
+    /// form a valid network.
     pub fn load(&mut self, wiring: &Wiring, values: &[f32]) -> bool {
         self.network.load(None)
             && wiring.expand(values, &mut self.genes, &mut self.parameters)
             && self.network.controller_mut().copy_parameters(&self.parameters).is_ok()
     }
 
-    /// Applies the changes of a test until the next [`load`](Self::load). Returns false for changes that make no network.
+    /// Applies the changes of a test, which remain until the next call of [`load`](Self::load). Returns `false` if the
+    /// changed parameters do not form a valid network.
     pub fn change(&mut self, intervention: &Intervention, id: EpisodeId) -> bool {
         self.network.intervene(intervention, id, 0);
         intervention.parameters.is_empty()
             || self.network.controller_mut().copy_parameters(&intervention.edited(&self.parameters)).is_ok()
     }
 
-    /// The network.
+    /// Returns the network.
     pub fn network(&self) -> &Ctrnn<Vec<f32>, Vec<f32>> {
         self.network.controller()
     }

@@ -1,151 +1,152 @@
-//! The values of `compositional-instructions`.
+//! Configuration of the experiment `compositional-instructions`.
 
 use farsa_lab::Error;
 use farsa_num::{Scalar, sin_cos};
 
 use crate::compositional_instructions::instruction::{Action, Color, Condition, Instruction};
 
-/// The arm: two segments, seen from above.
+/// The arm, which consists of two segments and is seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// Lengths of the segments \[m\].
+    /// The lengths of the segments \[m\].
     pub lengths: [f64; 2],
-    /// Their masses \[kg\].
+    /// The masses of the segments \[kg\].
     pub masses: [f64; 2],
-    /// Their radius \[m\].
+    /// The radius of both segments \[m\].
     pub radius: f64,
-    /// Largest turn of each joint to either side \[deg\].
+    /// The largest rotation of each joint to either side, in degrees.
     pub ranges: [f64; 2],
-    /// Largest speed that is commanded \[rad/s\].
+    /// The largest speed that the network can command for each joint \[rad/s\].
     pub speeds: [f64; 2],
-    /// Torque for each radian per second that a joint lacks of the commanded speed \[N m s/rad\].
+    /// The torque per unit of difference between the commanded and the actual speed \[N m s/rad\].
     pub gains: [f64; 2],
-    /// Largest torque \[N m\].
+    /// The largest torque of each motor \[N m\].
     pub torques: [f64; 2],
 }
 
-/// The objects and their places.
+/// The three objects and the places where a trial puts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objects {
-    /// Radius \[m\].
+    /// The radius of an object \[m\].
     pub radius: f64,
-    /// Mass \[kg\].
+    /// The mass of an object \[kg\].
     pub mass: f64,
-    /// Coefficient of friction on the ground.
+    /// The coefficient of friction between an object and the ground.
     pub ground_friction: f64,
-    /// Coefficient of friction of arm and objects, and between objects.
+    /// The coefficient of friction between the arm and an object, and between two objects.
     pub friction: f64,
-    /// Distance from the base \[m\].
+    /// The mean distance of the objects from the base of the arm \[m\].
     pub distance: f64,
-    /// By how much that differs at most \[m\].
+    /// The largest deviation from that distance \[m\].
     pub distance_spread: f64,
-    /// Bearings of the three places, from the left to the right \[deg\].
+    /// The bearings of the three places, from left to right, in degrees.
     pub bearings: [f64; 3],
-    /// By how much each differs at most \[deg\].
+    /// The largest deviation from each bearing, in degrees.
     pub bearing_spread: f64,
 }
 
-/// The camera at the base, which looks along the first segment.
+/// The camera at the base of the arm. It looks along the first segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Field of view \[deg\], in three sectors.
+    /// The field of view, in degrees. It is divided into three sectors of equal width.
     pub view: f64,
-    /// Rays of a sector.
+    /// The number of rays that are cast in each sector.
     pub rays: u32,
-    /// Range of view \[m\].
+    /// The largest distance at which an object is visible \[m\].
     pub range: f64,
 }
 
-/// The start of a trial.
+/// The posture of the arm at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// The first joint is at most so far from one of the two directions between the objects \[deg\].
+    /// The largest deviation of the first joint from the direction between two neighboring objects, in degrees.
     pub first_spread: f64,
-    /// The second joint \[deg\].
+    /// The angle of the second joint, in degrees.
     pub second: f64,
-    /// By how much that differs at most \[deg\].
+    /// The largest deviation from that angle, in degrees.
     pub second_spread: f64,
-    /// Start on a drawn side, instead of always on the left.
+    /// If true, the side on which the arm starts is drawn at random. Otherwise it always starts on the left.
     pub both_sides: bool,
 }
 
-/// Limits of the judge: still, touched, moved.
+/// The thresholds that are used to compute the reward and to decide if a trial was successful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judging {
-    /// The last seconds of a trial, which are looked at \[s\].
+    /// The length of the period at the end of a trial that is taken into account, in seconds.
     pub window: f64,
-    /// A displacement that costs nothing \[m\].
+    /// The displacement of an object that has no effect on the reward \[m\].
     pub still: f64,
-    /// Distance beyond that at which the share falls to 0 \[m\].
+    /// The additional displacement at which the reward falls to zero \[m\].
     pub span: f64,
-    /// The same of the target of TOUCH \[m\].
+    /// Like `span`, but for the target of TOUCH \[m\].
     pub span_touched: f64,
-    /// The displacement that MOVE earns most for \[m\].
+    /// The displacement that earns the maximum reward for MOVE \[m\].
     pub far: f64,
-    /// Distance of the tip from the surface of the centered target below which reaching earns \[m\].
+    /// The distance from the surface of the centered target below which the tip earns a reward for reaching \[m\].
     pub reach: f64,
-    /// Weight of reaching in acts of TOUCH and MOVE \[0..1\].
+    /// The weight of reaching in the reward for TOUCH and MOVE, between 0 and 1.
     pub reach_share: f64,
-    /// Reward of a step of IGNORE with the target in view outside the middle sector \[0..1\].
+    /// The reward for a step of IGNORE in which the target is visible but not in the middle sector, between 0 and 1.
     pub aside_share: f64,
-    /// Least shares of the last seconds in a success: of INDICATE and IGNORE, and of TOUCH.
+    /// The minimum shares of the final period that count as a success. The first applies to INDICATE and IGNORE, the
+    /// second to TOUCH.
     pub least_shares: [f64; 2],
-    /// Most displacement of the target in a success of INDICATE and IGNORE \[m\].
+    /// The largest displacement of the target that is allowed in a successful trial of INDICATE or IGNORE \[m\].
     pub most_still: f64,
-    /// The same of TOUCH \[m\].
+    /// The largest displacement of the target that is allowed in a successful trial of TOUCH \[m\].
     pub most_touched: f64,
-    /// Least displacement of the target in a success of MOVE \[m\].
+    /// The smallest displacement of the target that is required in a successful trial of MOVE \[m\].
     pub least_moved: f64,
-    /// Most displacement of another object in any success \[m\].
+    /// The largest displacement of any other object that is allowed in a successful trial \[m\].
     pub most_other: f64,
 }
 
-/// The network's size and the ranges of its parameters.
+/// The ranges to which the genes of the network are decoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ranges {
-    /// Weights are decoded to plus and minus this.
+    /// The largest absolute value of a weight.
     pub weight: f64,
-    /// Biases are decoded to plus and minus this.
+    /// The largest absolute value of a bias.
     pub bias: f64,
-    /// Least and greatest decimal logarithm of the time constants \[s\].
+    /// The range of the time constants, as decimal logarithms of their values in seconds.
     pub time_constant_exponents: [f64; 2],
-    /// Least and greatest gain of the sensory neurons.
+    /// The smallest and the largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 
-/// All values of the experiment. The settings name their sources and the reasons for the others.
+/// The complete configuration of the experiment. The table of settings gives the source of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Which actions there are.
+    /// Selects the three actions of the agent.
     pub condition: Condition,
-    /// The two instructions that are held out.
+    /// The two instructions that are not used during evolution. They test generalization.
     pub held_out: [Instruction; 2],
-    /// Starts of each trained instruction.
+    /// The number of trials with different starts for each trained instruction.
     pub starts: u32,
-    /// Steps of a trial.
+    /// The number of steps of a trial.
     pub steps: u32,
-    /// Control step \[s\].
+    /// The duration of a control step, in seconds.
     pub time_step: f64,
-    /// Dynamics steps of a control step.
+    /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The arm.
+    /// The arm and its motors.
     pub arm: Arm,
-    /// The objects.
+    /// The objects and their places.
     pub objects: Objects,
-    /// The camera.
+    /// The camera at the base.
     pub camera: Camera,
-    /// Surfaces nearer than this count as touching \[m\].
+    /// The distance between two surfaces below which they count as touching \[m\].
     pub touch_margin: f64,
-    /// The start of a trial.
+    /// The posture of the arm at the start.
     pub start: Start,
-    /// Limits of the judge.
+    /// The thresholds of the reward.
     pub judging: Judging,
-    /// The network.
+    /// The ranges of the network's parameters.
     pub ranges: Ranges,
 }
 
 impl Config {
-    /// The defaults of a condition.
+    /// Returns the default configuration of a condition.
     pub const fn for_condition(condition: Condition) -> Self {
         Self {
             condition,
@@ -198,28 +199,28 @@ impl Config {
         }
     }
 
-    /// The instructions that are trained, in the order of the condition's nine.
+    /// Returns an iterator over the trained instructions, in the same order as [`Condition::instructions`].
     pub fn trained(&self) -> impl Iterator<Item = Instruction> + use<> {
         let held_out = self.held_out;
         self.condition.instructions().into_iter().filter(move |instruction| !held_out.contains(instruction))
     }
 
-    /// Trials of an evaluation: each trained instruction from each start.
+    /// Returns the number of trials in an evaluation. Every trained instruction is given once from each start.
     pub fn trials(&self) -> usize {
         self.trained().count() * self.starts as usize
     }
 
-    /// Steps at the end of a trial that are looked at, all at most.
+    /// Returns the number of steps in the final period. It never exceeds the length of the trial.
     pub fn window_steps(&self) -> u32 {
         let steps = self.judging.window / self.time_step + 0.5;
         (steps as u32).clamp(1, self.steps)
     }
 
-    /// Rules between values.
+    /// Checks that the values are compatible with each other.
     ///
     /// # Errors
-    /// [`Error::Setting`] for objects that may overlap each other or the arm at the start, or that the arm does not reach, and
-    /// for joints that would start beyond their range.
+    /// Returns [`Error::Setting`] if objects may overlap each other or the arm at the start, if the arm cannot reach
+    /// them, or if a joint would start outside its range.
     pub fn check(&self) -> Result<(), Error> {
         let Self { arm, objects, start, .. } = self;
         let [left, middle, right] = objects.bearings;

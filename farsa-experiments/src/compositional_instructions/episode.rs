@@ -1,4 +1,4 @@
-//! An episode of `compositional-instructions`: the agent receives an instruction and follows it, or does not.
+//! Episodes of `compositional-instructions`, in which an agent receives an instruction that it has to follow.
 
 use std::sync::Arc;
 
@@ -20,21 +20,21 @@ fn noise_of(id: EpisodeId) -> Stream {
     Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation)
 }
 
-/// The instructions of a trial: one, and in a test a later one.
+/// The instructions of one trial. Some tests replace the first instruction while the trial is running.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialInstructions {
-    /// The instruction at the start.
+    /// The instruction that is given at the start.
     pub first: Instruction,
-    /// From which step on another holds, and which.
+    /// The step at which the instruction changes, and the new instruction. `None` if it stays the same.
     pub change: Option<(u32, Instruction)>,
-    /// Steps of the trial.
+    /// The number of steps of the trial.
     pub steps: u32,
-    /// Standard deviation of the noise on camera, touch and joints.
+    /// The standard deviation of the noise that is added to the camera, the touch sensors and the joint angles.
     pub noise: f32,
 }
 
 impl TrialInstructions {
-    /// The instruction at a step.
+    /// Returns the instruction that is active at the given step.
     pub fn at(&self, step: u32) -> Instruction {
         match self.change {
             Some((from, then)) if step >= from => then,
@@ -43,9 +43,10 @@ impl TrialInstructions {
     }
 }
 
-/// A trial run by a controller: it is judged by the instruction that holds at its end.
+/// A trial that is run by a controller. Its result depends on the instruction that is active at the end.
 ///
-/// A change of the instruction restarts the totals: displacements are counted from then on.
+/// When the instruction changes, all totals are reset, and displacements are measured from the current places of the
+/// objects.
 #[derive(Clone, Debug)]
 pub struct InstructionEpisode<C> {
     scene: Arc<Scene>,
@@ -66,10 +67,11 @@ pub struct InstructionEpisode<C> {
 }
 
 impl<C: Controller> InstructionEpisode<C> {
-    /// A trial of this controller, of 20 inputs and 4 outputs.
+    /// Creates an episode for a controller with 20 inputs and 4 outputs.
     ///
     /// # Errors
-    /// [`Error::Other`] for a controller of another shape or a camera that cannot be.
+    /// Returns [`Error::Other`] if the controller has a different number of inputs or outputs, or if the camera is
+    /// invalid.
     pub fn new(scene: Arc<Scene>, controller: C) -> Result<Self, Error> {
         let (inputs, outputs) = (controller.inputs(), controller.outputs());
         if inputs != INPUTS || outputs != MOTORS {
@@ -95,67 +97,67 @@ impl<C: Controller> InstructionEpisode<C> {
         })
     }
 
-    /// Sets the instructions of the next episodes.
+    /// Sets the instructions of the following episodes.
     pub fn instruct(&mut self, instructions: TrialInstructions) {
         self.instructions = instructions;
     }
 
-    /// The instructions.
+    /// Returns the instructions of the current trial.
     pub fn instructions(&self) -> &TrialInstructions {
         &self.instructions
     }
 
-    /// The scene.
+    /// Returns the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The controller.
+    /// Returns the controller of the arm.
     pub fn controller(&self) -> &C {
         &self.controller
     }
 
-    /// The same, for other parameters.
+    /// Returns a mutable reference to the controller, for example to load different parameters.
     pub fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
     }
 
-    /// The last inputs \[20\].
+    /// Returns the 20 sensor values of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The last outputs \[4\].
+    /// Returns the 4 motor values of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }
 
-    /// Steps so far.
+    /// Returns the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// The instruction that the trial is judged by.
+    /// Returns the instruction that determines the result of the trial.
     pub fn instruction(&self) -> Instruction {
         self.instructions.at(self.steps)
     }
 
-    /// The totals.
+    /// Returns the totals that have been collected so far.
     pub fn totals(&self) -> &RewardTotals {
         &self.totals
     }
 
-    /// The result of the first instruction when the second one was given: its reward and its success.
+    /// Returns the reward for the first instruction and if it was successful, or `None` before the instruction changes.
     pub fn before_change(&self) -> Option<(Parts, bool)> {
         self.before_change
     }
 
-    /// The reward if the trial ends now.
+    /// Computes the reward under the assumption that the trial ends now.
     pub fn parts(&self) -> Parts {
         self.totals.parts(self.instruction(), &self.scene.config.judging)
     }
 
-    /// True if the trial succeeds when it ends now.
+    /// Returns true if the trial would count as a success if it ended now.
     pub fn succeeds(&self) -> bool {
         self.totals.succeeds(self.instruction(), &self.scene.config.judging)
     }

@@ -1,4 +1,4 @@
-//! The experiment `compositional-instructions` as the `farsa` command runs it.
+//! Registration of `compositional-instructions` as an experiment of the `farsa` command.
 
 use farsa_lab::advanced::Lanes;
 use farsa_lab::strategy::StrategyDefinition;
@@ -11,15 +11,17 @@ use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::task::InstructionTask;
 use crate::strategy::strategy;
 
-/// Can an agent combine two words that it has never received together? \[Tuci2011; Ferrauto2010, chapter 3\]
+/// Tests if an agent can combine two words that it has never received together \[Tuci2011\] \[Ferrauto2010, chapter
+/// 3\].
 ///
-/// An arm in the plane receives an action and an object, and evolves to follow seven of nine instructions. "TOUCH green" and "MOVE
-/// red" are held out for the test. Under `with-indicate` the actions are INDICATE, TOUCH and MOVE. Under `with-ignore` IGNORE
-/// replaces INDICATE.
+/// An arm in the plane receives an action and an object, and evolves to follow seven of nine instructions. The
+/// instructions "TOUCH green" and "MOVE red" are held out for the test. With the condition `with-indicate`, the actions
+/// are INDICATE, TOUCH and MOVE. With `with-ignore`, IGNORE replaces INDICATE.
 ///
-/// Deviations: the sources are abstracts and excerpts. The settings name the values that are ours. A sensory neuron reaches the
-/// inner ones one step later. IGNORE requires that the target was the object last in view. If a look at nothing were enough, an
-/// agent without the object word could follow all three of its instructions.
+/// The implementation deviates from the sources, of which only abstracts and excerpts were available. The settings mark
+/// all values that had to be chosen. A sensory neuron influences the inner neurons one step later. IGNORE requires that
+/// the target was the last object in view. Otherwise an agent without access to the object word could follow all three
+/// instructions with this action by looking away from everything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct CompositionalInstructions;
 
@@ -57,10 +59,10 @@ impl Experiment for CompositionalInstructions {
     }
 }
 
-/// Evaluates under a configuration.
+/// Creates an evaluator for the given configuration.
 ///
 /// # Errors
-/// [`Error::Setting`] and [`Error::Other`] for a configuration whose scene or network cannot be built.
+/// Returns [`Error::Setting`] or [`Error::Other`] if the scene or the network cannot be built.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, InstructionTask>, Error> {
     let wrong =
         |error: farsa_physics::articulated::ModelError| Error::Other(format!("compositional-instructions: {error}"));

@@ -1,4 +1,4 @@
-//! The reward of a trial, and its success.
+//! Computation of the reward of a trial, and the criterion for success.
 
 use core::f64::consts::PI;
 
@@ -7,63 +7,64 @@ use farsa_num::atan2;
 use crate::compositional_instructions::config::Judging;
 use crate::compositional_instructions::instruction::{Action, Color, Instruction};
 
-/// The agent and its objects as the judge sees them after a step.
+/// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// Colors in each sector of the camera, the leftmost sector first.
+    /// The colors that are visible in each sector of the camera. The leftmost sector comes first.
     pub seen: [[bool; 3]; 3],
-    /// Objects that the second segment touches, by color.
+    /// True for each object that is touched by the second segment, in the order of the colors.
     pub touched: [bool; 3],
-    /// Distance of each object from its place at the start \[m\].
+    /// The distance between each object and its initial place \[m\].
     pub displaced: [f64; 3],
-    /// Distance of the tip of the second segment from each object's surface \[m\].
+    /// The distance between the tip of the second segment and the surface of each object \[m\].
     pub tip: [f64; 3],
-    /// Where each object is from the camera, which looks along the first axis: ahead and to the left \[m\].
+    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left \[m\].
     pub ahead: [[f64; 2]; 3],
 }
 
 impl Observation {
-    /// True if any sector shows the color.
+    /// Returns true if the color is visible in any sector.
     pub fn in_view(&self, color: Color) -> bool {
         self.seen.iter().any(|sector| sector[color.index()])
     }
 
-    /// True if the middle sector shows the color.
+    /// Returns true if the color is visible in the middle sector.
     pub fn centred(&self, color: Color) -> bool {
         self.seen[1][color.index()]
     }
 
-    /// True if the second segment touches an object.
+    /// Returns true if the second segment touches any of the objects.
     pub fn touches(&self) -> bool {
         self.touched.contains(&true)
     }
 }
 
-/// The parts of a trial's fitness, each 0 to 1.
+/// The components of the fitness of a trial. Each of them is between 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Parts {
-    /// The share of finding the object, f.
+    /// The reward f for turning toward the object.
     pub find: f64,
-    /// The share of the action, a.
+    /// The reward a for performing the action.
     pub act: f64,
-    /// The share of leaving the other objects in place, u.
+    /// The reward u for leaving the other objects in place.
     pub undisturbed: f64,
-    /// All of it, F.
+    /// The resulting fitness F.
     pub fitness: f64,
 }
 
-/// The totals of a trial: what its last seconds were like.
+/// The totals that are collected during the final period of a trial.
 ///
-/// All shares are of the last seconds. `d_t` and `d_o` are the displacements of the target and of the other object that moved most.
-/// `near(d) = 1 - clamp((d - still) / span, 0, 1)`, and `aside(d)` has a separate span. r is the best reach of the tip while the
-/// target was centered. It is 1 if the second segment touched it, else `1 - clamp(distance of its tip / reach, 0, 1)`, with the
-/// weight q. s(x) is the share of steps in which the target was the object last in view and x held. A look past the target has the
-/// weight p:
+/// All shares refer to this period. `d_t` and `d_o` are the displacements of the target and of the other object that
+/// moved most. The function `near(d)` is defined as `1 - clamp((d - still) / span, 0, 1)`, and `aside(d)` uses
+/// [`Judging::span_touched`] instead. The variable r denotes the best reach of the tip while the target was centered.
+/// It is 1 if the second segment touched the target and `1 - clamp(distance of its tip / reach, 0, 1)` otherwise. Its
+/// weight is q. The function s(x) is the share of steps in which x was true and the target was the last object in view.
+/// A look past the target has the weight p:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
-/// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
+/// | TOUCH | the same | (q r + (1 - q) (on the target)) aside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
 /// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | (s(not in view) + p s(in view, not centred)) near(`d_t`), touching nothing | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -86,7 +87,7 @@ pub struct RewardTotals {
 }
 
 impl RewardTotals {
-    /// Takes a step of a trial under an instruction, `late` if it is one of the last seconds.
+    /// Adds a step of the trial. Set `late` to true if the step belongs to the final period.
     pub fn add(&mut self, instruction: Instruction, now: Observation, late: bool) {
         let seen = Color::ALL.map(|color| now.in_view(color));
         if seen.contains(&true) {
@@ -112,12 +113,12 @@ impl RewardTotals {
         }
     }
 
-    /// The step that passed last.
+    /// Returns the observation that was added last.
     pub fn last(&self) -> &Observation {
         &self.last
     }
 
-    /// Displacement of the target, and of the other object that moved most \[m\].
+    /// Returns the displacement of the target, followed by the largest displacement of the other objects \[m\].
     pub fn displaced(&self, target: Color) -> [f64; 2] {
         let others = Color::ALL.into_iter().filter(|color| *color != target);
         let farthest = others.map(|color| self.last.displaced[color.index()]).fold(0.0, f64::max);
@@ -128,7 +129,7 @@ impl RewardTotals {
         f64::from(steps) / f64::from(self.steps.max(1))
     }
 
-    /// The reward if the trial ends now.
+    /// Computes the reward under the assumption that the trial ends now.
     pub fn parts(&self, instruction: Instruction, judging: &Judging) -> Parts {
         let target = instruction.color;
         let [displaced, other] = self.displaced(target);
@@ -161,7 +162,7 @@ impl RewardTotals {
         Parts { find, act, undisturbed, fitness }
     }
 
-    /// True if the trial succeeds when it ends now.
+    /// Returns true if the trial would count as a success if it ended now.
     pub fn succeeds(&self, instruction: Instruction, judging: &Judging) -> bool {
         let target = instruction.color;
         let [displaced, other] = self.displaced(target);

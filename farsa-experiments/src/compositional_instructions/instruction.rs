@@ -1,58 +1,58 @@
-//! Instructions of two words: an action and an object.
+//! Instructions that consist of an action word and an object word.
 
 use core::fmt;
 use core::str::FromStr;
 
 use farsa_lab::Error;
 
-/// An action on an object.
+/// An action that can be performed on an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Turn to it and touch nothing.
+    /// The agent has to turn toward the object without touching anything.
     Indicate,
-    /// Touch it and leave it where it is.
+    /// The agent has to touch the object without moving it.
     Touch,
-    /// Push it away.
+    /// The agent has to push the object away.
     Move,
-    /// Look at it, then away from it and at nothing else.
+    /// The agent has to look at the object first, and then away from all objects.
     Ignore,
 }
 
-/// An object, by its color.
+/// The color of an object, which identifies it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Color {
-    /// The red one.
+    /// Identifies the red object.
     Red,
-    /// The green one.
+    /// Identifies the green object.
     Green,
-    /// The blue one.
+    /// Identifies the blue object.
     Blue,
 }
 
-/// An action word and an object word.
+/// An instruction, such as "TOUCH green".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// The action.
+    /// The action that has to be performed.
     pub action: Action,
-    /// With which object.
+    /// The color of the object on which the action is performed.
     pub color: Color,
 }
 
-/// The three actions of an agent: one of the experiment's two conditions.
+/// A condition of the experiment, which defines the three actions of the agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Condition {
-    /// INDICATE, TOUCH, MOVE.
+    /// The actions INDICATE, TOUCH and MOVE.
     #[default]
     WithIndicate,
-    /// IGNORE, TOUCH, MOVE.
+    /// The actions IGNORE, TOUCH and MOVE.
     WithIgnore,
 }
 
 impl Action {
-    /// Every action. A condition has three of them, [`Condition::actions`].
+    /// All four actions. Use [`Condition::actions`] to get the three actions of a condition.
     pub const ALL: [Self; 4] = [Self::Indicate, Self::Touch, Self::Move, Self::Ignore];
 
-    /// The word.
+    /// Returns the action word in capital letters.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Indicate => "INDICATE",
@@ -64,10 +64,10 @@ impl Action {
 }
 
 impl Color {
-    /// Every color, in the order of the channels and of the objects.
+    /// All colors, in the order of the input channels and of the objects.
     pub const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 
-    /// The word.
+    /// Returns the object word.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Red => "red",
@@ -76,12 +76,12 @@ impl Color {
         }
     }
 
-    /// The number of the object that has it.
+    /// Returns the index of the object with this color.
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Red, green and blue \[0..1\].
+    /// Returns the red, green and blue components, each between 0 and 1.
     pub const fn rgb(self) -> [f64; 3] {
         match self {
             Self::Red => [1.0, 0.0, 0.0],
@@ -92,15 +92,15 @@ impl Color {
 }
 
 impl Condition {
-    /// The names of both, in their order.
+    /// The names of the two conditions, as they are used on the command line.
     pub const NAMES: [&'static str; 2] = ["with-indicate", "with-ignore"];
 
-    /// The condition of this name, or [`Condition::WithIndicate`].
+    /// Returns the condition with the given name. An unknown name results in [`Condition::WithIndicate`].
     pub fn from_name(name: &str) -> Self {
         if name == Self::NAMES[1] { Self::WithIgnore } else { Self::WithIndicate }
     }
 
-    /// Its actions, in the order of the channels.
+    /// Returns the actions of this condition, in the order of the input channels.
     pub const fn actions(self) -> [Action; 3] {
         match self {
             Self::WithIndicate => [Action::Indicate, Action::Touch, Action::Move],
@@ -108,21 +108,22 @@ impl Condition {
         }
     }
 
-    /// Its nine instructions, object by object within each action.
+    /// Returns the nine instructions of this condition, grouped by action.
     pub fn instructions(self) -> [Instruction; 9] {
         let actions = self.actions();
         core::array::from_fn(|i| Instruction { action: actions[i / 3], color: Color::ALL[i % 3] })
     }
 
-    /// The number of an action's channel, or 0 for an action of the other condition.
+    /// Returns the index of the input channel for an action. The result is 0 if the action is not part of this
+    /// condition.
     pub fn channel(self, action: Action) -> usize {
         self.actions().iter().position(|other| *other == action).unwrap_or(0)
     }
 
-    /// The instruction of these two words.
+    /// Parses an instruction of this condition.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest instruction for one of the other condition.
+    /// Returns [`Error::Unknown`] with the most similar instruction of this condition if there is no such instruction.
     pub fn parse(self, text: &str) -> Result<Instruction, Error> {
         let instruction = text.parse::<Instruction>().ok();
         instruction.filter(|instruction| self.actions().contains(&instruction.action)).ok_or_else(|| {
@@ -133,7 +134,7 @@ impl Condition {
 }
 
 impl Instruction {
-    /// Every instruction of either condition.
+    /// Returns an iterator over the instructions of both conditions.
     pub fn all() -> impl Iterator<Item = Self> {
         Action::ALL.into_iter().flat_map(|action| Color::ALL.into_iter().map(move |color| Self { action, color }))
     }
@@ -148,10 +149,10 @@ impl fmt::Display for Instruction {
 impl FromStr for Instruction {
     type Err = Error;
 
-    /// The instruction of these two words, in any case.
+    /// Parses an instruction. The case of the letters is ignored.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest one.
+    /// Returns [`Error::Unknown`] with the most similar instruction.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut words = text.split_whitespace();
         let (first, second, rest) = (words.next(), words.next(), words.next());

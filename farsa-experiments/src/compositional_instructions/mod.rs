@@ -1,4 +1,4 @@
-//! The experiment `compositional-instructions`: an arm receives an action and an object.
+//! The experiment `compositional-instructions`, in which a robot arm follows instructions of two words.
 
 /// The network of an agent, whole or with lesions.
 mod agent;

@@ -1,4 +1,4 @@
-//! The network of `compositional-instructions`: sensory, inner and motor neurons in continuous time.
+//! The continuous-time network of `compositional-instructions`, with sensory, inner and motor neurons.
 
 use core::f64::consts::LN_10;
 
@@ -9,20 +9,21 @@ use farsa_num::exp;
 
 use crate::compositional_instructions::config::Ranges;
 
-/// Inputs, each of a sensory neuron: 9 of the camera, 3 of touch, 2 of the joints, 3 for the action, 3 for the object.
+/// The number of sensory neurons. There are 9 for the camera, 3 for touch, 2 for the joints, and 3 for each of the two
+/// words.
 pub const INPUTS: usize = 20;
-/// Inner neurons.
+/// The number of inner neurons.
 pub const INNER: usize = 6;
-/// Motor neurons, two for each joint.
+/// The number of motor neurons. Each joint is driven by two of them.
 pub const MOTORS: usize = 4;
-/// All neurons: sensory, then inner, then motor.
+/// The total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
 pub const NEURONS: usize = INPUTS + INNER + MOTORS;
 
-/// The layout: each input is the external input of a sensory neuron.
+/// The layout of the network. Each input is connected to one sensory neuron.
 pub const LAYOUT: CtrnnLayout =
     CtrnnLayout::new(INPUTS, NEURONS, MOTORS).with_direct_inputs(0).with_integrator(Integrator::ExponentialEuler);
 
-/// The sensory neurons of each kind of input, which share a gain and a bias.
+/// The kinds of sensory neurons. All neurons of a kind share a gain and a bias.
 pub const KINDS: [(&str, Span); 5] = [
     ("camera", Span::new(0, 9)),
     ("touch", Span::new(9, 3)),
@@ -54,11 +55,12 @@ const FIRST: usize = 1000;
 /// The time constant of the sensory neurons, in parts of a step: so small that they are what their input is.
 const RELAY: f64 = 0.05;
 
-/// Which parameters of the network are genes, and what is made of them.
+/// Defines which parameters of the network are encoded as genes.
 ///
-/// Genes begin with the weights neuron by neuron and the biases. Then come the gains of the sensory neurons by kind, and the
-/// decimal logarithms of the time constants of inner and motor neurons. These are 180 + 15 + 5 + 10 numbers. A sensory neuron
-/// computes sigma(gain input + bias). The network multiplies its bias by the gain, so it stores bias / gain.
+/// The genes start with the 180 weights, which are ordered by neuron, and 15 biases. They are followed by 5 gains of
+/// the sensory neurons, one for each kind, and 10 time constants of the inner and motor neurons. Time constants are
+/// encoded as decimal logarithms. Note that a sensory neuron computes sigma(gain input + bias). Since the network
+/// multiplies the bias by the gain, it stores bias / gain instead.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     /// Which number each of the network's parameters is made of, or what it always is.
@@ -75,10 +77,10 @@ enum Origin {
 }
 
 impl Wiring {
-    /// The wiring for steps of `time_step` \[s\], its genes decoded to these ranges.
+    /// Creates the wiring for a network with the given time step in seconds. Genes are decoded to the given ranges.
     ///
     /// # Errors
-    /// [`Error::Other`] for an empty range.
+    /// Returns [`Error::Other`] if a range is empty.
     pub fn new(ranges: &Ranges, time_step: f64) -> Result<Self, Error> {
         let wrong = |error: farsa_nn::Error| Error::Other(format!("compositional-instructions: {error}"));
         let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &ITSELF)
@@ -120,12 +122,13 @@ impl Wiring {
         Ok(Self { origins, kinds, parameters, relay: (RELAY * time_step) as f32 })
     }
 
-    /// The numbers that the network is made of, with their ranges.
+    /// Returns the encoded parameters and their ranges.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// Fills the network's parameters \[[`LAYOUT`]\] from these numbers. Returns false for another count of numbers.
+    /// Computes the parameters of the network, in the order of [`LAYOUT`], from the decoded values. Returns `false` if
+    /// the number of values is wrong.
     pub fn expand(&self, values: &[f32], genes: &mut Vec<f32>, parameters: &mut [f32]) -> bool {
         if values.len() != self.parameters.len() || parameters.len() != self.origins.len() {
             return false;

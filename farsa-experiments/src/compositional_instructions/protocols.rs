@@ -1,4 +1,4 @@
-//! The test protocols of `compositional-instructions`: the instructions of each case, and the changes of the network.
+//! Test protocols of `compositional-instructions`. Each case defines the instructions and the changes of the network.
 
 use farsa_lab::advanced::{CaseId, Intervention, Protocol};
 use farsa_nn::CtrnnParameter;
@@ -91,8 +91,8 @@ impl Protocols {
         self.add(protocol, probes.to_vec());
     }
 
-    /// Another action for the same object, or another object for the same action, when the time of a trial is over: then as
-    /// much time again.
+    /// Another action for the same object, or another object for the same action, when the time of a trial is over:
+    /// then as much time again.
     fn add_transitions(&mut self, config: &Config, of_action: bool) {
         let actions = config.condition.actions();
         let (name, summary, rows, columns, axes) = if of_action {

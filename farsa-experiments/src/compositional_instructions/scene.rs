@@ -1,4 +1,4 @@
-//! The scene of `compositional-instructions`: an arm and three objects in a plane, and how a trial starts.
+//! The scene of `compositional-instructions`, which contains an arm and three objects in a plane.
 
 use farsa_body::Pose;
 use farsa_body::actuators::{Law, Velocity};
@@ -25,42 +25,42 @@ const STIFFNESS: f64 = 2e4;
 const DAMPING: f64 = 40.0;
 const GRAVITY: f64 = 9.81;
 
-/// Where everything is at the start of a trial.
+/// The positions of the arm and the objects at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartPose {
-    /// The joints \[rad\].
+    /// The angles of the two joints \[rad\].
     pub joints: [f64; 2],
-    /// The objects, by color \[m\].
+    /// The positions of the objects in the order of their colors \[m\].
     pub objects: [[f64; 2]; 3],
 }
 
-/// The robot's description with the names of what matters in it.
+/// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The arm and the objects.
+    /// The arm and the objects, in one description.
     pub robot: Robot,
-    /// Every value of the experiment.
+    /// The configuration from which the scene was built.
     pub config: Config,
-    /// The objects, by color.
+    /// The bodies of the objects in the order of their colors.
     pub objects: [BodyId; 3],
-    /// Their two sliding joints each.
+    /// The two sliding joints of each object.
     pub sliders: [[JointId; 2]; 3],
 }
 
 impl Scene {
-    /// The first segment, which carries the camera at the base.
+    /// The first segment, to which the camera is attached.
     pub const FIRST: BodyId = BodyId(0);
-    /// The second segment.
+    /// The second segment, which can touch the objects.
     pub const SECOND: BodyId = BodyId(1);
-    /// The joints at the base and between the segments.
+    /// The joint at the base, and the joint between the two segments.
     pub const JOINTS: [JointId; 2] = [JointId(0), JointId(1)];
-    /// Their actuators.
+    /// The actuators of the two joints.
     pub const ACTUATORS: [ActuatorId; 2] = [ActuatorId(0), ActuatorId(1)];
 
-    /// The scene of a configuration.
+    /// Builds the scene for a configuration.
     ///
     /// # Errors
-    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// Returns the errors of [`Config::check`], or [`Error::Other`] if the robot cannot be simulated.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let wrong = |error: RobotError| Error::Other(format!("compositional-instructions: {error}"));
@@ -109,23 +109,24 @@ impl Scene {
         Ok(Self { robot, config, objects: bodies, sliders })
     }
 
-    /// Options of the articulated world.
+    /// Returns the options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, objects, .. } = self.config;
         Options { time_step, substeps, sight_height: objects.radius, ..Options::default() }
     }
 
-    /// The pairs of an object with the second segment.
+    /// Returns the contact pair of an object and the second segment.
     pub fn pair_on_second(&self, color: Color) -> PairId {
         PairId((2 * color.index() + 1) as u16)
     }
 
-    /// Where everything is at the start of an episode.
+    /// Draws the initial positions for an episode.
     ///
-    /// All is drawn from the stream of [`Domain::Start`], the same for all individuals. For each place, from left to right, come
-    /// bearing and distance. Then come the two objects between which the first joint starts, its angle, and the angle of the second
-    /// joint with its side. Trial i has the colors in order i + k modulo 6, with a k for each generation. Six consecutive trials
-    /// have each order once.
+    /// Since all values come from the stream of [`Domain::Start`], they are the same for all individuals of a
+    /// generation. The bearing and the distance of each place are drawn from left to right. They are followed by the
+    /// pair of objects between which the first joint starts, its angle, and the angle and side of the second joint.
+    /// Trial i uses the order i + k modulo 6 of the colors, where k depends on the generation. Six consecutive trials
+    /// therefore use each order exactly once.
     pub fn start_pose(&self, id: EpisodeId) -> StartPose {
         let Config { objects, start, .. } = &self.config;
         let first = Stream::new(id.seed, Domain::Start, ALL_TRIALS, 0, id.generation).below(ORDERS.len() as u32);
@@ -149,7 +150,7 @@ impl Scene {
         StartPose { joints: [first.to_radians(), side * second.to_radians()], objects: places }
     }
 
-    /// Puts everything there, at rest.
+    /// Moves everything to the given positions, at rest.
     pub fn arrange<W>(&self, world: &mut W, start: &StartPose)
     where
         W: Arrange + Actuated + Handles<Joint = JointId> + ?Sized,

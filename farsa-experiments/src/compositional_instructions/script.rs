@@ -1,4 +1,4 @@
-//! A controller written by hand, which shows that the sensors and the two words suffice.
+//! A handwritten controller. It demonstrates that the sensors and the two words are sufficient to solve the task.
 
 use farsa_nn::Controller;
 
@@ -6,15 +6,15 @@ use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::instruction::{Action, Color, Condition, Instruction};
 use crate::compositional_instructions::network::{INPUTS, MOTORS};
 
-/// Which word a [`Script`] does not listen to, and what it takes for it.
+/// Selects the part of the instruction that a [`Script`] ignores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Deaf {
-    /// It senses both.
+    /// The script uses both words.
     #[default]
     To,
-    /// It always does this.
+    /// The script ignores the action word and always performs this action.
     ToAction(Action),
-    /// It always turns to this object.
+    /// The script ignores the object word and always turns toward this object.
     ToColor(Color),
 }
 
@@ -39,7 +39,8 @@ enum Stage {
     Rest,
 }
 
-/// Finds the object by its color, then acts by the action word: 20 sensors in, 4 motors out, and nothing else.
+/// A controller that finds the object by its color and then performs the action. It uses only the 20 sensor values and
+/// the 4 motors of the evolved agents.
 #[derive(Clone, Debug)]
 pub struct Script {
     condition: Condition,
@@ -53,11 +54,12 @@ pub struct Script {
 
 /// Where the outermost object must be in view the search turns back \[rad\].
 const TURN_BACK: f64 = 1.0;
-/// Through which angle the second joint pushes: 0.35 m at the distance of the objects from the elbow, and some more \[rad\].
+/// Through which angle the second joint pushes: 0.35 m at the distance of the objects from the elbow, and some more
+/// \[rad\].
 const PUSH: f64 = 1.8;
 
 impl Script {
-    /// A controller for an experiment's agent.
+    /// Creates a script that controls the agent of an experiment.
     pub fn new(config: &Config, deaf: Deaf) -> Self {
         Self {
             condition: config.condition,

@@ -1,4 +1,4 @@
-//! The senses of the agent: colors ahead, touch, its joints, and the two words.
+//! The sensors of the agent, which are the camera, touch, the joint angles and the two words.
 
 use farsa_body::ports::{BodyId, Handles, JointId, Joints, Kinematics, Sight};
 use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
@@ -11,14 +11,17 @@ use crate::compositional_instructions::instruction::{Color, Condition, Instructi
 use crate::compositional_instructions::network::INPUTS;
 use crate::compositional_instructions::scene::Scene;
 
-/// A world for the agent.
+/// A world that supports all sensors of the agent.
 pub trait ArmWorld: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> {}
 
 impl<W> ArmWorld for W where W: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// The sensors, 20 channels. First come, from left to right, the camera's sectors with red, green and blue. Then come touch of the
-/// second segment on the left, at its tip and on the right. The two joints follow, with 0 at the lower and 1 at the upper limit.
-/// The last ones are the action and the object.
+/// The sensors of the agent, which have 20 channels.
+///
+/// The first nine channels are the red, green and blue values of the camera's sectors from left to right. The next
+/// three channels measure touch on the left side, at the tip and on the right side of the second segment. They are
+/// followed by the two joint angles, scaled from 0 at the lower limit to 1 at the upper limit. The action word and the
+/// object word have three channels each.
 #[derive(Clone, Debug)]
 pub struct Senses {
     camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
@@ -33,7 +36,7 @@ pub struct Senses {
     reach: f64,
 }
 
-/// The names of the channels.
+/// Returns the names of the channels.
 pub fn channel_names(condition: Condition) -> Vec<String> {
     let sectors = ["left", "middle", "right"];
     let seen = sectors.into_iter().flat_map(|sector| Color::ALL.map(|color| format!("{} {sector}", color.word())));
@@ -44,10 +47,10 @@ pub fn channel_names(condition: Condition) -> Vec<String> {
 }
 
 impl Senses {
-    /// The sensors in a scene.
+    /// Creates the sensors for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a camera that cannot be.
+    /// Returns [`Error::Other`] if the camera is invalid.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let Config { arm, objects, camera, condition, touch_margin, .. } = &scene.config;
         let wrong = |error: ChannelError| Error::Other(format!("compositional-instructions: {error}"));
@@ -64,7 +67,8 @@ impl Senses {
         })
     }
 
-    /// Reads all channels and returns the observation of the judge. `places` are the objects' places at the start.
+    /// Reads all channels and returns the observation that determines the reward. The argument `places` contains the
+    /// initial positions of the objects.
     pub fn read<W: ArmWorld + ?Sized>(
         &mut self,
         world: &W,
@@ -104,7 +108,7 @@ impl Senses {
         now
     }
 
-    /// Gives the two words alone.
+    /// Writes the channels of the two words and leaves the others unchanged.
     pub fn write_words(&self, instruction: Instruction, x: &mut [f32; INPUTS]) {
         let Instruction { action, color } = instruction;
         x[14..].fill(0.0);
@@ -112,8 +116,8 @@ impl Senses {
         x[17 + color.index()] = 1.0;
     }
 
-    /// With which side the second segment, whose tip is there, is on an object at a place: 0 the left one, 1 the tip, 2 the right
-    /// one.
+    /// With which side the second segment, whose tip is there, is on an object at a place: 0 the left one, 1 the tip, 2
+    /// the right one.
     fn side(&self, second: &Pose, tip: [f64; 3], place: [f32; 3]) -> Option<usize> {
         // Twice the way from the segment's middle. An object that touches it is no further along any axis than half the length and
         // the reach, and a hundredth for rounding. This cheap test excludes most objects.

@@ -1,4 +1,4 @@
-//! The values of `compositional-instructions` as settings.
+//! Conversion between the configuration of `compositional-instructions` and its table of settings.
 
 use farsa_lab::{Error, Setting, Settings};
 
@@ -14,7 +14,7 @@ fn numbers(key: &str, values: &[f64], low: f64, high: f64) -> Setting {
 }
 
 impl Config {
-    /// The settings with these values as defaults.
+    /// Returns the table of settings with the values of this configuration as defaults.
     pub fn table(&self) -> Vec<Setting> {
         [self.of_search(), self.of_world(), self.of_start(), self.of_judging(), self.of_network()].concat()
     }
@@ -148,10 +148,10 @@ impl Config {
         ]
     }
 
-    /// The values of checked settings.
+    /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what does not go together.
+    /// Returns [`Error::Setting`] if the values are not compatible with each other.
     pub fn read(condition: Condition, settings: &Settings) -> Result<Self, Error> {
         let number = |key: &str| settings.number(key);
         let count = |key: &str| settings.count(key).map(|count| count as u32);

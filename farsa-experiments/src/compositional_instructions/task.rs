@@ -1,4 +1,4 @@
-//! The description of `compositional-instructions`, and its episodes over parameters.
+//! The task of `compositional-instructions`, which runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::schema;
 use crate::compositional_instructions::senses::{ArmWorld, channel_names};
 
-/// A trial run by a network, with what it records.
+/// Runs the trials of a network and defines the channels that are recorded.
 #[derive(Clone)]
 pub struct InstructionTask {
     episode: InstructionEpisode<Agent>,
@@ -30,10 +30,10 @@ pub struct InstructionTask {
 }
 
 impl InstructionTask {
-    /// Trials in a scene.
+    /// Creates the task for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a configuration whose network cannot be built, [`Error::Setting`] for one in which nothing is trained.
+    /// Returns [`Error::Other`] if the network cannot be built, or [`Error::Setting`] if all instructions are held out.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let wiring = Wiring::new(&scene.config.ranges, scene.config.time_step)?;
         let agent = Agent::new(&wiring, scene.config.time_step)?;
@@ -47,7 +47,7 @@ impl InstructionTask {
         &self.episode.scene().config
     }
 
-    /// The episode.
+    /// Returns the current episode.
     pub fn episode(&self) -> &InstructionEpisode<Agent> {
         &self.episode
     }

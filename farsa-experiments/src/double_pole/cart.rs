@@ -1,41 +1,41 @@
-//! The cart, its poles and their equations of motion.
+//! Equations of motion of a cart with two poles.
 
 use farsa_num::sin_cos;
 
-/// A pole on the cart: a thin uniform rod on a hinge.
+/// A pole that is attached to the cart by a hinge. It is modeled as a thin uniform rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// Half its length l \[m\].
+    /// Half the length of the pole, l \[m\].
     pub half_length: f64,
-    /// Its mass m \[kg\].
+    /// The mass of the pole, m \[kg\].
     pub mass: f64,
-    /// Coefficient of friction of its hinge \[N m s\].
+    /// The coefficient of friction of the hinge \[N m s\].
     pub friction: f64,
 }
 
-/// A cart on a straight track with two poles that do not touch each other.
+/// A cart that moves along a straight track and carries two poles. The poles do not collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cart {
-    /// Mass M of the cart \[kg\].
+    /// The mass of the cart, M \[kg\].
     pub mass: f64,
-    /// Friction of the cart on its track, whatever its speed \[N\].
+    /// The friction between the cart and the track \[N\]. It does not depend on the speed.
     pub friction: f64,
-    /// Acceleration of gravity \[m/s^2\].
+    /// The acceleration of gravity \[m/s^2\].
     pub gravity: f64,
-    /// The poles.
+    /// The two poles on the cart.
     pub poles: [Pole; 2],
 }
 
-/// Where a cart and its poles are, and how they move.
+/// The state of the cart and the poles at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartState {
-    /// Position of the cart \[m\].
+    /// The position of the cart on the track \[m\].
     pub position: f64,
-    /// Its velocity \[m/s\].
+    /// The velocity of the cart \[m/s\].
     pub velocity: f64,
-    /// Angles of the poles from upright, towards larger positions \[rad\].
+    /// The angles of the poles from the upright position \[rad\]. Positive angles lean towards positive positions.
     pub angles: [f64; 2],
-    /// Their angular velocities \[rad/s\].
+    /// The angular velocities of the poles \[rad/s\].
     pub angular_velocities: [f64; 2],
 }
 
@@ -54,7 +54,8 @@ impl CartState {
 }
 
 impl Default for Cart {
-    /// The values of \[Gomez2008\] appendix A. The acceleration of gravity is missing there and is that of \[Wieland1991\].
+    /// Returns the values of \[Gomez2008\] appendix A. Since the acceleration of gravity is missing there, it is taken
+    /// from \[Wieland1991\].
     fn default() -> Self {
         let pole = |half_length, mass| Pole { half_length, mass, friction: 0.000_002 };
         Self { mass: 1.0, friction: 0.0005, gravity: 9.8, poles: [pole(0.5, 0.1), pole(0.05, 0.01)] }
@@ -62,7 +63,8 @@ impl Default for Cart {
 }
 
 impl Cart {
-    /// The accelerations of the cart \[m/s^2\] and of the poles \[rad/s^2\] under a force on the cart \[N\].
+    /// Computes the accelerations of the cart \[m/s^2\] and of the poles \[rad/s^2\] when a force \[N\] acts on the
+    /// cart.
     ///
     /// Source: \[Wieland1991\], as printed in \[Gomez2008\] appendix A. Deviation: g is positive here.
     #[inline]
@@ -95,7 +97,8 @@ impl Cart {
         CartState { position: state.velocity, velocity, angles: state.angular_velocities, angular_velocities }
     }
 
-    /// The state after a step \[s\] under a constant force \[N\], by the classical Runge-Kutta method of fourth order.
+    /// Computes the state after a time step in seconds. The force in newtons is constant during the step. The
+    /// integration uses the classical fourth-order Runge-Kutta method.
     pub fn step(&self, state: &CartState, force: f64, time_step: f64) -> CartState {
         // s + h/6 (k1 + 2 k2 + 2 k3 + k4), added term by term, so that the order of sums is fixed.
         let half = 0.5 * time_step;

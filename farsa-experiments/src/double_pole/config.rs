@@ -1,4 +1,4 @@
-//! The values of `double-pole`, as settings.
+//! Configuration of the experiment `double-pole`, and its settings.
 
 use core::f64::consts::PI;
 
@@ -7,41 +7,43 @@ use farsa_lab::{Error, Setting, Settings};
 use crate::double_pole::cart::Cart;
 use crate::double_pole::network::MOST_HIDDEN;
 
-/// A cart with two poles. The defaults are those of \[Gomez2008\] where the settings are marked as given.
+/// The configuration of the cart, the trial and the network. Settings that are marked as given have the defaults of
+/// \[Gomez2008\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The network senses velocities.
+    /// If true, the network receives the velocities as additional inputs.
     pub velocities: bool,
-    /// The fitness of \[Gruau1996\], which rewards rest, instead of the number of steps.
+    /// If true, the fitness also rewards rest \[Gruau1996\]. Otherwise it is the number of steps in balance.
     pub damping: bool,
-    /// The cart and its poles.
+    /// The cart and the poles that it carries.
     pub cart: Cart,
-    /// Step of the integration \[s\].
+    /// The duration of a step of the integration, in seconds.
     pub time_step: f64,
-    /// Steps of the integration between two steps of the network.
+    /// The number of integration steps between two steps of the network.
     pub substeps: u32,
-    /// Steps of the network that a trial lasts.
+    /// The largest number of network steps in a trial.
     pub steps: u32,
-    /// Angle of the long pole at the start \[deg\].
+    /// The initial angle of the long pole, in degrees.
     pub angle: f64,
-    /// Angle beyond which a pole has fallen \[deg\].
+    /// The angle at which a pole counts as fallen, in degrees.
     pub most_angle: f64,
-    /// Position beyond which the cart has left the track \[m\].
+    /// The largest distance of the cart from the middle of the track \[m\].
     pub most_position: f64,
-    /// The largest force \[N\].
+    /// The largest force that the network can apply \[N\].
     pub force: f64,
-    /// The smallest force \[N\].
+    /// The smallest force that the network can apply \[N\].
     pub least_force: f64,
-    /// Hidden neurons.
+    /// The number of hidden neurons in the network.
     pub hidden: u32,
-    /// Weights are decoded to plus and minus this.
+    /// The largest absolute value of a weight.
     pub weight_range: f64,
-    /// Scales of position \[m\], angles \[rad\] and velocities \[m/s, rad/s\]: the network senses the quotients.
+    /// The scales of the positions \[m\], angles \[rad\] and velocities \[m/s or rad/s\]. Each input is divided by its
+    /// scale.
     pub scales: [f64; 3],
 }
 
 impl Config {
-    /// The values of a condition.
+    /// Returns the default configuration, with or without velocities as inputs.
     pub fn new(velocities: bool) -> Self {
         Self {
             velocities,
@@ -66,17 +68,17 @@ impl Config {
         degrees * (PI / 180.0)
     }
 
-    /// Number of inputs of the network.
+    /// Returns the number of inputs of the network.
     pub fn inputs(&self) -> usize {
         if self.velocities { 6 } else { 3 }
     }
 
-    /// Number of neurons, the output among them.
+    /// Returns the number of neurons, including the output neuron.
     pub fn neurons(&self) -> usize {
         self.hidden as usize + 1
     }
 
-    /// The settings with these values as defaults.
+    /// Returns the table of settings with the values of this configuration as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let positive = |key: &str, value: f64| Setting::number(key, value, 1e-9..=1e6);
         let least = |key: &str, value: f64| Setting::number(key, value, 0.0..=1e6);
@@ -136,10 +138,10 @@ impl Config {
         ]
     }
 
-    /// The values of checked settings under a condition.
+    /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what does not go together.
+    /// Returns [`Error::Setting`] if the values are not compatible with each other.
     pub fn read(velocities: bool, settings: &Settings) -> Result<Self, Error> {
         let number = |key: &str| settings.number(key);
         let mut cart = Cart {

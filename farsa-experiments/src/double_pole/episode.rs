@@ -1,4 +1,4 @@
-//! An episode of `double-pole`: a network pushes the cart until a pole falls.
+//! Episodes of `double-pole`, in which a network pushes the cart until a pole falls.
 
 use farsa_evo::ObservationStatistics;
 use farsa_lab::advanced::{Intervention, NormalizedController};
@@ -15,7 +15,7 @@ const DAMPED: u32 = 1000;
 /// The number of last steps in the sum of positions and velocities.
 const LAST: u32 = 100;
 
-/// A cart with two poles and the network that pushes it.
+/// A trial in which a network balances the two poles on the cart.
 #[derive(Clone, Debug)]
 pub struct CartEpisode {
     config: Config,
@@ -31,10 +31,10 @@ pub struct CartEpisode {
 }
 
 impl CartEpisode {
-    /// An episode of a network with these parameters, at the start of the configuration.
+    /// Creates an episode for a network with the given parameters. It starts in the initial state of the configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for parameters that make no network.
+    /// Returns [`Error::Other`] if the parameters are invalid.
     pub fn new(config: Config, parameters: Vec<f32>) -> Result<Self, Error> {
         let layout = layout(config.velocities, config.hidden);
         let network = BlockNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])
@@ -47,10 +47,10 @@ impl CartEpisode {
         Ok(episode)
     }
 
-    /// Gives the cart another network.
+    /// Replaces the parameters of the network.
     ///
     /// # Errors
-    /// [`Error::Other`] for parameters that make no network.
+    /// Returns [`Error::Other`] if the parameters are invalid.
     pub fn set_parameters(&mut self, parameters: &[f32]) -> Result<(), Error> {
         let copied = self.network.controller_mut().copy_parameters(parameters);
         copied.map_err(|error| Error::Other(format!("double-pole: {error}")))
@@ -61,7 +61,7 @@ impl CartEpisode {
         self.network.intervene(intervention, id, 0);
     }
 
-    /// Begins a trial at a state, with the network at rest.
+    /// Starts a trial in the given state and resets the network.
     pub fn place(&mut self, state: CartState) {
         (self.state, self.steps, self.fallen) = (state, 0, false);
         self.unrest.fill(0.0);
@@ -70,7 +70,7 @@ impl CartEpisode {
         self.network.reset();
     }
 
-    /// One step: senses, thinks, pushes, and the poles move.
+    /// Performs one step of the network and applies the resulting force to the cart.
     pub fn step(&mut self) {
         let Config { cart, time_step, substeps, force, least_force, scales, velocities, .. } = self.config;
         let CartState { position, velocity, angles, angular_velocities } = self.state;
@@ -105,25 +105,28 @@ impl CartEpisode {
         }
     }
 
-    /// True if no pole has fallen and the cart is on its track.
+    /// Returns true if both poles are upright and the cart is still on its track.
     pub fn in_balance(&self) -> bool {
         let most = Config::radians(self.config.most_angle);
         self.state.position.abs() <= self.config.most_position && self.state.angles.iter().all(|a| a.abs() <= most)
     }
 
-    /// True if a pole has fallen, the cart has left its track, or the time is over.
+    /// Returns true if the trial is over, either because the cart lost its balance or because it reached the maximum
+    /// number of steps.
     pub fn ended(&self) -> bool {
         self.fallen || self.steps >= self.config.steps
     }
 
-    /// True if the time is over and no pole has fallen.
+    /// Returns true if the poles were balanced until the end of the trial.
     pub fn succeeded(&self) -> bool {
         !self.fallen && self.steps >= self.config.steps
     }
 
-    /// The two terms of the damping fitness if the trial ends now, for balance and for rest, with their weights.
+    /// Returns the two terms of the damping fitness for balance and rest, with their weights, as if the trial ended
+    /// now.
     ///
-    /// Source: \[Gruau1996\] as in \[Gomez2008\] section 5.5.2. Deviation: the sum is over 100 steps, which its limits make 101.
+    /// Source: \[Gruau1996\] as in \[Gomez2008\] section 5.5.2. Deviation: the sum is over 100 steps, although the
+    /// limits given in the source would make it 101.
     pub fn damping(&self) -> [f64; 2] {
         let steps = self.steps.min(DAMPED);
         let sum: f64 = self.unrest.iter().sum();
@@ -131,61 +134,66 @@ impl CartEpisode {
         [0.1 * f64::from(steps) / f64::from(DAMPED), 0.9 * rest]
     }
 
-    /// The configuration.
+    /// Returns the configuration of the episode.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The network.
+    /// Returns the network that controls the cart.
     pub fn network(&self) -> &BlockNetwork<'static, Vec<f32>, Vec<f32>> {
         self.network.controller()
     }
 
-    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
+    /// Normalizes the inputs of the network with earlier statistics, or disables normalization for `None`. Returns
+    /// `false` if the statistics have a different number of channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
 
-    /// The observations since [`normalise`](Self::normalise), if they are normalized.
+    /// Returns the statistics of the inputs since the last call of [`normalise`](Self::normalise), or `None` if
+    /// normalization is disabled.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// Where cart and poles are.
+    /// Returns the current state of the cart and the poles.
     pub fn state(&self) -> &CartState {
         &self.state
     }
 
-    /// Steps in balance so far.
+    /// Returns the number of steps for which the poles have been balanced.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// The last inputs: position and angles, then velocities [3 or 6].
+    /// Returns the inputs of the last step. The position and the two angles come first, followed by the velocities if
+    /// the network receives them.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The last output of the network \[1\].
+    /// Returns the output of the network in the last step.
     pub fn output(&self) -> &[f32] {
         &self.y
     }
 
-    /// The force that the cart was pushed with last \[N\].
+    /// Returns the force that was applied to the cart in the last step \[N\].
     pub fn force(&self) -> f64 {
         self.force
     }
 }
 
 impl Config {
-    /// The state that trials start from.
+    /// Returns the initial state of a trial.
     pub fn start(&self) -> CartState {
         CartState { angles: [Self::radians(self.angle), 0.0], ..CartState::default() }
     }
 
-    /// The 625 starts of the generalization test of \[Gruau1996\]. Position and velocity of the cart, angle and angular velocity of
-    /// the first pole have 0.05, 0.25, 0.5, 0.75 and 0.95 of their ranges. The ranges are plus and minus 2.16 m, 1.35 m/s, 3.6 deg
-    /// and 8.6 deg/s.
+    /// Returns the 625 initial states of the generalization test of \[Gruau1996\].
+    ///
+    /// The position and velocity of the cart and the angle and angular velocity of the first pole each take five
+    /// values. These values are at 0.05, 0.25, 0.5, 0.75 and 0.95 of the range. The ranges extend to 2.16 m, 1.35 m/s,
+    /// 3.6 deg and 8.6 deg/s in both directions.
     pub fn generalization_starts() -> impl Iterator<Item = CartState> {
         let at = |place: u32, half: f64| half * (2.0 * [0.05, 0.25, 0.5, 0.75, 0.95][place as usize % 5] - 1.0);
         (0..625).map(move |number| CartState {

@@ -1,4 +1,4 @@
-//! The experiment `double-pole`: two poles on a cart.
+//! Registration of `double-pole` as an experiment of the `farsa` command.
 
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
@@ -18,15 +18,16 @@ use crate::double_pole::cart::CartState;
 use crate::double_pole::config::Config;
 use crate::double_pole::episode::CartEpisode;
 
-/// Can a network that pushes a cart keep two poles of different lengths upright, with and without sensing velocities?
+/// Balances two poles of different lengths on a cart, with or without access to the velocities.
 ///
-/// The benchmark of neuroevolution, \[Wieland1991\] with the constants, steps and networks of \[Gomez2008\]. There is one trial,
-/// from one start. The fitness is the number of steps in balance, or, without velocities, that of \[Gruau1996\], which also rewards
-/// rest (`fitness.damping`). Success is 100 000 steps in balance, and an evaluation by the second fitness continues to them.
+/// This is the common benchmark of neuroevolution \[Wieland1991\] with the constants, steps and networks of
+/// \[Gomez2008\]. An evaluation consists of a single trial. The fitness is the number of steps in balance. Without
+/// velocities it is the function of \[Gruau1996\], which also rewards rest (see `fitness.damping`). A trial is
+/// successful after 100 000 steps in balance. With the second function, an evaluation continues until then.
 ///
-/// Deviations: the source does not give the biases, the function and the scales of inputs of its networks. Here there are no
-/// biases, neurons are hyperbolic tangents, and positions, angles and velocities are divided by 4.8 m, 0.52 rad and 2 m/s or rad/s.
-/// Trials of `farsa test` are all the same, as is the start.
+/// The source does not specify the biases, the activation function and the scales of the inputs. This implementation
+/// uses no biases and the hyperbolic tangent. Positions, angles and velocities are divided by 4.8 m, 0.52 rad and 2 m/s
+/// or rad/s. Note that all trials of `farsa test` are identical, because they have the same initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct DoublePole;
 
@@ -64,15 +65,15 @@ const POLES: [BodyId; 2] = [BodyId(1), BodyId(2)];
 const DRAWN: [f64; 3] = [0.2, 0.06, 0.015];
 const PAPER: Color = [244, 243, 238];
 
-/// Evaluates under a configuration.
+/// Creates an evaluator for the given configuration.
 ///
 /// # Errors
-/// [`Error::Other`] for values that make no network.
+/// Returns [`Error::Other`] if no network can be built from these values.
 pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Balancing>, Error> {
     Ok(InWorld::new(NoWorld, Balancing::new(config)?))
 }
 
-/// A cart that is to be kept in balance.
+/// The task of keeping the poles in balance.
 #[derive(Clone, Debug)]
 pub struct Balancing {
     episode: CartEpisode,
@@ -80,10 +81,10 @@ pub struct Balancing {
 }
 
 impl Balancing {
-    /// A cart under a configuration, with weights of 0.
+    /// Creates the task for a configuration. All weights are initially zero.
     ///
     /// # Errors
-    /// [`Error::Other`] for values that make no network.
+    /// Returns [`Error::Other`] if no network can be built from these values.
     pub fn new(config: Config) -> Result<Self, Error> {
         let neurons = config.neurons();
         let parameters = vec![0.0; neurons * (config.inputs() + neurons)];

@@ -1,4 +1,4 @@
-//! The experiment `double-pole`: two poles on a cart.
+//! The experiment `double-pole`, in which a network balances two poles on a cart.
 
 /// The cart, its poles and their equations of motion.
 mod cart;

@@ -1,13 +1,14 @@
-//! The networks of `double-pole`, one for each number of inputs and hidden neurons.
+//! Network layouts of `double-pole`. There is one for each number of inputs and hidden neurons.
 
 use farsa_nn::Activation;
 use farsa_nn::block::{Architecture, BlockLayout, BlockPlan};
 
-/// The most hidden neurons.
+/// The largest number of hidden neurons that is supported.
 pub const MOST_HIDDEN: u32 = 8;
 const PLANS: usize = MOST_HIDDEN as usize + 1;
 
-/// Fully recurrent networks without biases, of 0 to 8 hidden neurons and one output. All neurons are hyperbolic tangents.
+/// Fully recurrent networks without biases, of 0 to 8 hidden neurons and one output. All neurons are hyperbolic
+/// tangents.
 const fn plans(inputs: usize) -> [BlockPlan; PLANS] {
     let mut plans = [plan(inputs, 0); PLANS];
     let mut hidden = 1;
@@ -29,16 +30,18 @@ const fn plan(inputs: usize, hidden: usize) -> BlockPlan {
 static WITH_VELOCITIES: [BlockPlan; PLANS] = plans(6);
 static WITHOUT_VELOCITIES: [BlockPlan; PLANS] = plans(3);
 
-/// The layout of the network with or without inputs for velocities, and with the given number of hidden neurons, at most 8.
+/// Returns the layout of a network with at most 8 hidden neurons. The inputs include the velocities if `velocities` is
+/// true.
 ///
-/// A neuron receives the inputs of this step and the states of all neurons, its state included, of the previous step.
+/// Each neuron receives the current inputs and the previous activations of all neurons, including its last activation.
 pub fn layout(velocities: bool, hidden: u32) -> BlockLayout<'static> {
     let plans = if velocities { &WITH_VELOCITIES } else { &WITHOUT_VELOCITIES };
     plans[hidden.min(MOST_HIDDEN) as usize].layout()
 }
 
-/// The parameters of such a network neuron by neuron, for searches that keep the weights of a neuron together. Returns the place in
-/// the layout for each place in that order, and the weights of each neuron.
+/// Returns the order of the parameters by neuron, and the number of weights of a neuron. This is useful for strategies
+/// such as CoSyNE that keep the weights of a neuron together. Each element of the order is an index into the parameters
+/// of the layout.
 pub fn neuron_order(velocities: bool, hidden: u32) -> (Vec<usize>, usize) {
     let layout = layout(velocities, hidden);
     let (inputs, neurons) = (layout.inputs(), layout.neurons() - layout.inputs());

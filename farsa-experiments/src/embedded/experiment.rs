@@ -1,4 +1,4 @@
-//! An experiment whose file is part of the program.
+//! Experiments whose files are embedded in the program.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -12,7 +12,7 @@ use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 use crate::embedded::infrared;
 use crate::embedded::settings::NamedSettings;
 
-/// An experiment that a file of farsa-compose describes, under its own settings.
+/// An experiment that is defined by an embedded file of farsa-compose and provides its settings.
 pub struct EmbeddedExperiment {
     name: &'static str,
     text: &'static str,
@@ -28,8 +28,8 @@ struct Parts {
 }
 
 impl EmbeddedExperiment {
-    /// The experiment of a name, of its file and of the file with its settings. `check` refuses settings that are each allowed
-    /// and do not go together.
+    /// The experiment of a name, of its file and of the file with its settings. `check` refuses settings that are each
+    /// allowed and do not go together.
     pub(crate) const fn new(
         name: &'static str,
         text: &'static str,

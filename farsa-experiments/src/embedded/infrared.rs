@@ -1,4 +1,4 @@
-//! The setting that chooses the model of a robot's infrared sensors, where one of the models reads measured tables.
+//! The setting that selects the model of the infrared sensors. Some of the models are based on measured tables.
 
 use std::path::PathBuf;
 

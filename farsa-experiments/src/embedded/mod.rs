@@ -1,7 +1,7 @@
-//! Experiments whose files are part of the program.
+//! Experiments whose files are embedded in the program.
 //!
-//! A file of farsa-compose describes the robot, the world and the fitness. A second file names the settings of the experiment, which
-//! are fewer than those of the first one.
+//! Each experiment is described by a file of farsa-compose, which contains the robot, the world and the fitness. A
+//! second file defines the settings of the experiment. There are fewer of them than values in the first file.
 
 mod experiment;
 mod infrared;
@@ -12,12 +12,13 @@ pub use experiment::EmbeddedExperiment;
 use farsa_body::robots::MobileRobot;
 use farsa_lab::{Error, Settings};
 
-/// Does a robot that senses walls and a cylinder alike stay near the cylinder? \[FARSA2\]
+/// A robot has to stay near a cylinder that it can hardly distinguish from the walls \[FARSA2\].
 ///
-/// Six infrared sensors and two logistic units drive the wheels. One parent makes one mutant per generation. The condition is the
-/// robot, with the source's numbers for each.
+/// The robot has six infrared sensors, and two logistic units drive its wheels. In each generation one parent produces
+/// one mutant. The condition selects the robot and the values that the source gives for it.
 ///
-/// Deviations: the random numbers, and the default model of the sensors, a formula that needs no measured tables.
+/// The implementation uses different random numbers than the source. By default the sensors are modeled by a formula,
+/// which does not need measured tables.
 pub static DISCRIMINATION: EmbeddedExperiment = EmbeddedExperiment::new(
     "discrimination",
     include_str!("../../experiments/discrimination.toml"),
@@ -25,12 +26,14 @@ pub static DISCRIMINATION: EmbeddedExperiment = EmbeddedExperiment::new(
     |_| Ok(()),
 );
 
-/// Can a robot distinguish a large cylinder from a small one by the way it moves next to them? \[FARSA2; Ferrauto2010, 4.6.5\]
+/// A robot has to distinguish a large cylinder from a small one by its movements \[FARSA2\] \[Ferrauto2010, 4.6.5\].
 ///
-/// Time near the large cylinder counts for the robot of `discrimination`, time near the small one against it. It senses the speeds
-/// of its wheels (condition `wheels`) or not (`no-wheels`). These speeds are the only memory of its two units.
+/// The robot is the same as in `discrimination`. The fitness is increased by the time near the large cylinder and
+/// decreased by the time near the small one. With the condition `wheels`, the robot senses the speeds of its wheels.
+/// These speeds are the only memory of its two units. The condition `no-wheels` removes them.
 ///
-/// Chosen: the size of the arena, the distance of the cylinders, the fitness and truncation selection.
+/// The size of the arena, the distance of the cylinders, the fitness and the selection scheme are not specified by the
+/// sources and were chosen.
 pub static DISCRIMINATION_CYLINDERS: EmbeddedExperiment = EmbeddedExperiment::new(
     "discrimination-cylinders",
     include_str!("../../experiments/discrimination-cylinders.toml"),
@@ -38,12 +41,13 @@ pub static DISCRIMINATION_CYLINDERS: EmbeddedExperiment = EmbeddedExperiment::ne
     |_| Ok(()),
 );
 
-/// Four ways of wiring two wheels to light sensors, seen from outside \[Braitenberg1984, vehicles 2a to 3b\].
+/// Demonstrates four ways to connect two light sensors to two wheels \[Braitenberg1984, vehicles 2a to 3b\].
 ///
-/// A Khepera with eight light sensors and a lamp. Nothing evolves: a run is one vehicle in one generation, and its one gene has no
-/// effect. The fitness is the decrease of the distance to the lamp \[m\].
+/// A Khepera robot with eight light sensors moves near a lamp. Nothing evolves in this experiment. A run consists of
+/// one generation with one vehicle, and its only gene has no effect. The fitness is the decrease of the distance to the
+/// lamp in meters.
 ///
-/// Deviations: the source gives the radius of the lamp only, and its vehicles have one sensor on either side.
+/// The source specifies only the radius of the lamp, and its vehicles have one sensor on each side.
 pub static BRAITENBERG: EmbeddedExperiment = EmbeddedExperiment::new(
     "braitenberg",
     include_str!("../../experiments/braitenberg.toml"),

@@ -1,4 +1,4 @@
-//! The settings of an embedded experiment, and the keys of its file that they set.
+//! The settings of an embedded experiment. Each of them sets one or more keys of the experiment's file.
 
 use farsa_lab::advanced::Value;
 use farsa_lab::{Error, Setting, Settings};
@@ -116,8 +116,8 @@ impl NamedSetting {
         }
     }
 
-    /// Sets the keys of the file. A number sets each number of the file in proportion to the defaults of both: a key whose
-    /// default is twice the setting's becomes twice its value.
+    /// Sets the keys of the file. A number sets each number of the file in proportion to the defaults of both: a key
+    /// whose default is twice the setting's becomes twice its value.
     fn apply(&self, settings: &Settings, file: &mut Settings) -> Result<(), Error> {
         let value = settings.get(&self.key)?;
         let default = number(settings.find("", &self.key)?.default_value());

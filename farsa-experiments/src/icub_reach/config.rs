@@ -1,4 +1,4 @@
-//! The values of `icub-reach`.
+//! Configuration of the experiment `icub-reach`.
 
 use farsa_body::robots::{Chain, Icub, IcubPosture, JointControl};
 use farsa_lab::Error;
@@ -10,90 +10,92 @@ pub(crate) const INPUTS: usize = 3;
 /// Motor neurons.
 pub(crate) const MOTORS: usize = 6;
 
-/// Inputs and commands of the network.
+/// Defines the inputs of the network and the commands that it sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// The target's place is sensed, joint angles are commanded.
+    /// The network senses the position of the target and commands joint angles.
     Steady,
-    /// The way from hand to target is sensed, joint speeds are commanded.
+    /// The network senses the vector from the hand to the target and commands joint speeds.
     Velocity,
 }
 
 impl Condition {
-    /// The names on the command line.
+    /// The names of the conditions, as they are used on the command line.
     pub const NAMES: [&'static str; 2] = ["steady", "velocity"];
 
-    /// The condition of this name, or the first one.
+    /// Returns the condition with the given name. An unknown name results in the first condition.
     pub fn from_name(name: &str) -> Self {
         if name == Self::NAMES[1] { Self::Velocity } else { Self::Steady }
     }
 }
 
-/// Half an ellipsoid: the part in front of its center.
+/// A volume in the shape of half an ellipsoid. Only the part in front of its center belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// Center of the ellipsoid, relative to the body's center \[m\].
+    /// The center of the ellipsoid, relative to the center of the robot's body \[m\].
     pub centre: [f64; 3],
-    /// Its semi-axes along x, y and z \[m\].
+    /// The semi-axes of the ellipsoid along x, y and z \[m\].
     pub semi_axes: [f64; 3],
 }
 
 impl Volume {
-    /// The least and the greatest x, y or z of its points \[m\].
+    /// Returns the smallest and the largest coordinate of the volume along an axis \[m\].
     pub fn ends(&self, axis: usize) -> [f64; 2] {
         let (centre, half) = (self.centre[axis], self.semi_axes[axis]);
         [if axis == 0 { centre } else { centre - half }, centre + half]
     }
 
-    /// The point at the given multiples of the semi-axes from the center \[m\].
+    /// Returns the point whose distance from the center is given in multiples of the semi-axes \[m\].
     pub fn at(&self, parts: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| self.centre[k] + self.semi_axes[k] * parts[k])
     }
 }
 
-/// All values of the experiment. The settings name their sources.
+/// The complete configuration of the experiment. The table of settings gives the source of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Inputs and commands.
+    /// Selects the inputs and the commands.
     pub condition: Condition,
-    /// Targets of an evaluation.
+    /// The number of targets in an evaluation.
     pub targets: u32,
-    /// The same targets in all generations.
+    /// If true, all generations use the same targets.
     pub same_targets: bool,
-    /// Steps of a trial.
+    /// The number of steps of a trial.
     pub steps: u32,
-    /// Control step \[s\].
+    /// The duration of a control step, in seconds.
     pub time_step: f64,
-    /// Dynamics steps of a control step.
+    /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// Where targets are.
+    /// The volume in which the targets are placed.
     pub volume: Volume,
-    /// Pitch, roll and yaw of the trunk at the start \[deg\].
+    /// The initial pitch, roll and yaw of the trunk, in degrees.
     pub torso: [f64; 3],
-    /// The left arm's seven joints at the start \[deg\].
+    /// The initial angles of the seven joints of the left arm, in degrees.
     pub arm: [f64; 7],
-    /// The error at which a position servo exerts its joint's effort \[rad\].
+    /// The position error at which a servo reaches the maximum effort of its joint \[rad\].
     pub saturation_angle: f64,
-    /// The lack of speed at which a velocity motor does \[rad/s\].
+    /// The difference between the commanded and the actual speed at which a motor reaches its maximum effort \[rad/s\].
     pub saturation_speed: f64,
-    /// Largest speed that is commanded \[rad/s\].
+    /// The largest speed that the network can command \[rad/s\].
     pub speed: f64,
-    /// Speed at which a joint that is held returns to its angle, for each radian that it is away from it \[1/s\].
+    /// The rate at which a joint that should not move returns to its angle, in 1/s. The commanded speed is proportional
+    /// to the deviation.
     pub hold_rate: f64,
-    /// The way from hand to target that is sensed as -1 or 1, backwards or forwards on an axis \[m\].
+    /// The distance between hand and target that is sensed as 1 along an axis \[m\]. In the opposite direction it is
+    /// sensed as -1.
     pub offset: f64,
-    /// The last seconds of a trial, of which the mean distance is taken \[s\].
+    /// The length of the period at the end of a trial over which the distance is averaged, in seconds.
     pub window: f64,
-    /// Start distances below this count as this \[m\].
+    /// A lower bound of the start distance in the fitness \[m\].
     pub least_start: f64,
-    /// The mean distance below which a trial is a success \[m\].
+    /// The mean distance below which a trial is successful \[m\].
     pub success: f64,
-    /// Weights and biases are decoded to plus and minus this.
+    /// The largest absolute value of a weight or bias.
     pub weight_range: f64,
 }
 
 impl Config {
-    /// The defaults of a condition.
+    /// Returns the default configuration of a condition.
     pub const fn for_condition(condition: Condition) -> Self {
         Self {
             condition,
@@ -120,7 +122,7 @@ impl Config {
         }
     }
 
-    /// The robot with these values: torso and left arm are actuated, all else is rigid.
+    /// Builds the description of the robot. The torso and the left arm are actuated, and all other joints are rigid.
     pub fn icub(&self) -> Icub {
         let posture = IcubPosture {
             torso: self.torso.map(f64::to_radians),
@@ -140,15 +142,15 @@ impl Config {
         }
     }
 
-    /// Steps at the end of a trial that are looked at, all at most.
+    /// Returns the number of steps in the final period. It never exceeds the length of the trial.
     pub fn window_steps(&self) -> u32 {
         ((self.window / self.time_step + 0.5) as u32).clamp(1, self.steps)
     }
 
-    /// Rules between values.
+    /// Checks that the values are compatible with each other.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a start out of the joints' limits.
+    /// Returns [`Error::Setting`] if the initial posture violates a joint limit.
     pub fn check(&self) -> Result<(), Error> {
         let icub = self.icub();
         within_limits(&icub, "start.torso", Chain::Torso, &self.torso)?;

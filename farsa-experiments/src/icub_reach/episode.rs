@@ -1,4 +1,4 @@
-//! An episode of `icub-reach`: the hand reaches for a target, or for two.
+//! Episodes of `icub-reach`, in which the hand reaches for one or two targets.
 
 use std::sync::Arc;
 
@@ -9,37 +9,38 @@ use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
 use crate::icub_reach::scene::Scene;
 use crate::icub_reach::totals::RewardTotals;
 
-/// A controller of the hand.
+/// A controller of the hand. It is implemented by the evolved networks and by a script.
 pub trait Reacher {
-    /// Clears the state of an earlier trial.
+    /// Clears the state that was left by an earlier trial.
     fn reset(&mut self);
-    /// Senses `x`, has the six joints at `joints` \[rad\], and writes the motors' values `y`, 0..1.
+    /// Reads the inputs `x` and the angles of the six joints in radians, and writes the motor values `y` between 0 and
+    /// 1.
     ///
-    /// A network of the experiment does not look at the joints.
+    /// Note that the evolved networks ignore the joint angles.
     fn step(&mut self, x: &[f32; INPUTS], joints: &[f32; MOTORS], y: &mut [f32; MOTORS]);
 }
 
-/// A world in which the hand is found by kinematics and joints.
+/// A world that supports the episodes of this experiment.
 pub trait ReachingWorld: Kinematics + Joints + Handles<Body = BodyId, Joint = JointId> {}
 
 impl<W> ReachingWorld for W where W: Kinematics + Joints + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// The demands of a trial.
+/// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Reaching {
-    /// The target \[m\]. Without it each trial draws its target.
+    /// The position of the target \[m\]. By default each trial draws a random target.
     pub target: Option<[f64; 3]>,
-    /// From which step on it is another one of the trial's own.
+    /// The step at which the target moves to a different position, if it moves at all.
     pub jump: Option<u32>,
-    /// The trunk keeps its posture of the start.
+    /// If true, the trunk keeps its initial posture.
     pub locked_torso: bool,
-    /// The mass that hangs on the hand \[kg\].
+    /// An additional mass that is attached to the hand \[kg\].
     pub load: f64,
 }
 
-/// A trial of a network or of a script.
+/// A trial in which a network or a script controls the hand.
 ///
-/// A jump of the target restarts the totals.
+/// The totals are reset when the target moves to a different position.
 #[derive(Clone, Debug)]
 pub struct ReachEpisode<C> {
     scene: Arc<Scene>,
@@ -54,7 +55,7 @@ pub struct ReachEpisode<C> {
 }
 
 impl<C: Reacher> ReachEpisode<C> {
-    /// Trials in a scene.
+    /// Creates an episode in a scene.
     pub fn new(scene: Arc<Scene>, reacher: C) -> Self {
         let totals = RewardTotals::default();
         let (targets, hand) = ([[0.0; 3]; 2], [0.0; 3]);
@@ -62,57 +63,57 @@ impl<C: Reacher> ReachEpisode<C> {
         Self { scene, reacher, asked, targets, hand, totals, steps: 0, x: [0.0; INPUTS], y: [0.0; MOTORS] }
     }
 
-    /// Sets the demands of the next trials.
+    /// Sets the conditions of the following trials.
     pub fn ask(&mut self, asked: Reaching) {
         self.asked = asked;
     }
 
-    /// The scene.
+    /// Returns the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The controller of the hand.
+    /// Returns the controller of the hand.
     pub fn reacher(&self) -> &C {
         &self.reacher
     }
 
-    /// The same, to be changed.
+    /// Returns a mutable reference to the controller of the hand.
     pub fn reacher_mut(&mut self) -> &mut C {
         &mut self.reacher
     }
 
-    /// The distances so far.
+    /// Returns the distances that have been collected so far.
     pub fn totals(&self) -> &RewardTotals {
         &self.totals
     }
 
-    /// Steps so far.
+    /// Returns the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// The last inputs \[3\].
+    /// Returns the three inputs of the last step.
     pub fn sensed(&self) -> &[f32; INPUTS] {
         &self.x
     }
 
-    /// The last outputs \[6\].
+    /// Returns the six outputs of the last step.
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }
 
-    /// The palm's center \[m\].
+    /// Returns the position of the center of the palm \[m\].
     pub fn hand(&self) -> [f64; 3] {
         self.hand
     }
 
-    /// Where the target is now \[m\].
+    /// Returns the current position of the target \[m\].
     pub fn target(&self) -> [f64; 3] {
         self.targets[usize::from(self.asked.jump.is_some_and(|at| self.steps >= at))]
     }
 
-    /// The reward if the trial ends now.
+    /// Computes the reward under the assumption that the trial ends now.
     pub fn fitness(&self) -> f64 {
         self.totals.fitness(self.scene.config.least_start)
     }

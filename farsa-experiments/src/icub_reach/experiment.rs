@@ -1,4 +1,4 @@
-//! The experiment `icub-reach` as the `farsa` command runs it.
+//! Registration of `icub-reach` as an experiment of the `farsa` command.
 
 use farsa_lab::advanced::Lanes;
 use farsa_lab::strategy::StrategyDefinition;
@@ -10,13 +10,14 @@ use crate::icub_reach::scene::Scene;
 use crate::icub_reach::task::ReachTask;
 use crate::strategy::strategy;
 
-/// Can an iCub reach any target in front of it, by six joints and a network without memory?
+/// An iCub has to reach any target in front of it with six joints and a network without memory.
 ///
-/// Torso yaw and pitch and the left arm's shoulder and elbow move. All other joints keep their angles. Under `steady` the network
-/// senses the target and commands joint angles, which are the same from beginning to end. Under `velocity` it senses the way from
-/// hand to target and commands joint speeds.
+/// The controlled joints are the yaw and pitch of the torso and the shoulder and elbow of the left arm. All other
+/// joints keep their angles. With the condition `steady`, the network senses the target and commands joint angles,
+/// which are constant during a trial. With `velocity`, it senses the vector from the hand to the target and commands
+/// joint speeds.
 ///
-/// Deviations: only the openings of the source's pages were available. All other values are ours, and the settings mark them.
+/// Only the first pages of the sources were available. The settings mark all other values, which had to be chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReach;
 
@@ -47,10 +48,10 @@ impl Experiment for IcubReach {
     }
 }
 
-/// Evaluates under a configuration.
+/// Creates an evaluator for the given configuration.
 ///
 /// # Errors
-/// [`Error::Setting`] and [`Error::Other`] for a configuration whose robot cannot be built.
+/// Returns [`Error::Setting`] or [`Error::Other`] if the robot cannot be built.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error> {
     let wrong = |error: ModelError| Error::Other(format!("icub-reach: {error}"));
     let scene = Scene::new(config)?;

@@ -1,4 +1,4 @@
-//! The experiment `icub-reach`: the left hand of an iCub reaches for targets in front of it.
+//! The experiment `icub-reach`, in which an iCub reaches for targets with its left hand.
 
 /// Its values.
 mod config;

@@ -1,4 +1,4 @@
-//! The network of an agent of `icub-reach`.
+//! The network that controls the iCub in `icub-reach`.
 
 use farsa_lab::advanced::NormalizedController;
 use farsa_lab::{Error, Parameter};
@@ -16,20 +16,21 @@ pub(crate) const HIDDEN_ONES: Span = Span::new(INPUTS, HIDDEN);
 
 static PLAN: BlockPlan = Architecture::feed_forward(INPUTS, HIDDEN, MOTORS).plan();
 
-/// Feed-forward, 3-4-6, logistic with biases: 46 parameters.
+/// The layout of a feed-forward network with 3 inputs, 4 hidden neurons and 6 outputs. The neurons are logistic and
+/// have biases, so there are 46 parameters.
 pub static LAYOUT: BlockLayout<'static> = PLAN.layout();
 
-/// A network whose inputs can be disturbed and whose neurons can be silent.
+/// A network whose inputs can be disturbed and whose neurons can be silenced.
 #[derive(Clone, Debug)]
 pub struct Agent {
     network: NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
 }
 
 impl Agent {
-    /// An agent whose parameters are 0.
+    /// Creates an agent whose parameters are all zero.
     ///
     /// # Errors
-    /// [`Error::Other`] for a layout that makes no network.
+    /// Returns [`Error::Other`] if the layout is invalid.
     pub fn new() -> Result<Self, Error> {
         let (parameters, state) = (vec![0.0; LAYOUT.parameter_count()], vec![0.0; LAYOUT.state_len()]);
         let network = BlockNetwork::new(LAYOUT, Leak::Filter, parameters, state)
@@ -37,12 +38,12 @@ impl Agent {
         Ok(Self { network: NormalizedController::new(network) })
     }
 
-    /// The network.
+    /// Returns the network.
     pub fn network(&self) -> &NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
         &self.network
     }
 
-    /// The same, for other parameters.
+    /// Returns a mutable reference to the network, for example to set its parameters.
     pub fn network_mut(&mut self) -> &mut NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
         &mut self.network
     }

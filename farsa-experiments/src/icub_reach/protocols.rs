@@ -1,4 +1,4 @@
-//! The test protocols of `icub-reach`, and what each of their cases asks.
+//! Test protocols of `icub-reach`, and the conditions of each of their cases.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use crate::icub_reach::episode::Reaching;
 use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES, weights_on};
 use crate::icub_reach::scene::CONTROLLED;
 
-/// Places of the grid along an axis.
+/// The number of grid points along each axis.
 pub const GRID: usize = 5;
 /// Distance of the targets of `outside`, in parts of the volume's surface.
 const OUTSIDE: f64 = 1.1;
@@ -20,22 +20,24 @@ const LOAD: f64 = 0.5;
 /// Trials of a case with separate targets.
 const TRIALS: u32 = 50;
 
-/// Maps a point of a half cube to the half ball, with x from 0 to 1, y and z from -1 to 1. The point keeps its ray and its share of
-/// the radius.
+/// Maps a point of a half cube to the half ball, with x from 0 to 1, y and z from -1 to 1. The point keeps its ray and
+/// its share of the radius.
 fn on_ball(cube: [f64; 3]) -> [f64; 3] {
     let most = cube.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let length = Scalar::sqrt(cube.iter().fold(0.0, |sum, x| sum + x * x));
     if length > 0.0 { cube.map(|x| x * (most / length)) } else { cube }
 }
 
-/// The 125 places of the grid \[m\], the last axis first: five layers from the center forwards, each of five by five places.
+/// Returns the 125 points of the grid \[m\]. The points form five layers from the center to the front, and each layer
+/// has five by five points. The last axis varies fastest.
 pub fn grid(volume: &Volume) -> Vec<[f64; 3]> {
     let part = |place: usize| place as f64 / (GRID - 1) as f64;
     let cube = |n: usize| [part(n / (GRID * GRID)), 2.0 * part(n / GRID % GRID) - 1.0, 2.0 * part(n % GRID) - 1.0];
     (0..GRID * GRID * GRID).map(|n| volume.at(on_ball(cube(n)))).collect()
 }
 
-/// Places beyond the volume's curved surface, by a tenth of the way from the center \[m\], with their parts of the semi-axes.
+/// Returns the points just outside the curved surface of the volume, together with their coordinates in units of the
+/// semi-axes. They are a tenth farther from the center than the surface.
 pub fn outside(volume: &Volume) -> Vec<([f64; 3], [f64; 3])> {
     let grid = (0..27).map(|n| [f64::from(n / 9) * 0.5, f64::from(n / 3 % 3) - 1.0, f64::from(n % 3) - 1.0]);
     let surface = grid.filter(|cube| cube.iter().any(|x| x.abs() >= 1.0));

@@ -1,4 +1,4 @@
-//! The scene of `icub-reach`: the robot, its six joints, and the targets.
+//! The scene of `icub-reach`, which contains the robot, its controlled joints and the targets.
 
 use farsa_body::actuators::{Law, Torque};
 use farsa_body::kinematics::KinematicTree;
@@ -11,7 +11,7 @@ use farsa_physics::articulated::Options;
 
 use crate::icub_reach::config::{Condition, Config};
 
-/// The joints that the network commands, in the order of its outputs.
+/// The names of the joints that are controlled by the network, in the order of its outputs.
 pub const CONTROLLED: [&str; 6] =
     ["torso_pitch", "torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"];
 
@@ -40,14 +40,14 @@ pub(crate) struct Burdened {
     actuator: ActuatorId,
 }
 
-/// The robot's description with the names of what matters in it.
+/// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The robot.
+    /// The robot that is simulated.
     pub robot: Robot,
-    /// Every value of the experiment.
+    /// The configuration from which the scene was built.
     pub config: Config,
-    /// The palm's center in its frame \[m\].
+    /// The center of the palm in the frame of the hand \[m\].
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,
@@ -55,13 +55,13 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The hand's last body.
+    /// The last body of the arm, which carries the palm.
     pub const PALM: BodyId = BodyId(12);
 
-    /// The scene of a configuration.
+    /// Builds the scene for a configuration.
     ///
     /// # Errors
-    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// Returns the errors of [`Config::check`], or [`Error::Other`] if the robot cannot be simulated.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let wrong = |error: IcubError| Error::Other(format!("icub-reach: {error}"));
@@ -114,7 +114,8 @@ impl Scene {
 
     /// Commands the torques of a weight at the palm's center, `mass` \[kg\], until the next command.
     ///
-    /// A force F at the point p turns a joint at o about the unit axis a by a . (p - o) x F. Inertia of the load is left out.
+    /// A force F at the point p turns a joint at o about the unit axis a by a . (p - o) x F. Inertia of the load is
+    /// left out.
     pub(crate) fn hang<W>(&self, world: &mut W, hand: [f64; 3], mass: f64)
     where
         W: Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
@@ -128,26 +129,27 @@ impl Scene {
         }
     }
 
-    /// Options of the articulated world.
+    /// Returns the options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, .. } = self.config;
         Options { time_step, substeps, ..Options::default() }
     }
 
-    /// The limits of the six joints \[rad\].
+    /// Returns the lower and upper limits of the six joints \[rad\].
     pub fn ranges(&self) -> [[f64; 2]; 6] {
         self.controlled.map(|driven| driven.range)
     }
 
-    /// The six joints at the start \[rad\].
+    /// Returns the initial angles of the six joints \[rad\].
     pub fn start(&self) -> [f64; 6] {
         self.controlled.map(|driven| driven.start)
     }
 
-    /// The kinematics of the six joints alone: the others are fixed where they are held.
+    /// Returns a kinematic tree in which only the six controlled joints can move. All other joints are fixed at their
+    /// initial angles.
     ///
     /// # Errors
-    /// The errors of [`KinematicTree::new`].
+    /// Returns the errors of [`KinematicTree::new`].
     pub fn kinematics(&self) -> Result<KinematicTree, RobotError> {
         let mut robot = Robot { actuators: Vec::new(), pairs: Vec::new(), ..self.robot.clone() };
         for Driven { joint, start, .. } in &self.held {
@@ -157,13 +159,13 @@ impl Scene {
         KinematicTree::new(&robot)
     }
 
-    /// The target of a trial \[m\], uniform in the volume: the same for all individuals of a generation, from the stream of
-    /// [`Domain::Start`].
+    /// Draws the target of a trial from the stream of [`Domain::Start`] \[m\]. It is uniformly distributed in the
+    /// volume and the same for all individuals of a generation.
     pub fn target(&self, id: EpisodeId) -> [f64; 3] {
         self.draw(&mut self.stream(id))
     }
 
-    /// The target of a trial and a second one, each uniform in the volume \[m\].
+    /// Draws two independent targets for a trial \[m\]. Both are uniformly distributed in the volume.
     pub fn two_targets(&self, id: EpisodeId) -> [[f64; 3]; 2] {
         let mut stream = self.stream(id);
         [self.draw(&mut stream), self.draw(&mut stream)]
@@ -184,7 +186,7 @@ impl Scene {
         }
     }
 
-    /// Puts the robot at its start, at rest, with commands that keep it there.
+    /// Moves the robot to its initial posture, at rest. The commands are set such that it stays there.
     pub fn arrange<W>(&self, world: &mut W)
     where
         W: Arrange + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,

@@ -1,4 +1,4 @@
-//! A controller written by hand, which shows that six joints reach all targets.
+//! A handwritten controller. It demonstrates that all targets can be reached with six joints.
 
 use farsa_body::Pose;
 use farsa_body::kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation};
@@ -16,10 +16,11 @@ const DAMPING: f64 = 0.03;
 const NEAR: f64 = 0.01;
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// Reaches by kinematics.
+/// A controller that is based on the kinematics of the robot.
 ///
-/// Under `steady` it commands the angles that inverse kinematics has for the target, and what the servos give way under
-/// gravity. Under `velocity` it follows the way to the target by damped least squares \[Wampler1986\], and looks at the joints.
+/// With the condition `steady`, it computes the joint angles with inverse kinematics and compensates for the deflection
+/// of the servos under gravity. With `velocity`, it moves toward the target by damped least squares \[Wampler1986\] and
+/// uses the measured joint angles.
 #[derive(Clone, Debug)]
 pub struct Script {
     config: Config,
@@ -34,10 +35,10 @@ pub struct Script {
 }
 
 impl Script {
-    /// A script for a scene.
+    /// Creates a script for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a robot without kinematics.
+    /// Returns [`Error::Other`] if the kinematics of the robot cannot be computed.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = scene.kinematics().map_err(|error| Error::Other(format!("icub-reach: {error}")))?;
         let stiffness = scene.controlled.map(|driven| match scene.robot.actuators[driven.actuator.index()].law {
@@ -49,10 +50,11 @@ impl Script {
         Ok(Self { config: scene.config, tree, palm_centre, start, ranges, stiffness, poses, found: None })
     }
 
-    /// The six joints' angles at which the hand is at a place \[rad\], the nearest that there are to the start's.
+    /// Computes joint angles that move the hand to the given position \[m\]. Among all solutions, angles close to the
+    /// initial posture are preferred.
     ///
     /// # Errors
-    /// [`InverseKinematicsError::NotReached`] with the nearest.
+    /// Returns [`InverseKinematicsError::NotReached`] with the closest solution if the position is out of reach.
     pub fn angles(&self, place: [f64; 3]) -> Result<[f64; 6], InverseKinematicsError> {
         let goal = Goal { body: Scene::PALM, point: self.palm_centre, position: place, orientation: Orientation::Free };
         let posture = InverseKinematics::default().solve(&self.tree, &goal, &self.start)?;

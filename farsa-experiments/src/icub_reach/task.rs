@@ -1,4 +1,4 @@
-//! The description of `icub-reach`, and its episodes over parameters.
+//! The task of `icub-reach`, which runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::icub_reach::protocols::Protocols;
 use crate::icub_reach::scene::{CONTROLLED, Scene};
 use crate::icub_reach::schema;
 
-/// A trial run by a network, with what it records.
+/// Runs the trials of a network and defines the channels that are recorded.
 #[derive(Clone)]
 pub struct ReachTask {
     episode: ReachEpisode<Agent>,
@@ -27,10 +27,10 @@ pub struct ReachTask {
 }
 
 impl ReachTask {
-    /// Trials in a scene.
+    /// Creates the task for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a network that cannot be built.
+    /// Returns [`Error::Other`] if the network cannot be built.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let protocols = Arc::new(Protocols::new(&scene.config));
         let episode = ReachEpisode::new(Arc::new(scene), Agent::new()?);
@@ -41,7 +41,7 @@ impl ReachTask {
         &self.episode.scene().config
     }
 
-    /// The episode.
+    /// Returns the current episode.
     pub fn episode(&self) -> &ReachEpisode<Agent> {
         &self.episode
     }

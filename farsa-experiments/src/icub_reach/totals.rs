@@ -1,6 +1,6 @@
-//! The reward of a trial of `icub-reach`.
+//! Computation of the reward in `icub-reach`.
 
-/// The distances of a trial from its start, or from when the target jumped.
+/// The distances between hand and target that are collected during a trial. They are reset when the target moves.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct RewardTotals {
     start: f64,
@@ -10,12 +10,12 @@ pub struct RewardTotals {
 }
 
 impl RewardTotals {
-    /// Begins at a distance between hand and target \[m\].
+    /// Starts with the given distance between the hand and the target \[m\].
     pub fn new(start: f64) -> Self {
         Self { start, last: start, sum: 0.0, count: 0 }
     }
 
-    /// Adds the distance after a step \[m\], and whether it is one of the last steps.
+    /// Adds the distance after a step \[m\]. Set `counts` to true if the step belongs to the final period.
     pub fn add(&mut self, distance: f64, counts: bool) {
         self.last = distance;
         if counts {
@@ -24,22 +24,23 @@ impl RewardTotals {
         }
     }
 
-    /// The distance at the start \[m\].
+    /// Returns the distance at the start \[m\].
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// The distance after the last step \[m\].
+    /// Returns the distance after the last step \[m\].
     pub fn last(&self) -> f64 {
         self.last
     }
 
-    /// The mean distance over the last steps, or the last distance where there were none \[m\].
+    /// Returns the mean distance in the final period \[m\]. If there was no such step yet, it is the last distance.
     pub fn mean(&self) -> f64 {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }
     }
 
-    /// 1 less the mean distance in parts of the start distance, which counts as at least `least` \[m\]. 0..1, or NaN.
+    /// Computes the fitness, which is 1 minus the ratio of the mean distance and the start distance. The start distance
+    /// is at least `least` \[m\]. The result is between 0 and 1, or NaN.
     pub fn fitness(&self, least: f64) -> f64 {
         1.0 - (self.mean() / self.start.max(least)).clamp(0.0, 1.0)
     }

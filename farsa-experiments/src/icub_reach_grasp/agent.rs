@@ -1,4 +1,4 @@
-//! The network of an agent of `icub-reach-grasp`.
+//! The network that controls the iCub in `icub-reach-grasp`.
 
 use farsa_lab::Error;
 use farsa_lab::advanced::{NormalizedController, OwnedNetwork};
@@ -8,18 +8,18 @@ use crate::icub_reach_grasp::config::{Config, MOTORS, SENSORS};
 use crate::icub_reach_grasp::episode::Grasper;
 use crate::icub_reach_grasp::scene::wrong;
 
-/// A network whose inputs can be disturbed and whose neurons can be silent: hidden neurons leaky and connected to each other,
-/// motor neurons leaky.
+/// A network whose inputs can be disturbed and whose neurons can be silenced. The hidden neurons are leaky and
+/// connected to each other, and the motor neurons are leaky, too.
 #[derive(Clone, Debug)]
 pub struct Agent {
     network: NormalizedController<OwnedNetwork>,
 }
 
 impl Agent {
-    /// An agent whose parameters are 0.
+    /// Creates an agent whose parameters are all zero.
     ///
     /// # Errors
-    /// [`Error::Other`] for a layout that makes no network.
+    /// Returns [`Error::Other`] if the layout is invalid.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let layout = config.layout();
         let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
@@ -27,12 +27,12 @@ impl Agent {
         Ok(Self { network: NormalizedController::new(network) })
     }
 
-    /// The network.
+    /// Returns the network.
     pub fn network(&self) -> &NormalizedController<OwnedNetwork> {
         &self.network
     }
 
-    /// The same, for other parameters.
+    /// Returns a mutable reference to the network, for example to set its parameters.
     pub fn network_mut(&mut self) -> &mut NormalizedController<OwnedNetwork> {
         &mut self.network
     }

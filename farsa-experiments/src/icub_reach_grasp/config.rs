@@ -1,4 +1,4 @@
-//! The values of `icub-reach-grasp`.
+//! Configuration of the experiment `icub-reach-grasp`.
 
 use farsa_body::robots::{Chain, Icub, IcubPosture, IcubTabletop, Side};
 use farsa_lab::Error;
@@ -6,28 +6,28 @@ use farsa_nn::LeakyLayout;
 
 use crate::icub_limits::{within, within_limits};
 
-/// Sensory neurons.
+/// The number of sensory neurons.
 pub const SENSORS: usize = 15;
-/// Motor neurons.
+/// The number of motor neurons.
 pub const MOTORS: usize = 10;
 
-/// The area of the ball during evolution.
+/// The area in which the ball is placed during evolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Area {
-    /// 40 by 40 cm, all that is tested.
+    /// The full area that is used for the tests, 40 by 40 cm.
     #[default]
     Wide,
-    /// 20 by 20 cm.
+    /// An area of 20 by 20 cm.
     Medium,
-    /// 10 by 10 cm.
+    /// An area of 10 by 10 cm.
     Narrow,
 }
 
 impl Area {
-    /// The names of the conditions, as [`Area::from_name`] takes them.
+    /// The names of the conditions. Use [`Area::from_name`] to convert them.
     pub const NAMES: [&str; 3] = ["wide", "medium", "narrow"];
 
-    /// The area of a condition's name, or the widest one.
+    /// Returns the area with the given name. An unknown name results in the widest area.
     pub fn from_name(name: &str) -> Self {
         match name {
             "medium" => Self::Medium,
@@ -46,58 +46,58 @@ impl Area {
     }
 }
 
-/// Every value of the experiment. `settings` has the reasons.
+/// The complete configuration of the experiment. The reasons for the values are given in the table of settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Trials of an evaluation.
+    /// The number of trials in an evaluation.
     pub trials: u32,
-    /// Control steps of a trial.
+    /// The number of control steps in a trial.
     pub steps: u32,
-    /// Control step \[s\].
+    /// The duration of a control step, in seconds.
     pub time_step: f64,
-    /// Dynamics steps of a control step.
+    /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// Middle of the area in which the ball lies, X and Y \[m\].
+    /// The x and y coordinates of the middle of the area in which the ball is placed \[m\].
     pub area_centre: [f64; 2],
-    /// Its extent along X and Y \[m\].
+    /// The size of that area along x and y \[m\].
     pub area_size: [f64; 2],
-    /// The extent of the area, with the same middle, that is tested part by part \[m\].
+    /// The size of the area that is used for the tests \[m\]. It has the same middle and is divided into cells.
     pub tested_size: [f64; 2],
-    /// Radius of the ball \[m\].
+    /// The radius of the ball \[m\].
     pub ball_radius: f64,
-    /// Its mass \[kg\].
+    /// The mass of the ball \[kg\].
     pub ball_mass: f64,
-    /// Height of the table's top \[m\].
+    /// The height of the table top \[m\].
     pub table_top: f64,
-    /// Pitch, roll and yaw of the trunk at the start \[deg\].
+    /// The initial pitch, roll and yaw of the trunk, in degrees.
     pub torso: [f64; 3],
-    /// Pitch, roll and yaw of the head at the start \[deg\].
+    /// The initial pitch, roll and yaw of the head, in degrees.
     pub neck: [f64; 3],
-    /// The right arm's seven joints at the start \[deg\].
+    /// The initial angles of the seven joints of the right arm, in degrees.
     pub right_arm: [f64; 7],
-    /// The left arm's, which are rigid \[deg\].
+    /// The angles of the left arm, which does not move, in degrees.
     pub left_arm: [f64; 7],
-    /// Opposition of the thumb while the hand is open and while it is closed \[deg\].
+    /// The opposition of the thumb when the hand is open and when it is closed, in degrees.
     pub opposition: [f64; 2],
-    /// Flexion of the thumb's and of the fingers' joints while the hand is closed \[deg\].
+    /// The flexion of the joints of the thumb and of the fingers when the hand is closed, in degrees.
     pub flexion: [f64; 2],
-    /// Horizontal field of view of the left eye \[deg\].
+    /// The horizontal field of view of the left eye, in degrees.
     pub field_of_view: f64,
-    /// The head follows the ball.
+    /// If true, the head follows the ball.
     pub tracking: bool,
-    /// Part of the angle to the ball that the head makes up for in a step.
+    /// The fraction of the angle to the ball that the head corrects in each step.
     pub head_gain: f64,
-    /// Largest speed of the neck's desired angles \[rad/s\].
+    /// The largest speed at which the desired angles of the neck can change \[rad/s\].
     pub head_speed: f64,
-    /// Hidden neurons.
+    /// The number of hidden neurons.
     pub hidden: u32,
-    /// Weights and biases are decoded to plus and minus this.
+    /// The largest absolute value of a weight or bias.
     pub weight_range: f64,
-    /// The last seconds of a trial, of which touch and height count \[s\].
+    /// The length of the period at the end of a trial in which touch and height are rewarded, in seconds.
     pub window: f64,
-    /// Height of the ball above the table that earns all there is to earn and counts as lifted \[m\].
+    /// The height above the table at which the ball counts as lifted and the reward for height is largest \[m\].
     pub height: f64,
-    /// Time for which the ball must be up at the end of a successful trial \[s\].
+    /// The time for which the ball must be held up at the end of a successful trial, in seconds.
     pub hold: f64,
 }
 
@@ -134,12 +134,12 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The values of a condition.
+    /// Returns the default configuration for an area.
     pub fn for_area(area: Area) -> Self {
         Self { area_size: [area.size(); 2], ..Self::default() }
     }
 
-    /// The robot with these values: the left arm and hand are rigid.
+    /// Builds the description of the robot. The left arm and hand are rigid.
     pub fn icub(&self) -> Icub {
         let mut posture = IcubPosture {
             torso: self.torso.map(f64::to_radians),
@@ -156,23 +156,24 @@ impl Config {
         }
     }
 
-    /// The table with these values.
+    /// Builds the description of the table and the ball.
     pub fn tabletop(&self) -> IcubTabletop {
         let Self { ball_radius, ball_mass, table_top, area_centre, .. } = *self;
         IcubTabletop { ball_radius, ball_mass, table_top, ball_start: area_centre, ..IcubTabletop::default() }
     }
 
-    /// The network of an agent.
+    /// Returns the layout of the agent's network.
     pub fn layout(&self) -> LeakyLayout {
         LeakyLayout::new(SENSORS, self.hidden as usize, MOTORS)
     }
 
-    /// Steps at the end of a trial of which touch and height count, all at most.
+    /// Returns the number of steps in which touch and height are rewarded. It never exceeds the length of the trial.
     pub fn window_steps(&self) -> u32 {
         self.steps_in(self.window)
     }
 
-    /// Steps that the ball must be up at the end, all at most.
+    /// Returns the number of steps for which the ball must be held up at the end. It never exceeds the length of the
+    /// trial.
     pub fn hold_steps(&self) -> u32 {
         self.steps_in(self.hold)
     }
@@ -181,10 +182,11 @@ impl Config {
         ((seconds / self.time_step + 0.5) as u32).clamp(1, self.steps)
     }
 
-    /// Rules between values.
+    /// Checks that the values are compatible with each other.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a start out of the joints' limits, or a ball that does not lie on the table.
+    /// Returns [`Error::Setting`] if the initial posture violates a joint limit, or if the ball would not be on the
+    /// table.
     pub fn check(&self) -> Result<(), Error> {
         let icub = self.icub();
         let chains = [

@@ -1,4 +1,4 @@
-//! An episode of `icub-reach-grasp`: the ball is somewhere, and shall be lifted.
+//! Episodes of `icub-reach-grasp`, in which the robot has to lift a ball from the table.
 
 use std::sync::Arc;
 
@@ -13,30 +13,31 @@ use crate::icub_reach_grasp::motors::Motors;
 use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// A controller of the robot.
+/// A controller of the robot. It is implemented by the evolved networks and by a script.
 pub trait Grasper {
-    /// Starts a trial with the ball at this place \[m\]. An agent does not sense it and clears its state.
+    /// Starts a trial with the ball at the given position \[m\]. An evolved network ignores the position and resets its
+    /// state.
     fn start(&mut self, ball: [f64; 3]);
-    /// Senses `x` and writes the motors' values `y`, 0..1.
+    /// Reads the inputs `x` and writes the motor values `y` between 0 and 1.
     fn step(&mut self, x: &[f32; SENSORS], y: &mut [f32; MOTORS]);
 }
 
-/// A world in which the robot senses and is seen.
+/// A world that supports all sensors of the robot.
 pub trait GraspingWorld: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> {}
 
 impl<W> GraspingWorld for W where W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// The demands of a trial.
+/// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Lifting {
-    /// The cell of the ball, and the number of cells along X and Y of the tested area. Without it each trial has its part of the
-    /// area.
+    /// The cell in which the ball is placed, followed by the number of cells along x and y. By default each trial uses
+    /// a different part of the area.
     pub cell: Option<[[u32; 2]; 2]>,
-    /// Largest error of the offsets in the eye's image.
+    /// The largest error of the offsets that are measured in the image of the eye.
     pub noise: f32,
 }
 
-/// A trial of a network or of a script.
+/// A trial in which a network or a script controls the robot.
 #[derive(Clone, Debug)]
 pub struct GraspEpisode<C> {
     scene: Arc<Scene>,
@@ -51,62 +52,63 @@ pub struct GraspEpisode<C> {
 }
 
 impl<C: Grasper> GraspEpisode<C> {
-    /// Trials in a scene.
+    /// Creates an episode in a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for an eye or servos that there are not.
+    /// Returns [`Error::Other`] if the eye or the servos are invalid.
     pub fn new(scene: Arc<Scene>, grasper: C) -> Result<Self, Error> {
         let (senses, motors) = (Senses::new(&scene)?, Motors::new(&scene)?);
         let (asked, seen, score) = (Lifting::default(), Observation::default(), Score::default());
         Ok(Self { scene, senses, motors, grasper, asked, seen, score, x: [0.0; SENSORS], y: [0.0; MOTORS] })
     }
 
-    /// Sets the demands of the next trials.
+    /// Sets the conditions of the following trials.
     pub fn ask(&mut self, asked: Lifting) {
         self.asked = asked;
     }
 
-    /// The scene.
+    /// Returns the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The controller of the robot.
+    /// Returns the controller of the robot.
     pub fn grasper(&self) -> &C {
         &self.grasper
     }
 
-    /// The same, to be changed.
+    /// Returns a mutable reference to the controller of the robot.
     pub fn grasper_mut(&mut self) -> &mut C {
         &mut self.grasper
     }
 
-    /// The observation after the last step.
+    /// Returns the observation that was made after the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
 
-    /// The sums so far.
+    /// Returns the sums that have been collected so far.
     pub fn score(&self) -> &Score {
         &self.score
     }
 
-    /// The last inputs \[15\].
+    /// Returns the 15 inputs of the last step.
     pub fn sensed(&self) -> &[f32; SENSORS] {
         &self.x
     }
 
-    /// The last outputs \[10\].
+    /// Returns the 10 outputs of the last step.
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }
 
-    /// The terms of the reward if the trial ends now: nearness, touch, height, each from 0 to 1.
+    /// Computes the terms of the reward for nearness, touch and height as if the trial ended now. Each term is between
+    /// 0 and 1.
     pub fn terms(&self) -> [f64; 3] {
         self.score.terms(&self.scene.config)
     }
 
-    /// True if the trial succeeds when it ends now.
+    /// Returns true if the trial would count as a success if it ended now.
     pub fn succeeds(&self) -> bool {
         self.score.succeeds(&self.scene.config)
     }

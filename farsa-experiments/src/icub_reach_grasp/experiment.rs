@@ -1,4 +1,4 @@
-//! The experiment `icub-reach-grasp` as the `farsa` command runs it.
+//! Registration of `icub-reach-grasp` as an experiment of the `farsa` command.
 
 use farsa_lab::advanced::Lanes;
 use farsa_lab::strategy::StrategyDefinition;
@@ -10,12 +10,13 @@ use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::icub_reach_grasp::task::GraspTask;
 use crate::strategy::strategy;
 
-/// Can an iCub reach a ball anywhere on a table, grasp it and lift it?
+/// An iCub has to reach for a ball on a table, grasp it and lift it.
 ///
-/// Its left eye sees the offset between ball and hand. Its head follows the ball by a reflex, so that the angles of neck and trunk
-/// show the ball's place. Nine touch sensors feel it. The network commands angles of trunk, right arm and hand.
+/// The left eye measures the offset between the ball and the hand. Since the head follows the ball by a reflex, the
+/// angles of the neck and the trunk indicate the position of the ball. In addition there are nine touch sensors. The
+/// network commands the joint angles of the trunk, the right arm and the hand.
 ///
-/// Deviations: only the openings of the source's pages were available. All other values are ours, and the settings mark them.
+/// Only the first pages of the sources were available. The settings mark all other values, which had to be chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReachGrasp;
 
@@ -47,10 +48,10 @@ impl Experiment for IcubReachGrasp {
     }
 }
 
-/// Evaluates under a configuration.
+/// Creates an evaluator for the given configuration.
 ///
 /// # Errors
-/// [`Error::Setting`] and [`Error::Other`] for a configuration whose robot cannot be built.
+/// Returns [`Error::Setting`] or [`Error::Other`] if the robot cannot be built.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, GraspTask>, Error> {
     let scene = Scene::new(config)?;
     let model = Model::new(&scene.robot, &scene.options()).map_err(|error| wrong(&error))?;

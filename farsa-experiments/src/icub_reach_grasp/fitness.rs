@@ -1,4 +1,4 @@
-//! The reward of a trial of `icub-reach-grasp`.
+//! Computation of the reward in `icub-reach-grasp`.
 
 use farsa_num::Scalar;
 
@@ -9,46 +9,48 @@ pub(crate) const PARTS: usize = 16;
 /// The share of the touch reward for a touch by one part alone.
 const ONE_TOUCH: f64 = 0.25;
 
-/// The judge's view of a world after a step.
+/// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The palm's center \[m\].
+    /// The center of the palm \[m\].
     pub palm: [f64; 3],
-    /// The ball's center \[m\].
+    /// The center of the ball \[m\].
     pub ball: [f64; 3],
-    /// From the palm's center to the ball's surface, 0 within it \[m\].
+    /// The distance from the center of the palm to the surface of the ball \[m\]. It is zero inside the ball.
     pub distance: f64,
-    /// Height of the ball's lowest point above the table \[m\].
+    /// The height of the lowest point of the ball above the table \[m\].
     pub height: f64,
-    /// Parts of the hand that touch the ball.
+    /// The number of parts of the hand that touch the ball.
     pub touching: u32,
-    /// The opposition of two touching parts, [`opposition`].
+    /// The largest opposition of two parts that touch the ball, as computed by [`opposition`].
     pub opposition: f64,
-    /// Something else than the hand touches the ball.
+    /// True if anything except the hand touches the ball.
     pub supported: bool,
 }
 
 impl Observation {
-    /// True if all values are finite.
+    /// Returns true if all values are finite.
     pub fn is_finite(&self) -> bool {
         let Self { palm, ball, opposition, .. } = self;
         palm.iter().chain(ball).chain([opposition]).all(|x| x.is_finite())
     }
 
-    /// The share of the touch reward: nothing without a touch, a quarter for one side, all for two opposite ones.
+    /// Returns the share of the touch reward. It is zero without contact, a quarter if the ball is touched on one side,
+    /// and one if it is touched on opposite sides.
     pub fn touch(&self) -> f64 {
         if self.touching == 0 { 0.0 } else { ONE_TOUCH + (1.0 - ONE_TOUCH) * self.opposition }
     }
 
-    /// True if the hand holds the ball, and nothing else touches it.
+    /// Returns true if the ball is held by the hand and touches nothing else.
     pub fn is_held(&self) -> bool {
         self.touching > 0 && !self.supported
     }
 }
 
-/// The largest opposition of two of these directions from a center, of any length \[n x 3\].
+/// Computes the largest opposition of two directions in a list of n vectors, which may have any length.
 ///
-/// 0 for one direction or none, 1 for opposite ones, in general (1 - cos) / 2 of the largest angle between two.
+/// The opposition of two vectors is (1 - cos) / 2 of the angle between them. It is 1 for opposite vectors. The result
+/// is 0 for lists with fewer than two vectors.
 pub fn opposition(directions: &[[f64; 3]]) -> f64 {
     let mut most = 0.0_f64;
     for (i, a) in directions.iter().enumerate() {
@@ -63,16 +65,16 @@ pub fn opposition(directions: &[[f64; 3]]) -> f64 {
     most
 }
 
-/// The sums of a trial.
+/// The sums from which the reward of a trial is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Score {
-    /// Steps so far.
+    /// The number of steps that have been counted.
     pub steps: u32,
-    /// The last of them in which the ball was up and held.
+    /// The number of consecutive steps up to the last one in which the ball was lifted and held.
     pub held: u32,
-    /// The greatest height of the ball while it was held \[m\].
+    /// The largest height at which the ball was held \[m\].
     pub highest: f64,
-    /// The ball has fallen off the table.
+    /// True if the ball has fallen off the table.
     pub fallen: bool,
     start: f64,
     nearness: f64,
@@ -81,12 +83,12 @@ pub struct Score {
 }
 
 impl Score {
-    /// A trial that starts with the hand at a distance from the ball \[m\].
+    /// Starts a trial with the given distance between the hand and the ball \[m\].
     pub fn new(distance: f64) -> Self {
         Self { start: distance, ..Self::default() }
     }
 
-    /// Counts a step.
+    /// Adds the observation of a step.
     pub fn add(&mut self, config: &Config, seen: &Observation) {
         self.steps += 1;
         if self.start > 0.0 {
@@ -102,19 +104,21 @@ impl Score {
         self.fallen = seen.height < -config.ball_radius;
     }
 
-    /// The world has broken down: the nearness is no number any more.
+    /// Records a numerical failure of the simulation. The term for nearness becomes NaN.
     pub fn fail(&mut self) {
         self.nearness = f64::NAN;
     }
 
-    /// The terms of the reward if the trial ends now, each from 0 to 1. Nearness of the hand is a mean over the trial. Touch and
-    /// height are means over its last seconds. Steps lost by a fall off the table earn nothing.
+    /// Computes the terms of the reward as if the trial ended now. Each of them is between 0 and 1.
+    ///
+    /// The first term is the mean nearness of the hand over the whole trial. The terms for touch and height are means
+    /// over its last seconds. Steps that are lost because the ball fell off the table earn nothing.
     pub fn terms(&self, config: &Config) -> [f64; 3] {
         let window = f64::from(config.window_steps());
         [self.nearness / f64::from(config.steps), self.touch / window, self.lift / window]
     }
 
-    /// True if an ended trial succeeds.
+    /// Returns true if a trial that has ended was successful.
     pub fn succeeds(&self, config: &Config) -> bool {
         self.held >= config.hold_steps() && !self.fallen
     }

@@ -1,4 +1,4 @@
-//! The experiment `icub-reach-grasp`: an iCub reaches for a ball on a table, grasps it and lifts it.
+//! The experiment `icub-reach-grasp`, in which an iCub reaches for a ball on a table, grasps it and lifts it.
 
 /// The network of an agent.
 mod agent;

@@ -1,4 +1,4 @@
-//! The robot's motors: trunk, right arm and hand by the network, the head by its reflex.
+//! The motors of the robot. The network moves the trunk, the right arm and the hand, and a reflex moves the head.
 
 use farsa_body::motors::{HeadTracking, ServoGroup, ServoRange};
 use farsa_body::ports::{Actuated, ActuatorId, BodyId, Channels, Handles, Kinematics, Motor};
@@ -28,11 +28,12 @@ const ABDUCTION: [u16; 4] = [12, 16, 20, 24];
 const OPPOSITION: u16 = 8;
 const THUMB: [u16; 3] = [9, 10, 11];
 
-/// The motors in the order of the network's outputs. The first nine are desired angles of pitch and yaw of the trunk and of the
-/// right arm's seven joints, from the lower to the upper limit. The last one is the hand, 0 open and 1 closed.
+/// The motors, in the same order as the outputs of the network.
 ///
-/// The trunk's roll and the abduction of the fingers stay as they are, and the neck follows the ball by
-/// [`HeadTracking`] or stays too.
+/// The first nine outputs are desired angles, which are scaled from the lower to the upper joint limit. They control
+/// the pitch and yaw of the trunk and the seven joints of the right arm. The last output opens the hand at 0 and closes
+/// it at 1. The roll of the trunk and the abduction of the fingers are constant. The neck either follows the ball by
+/// means of [`HeadTracking`] or keeps its angles.
 #[derive(Clone, Debug)]
 pub struct Motors {
     groups: Vec<ServoGroup<Vec<ServoRange>>>,
@@ -41,10 +42,10 @@ pub struct Motors {
 }
 
 impl Motors {
-    /// The motors in a scene.
+    /// Creates the motors for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for servos that there are not.
+    /// Returns [`Error::Other`] if the servos are invalid.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let config = &scene.config;
         let servo = |joint: &str, [from, to]: [f64; 2]| -> Result<ServoRange, Error> {
@@ -85,7 +86,7 @@ impl Motors {
         Ok(Self { groups, head, held })
     }
 
-    /// The channels' names, in their order.
+    /// Returns the names of the channels.
     pub fn names() -> [&'static str; MOTORS] {
         let mut names = ["hand"; MOTORS];
         names[..CONTROLLED.len()].copy_from_slice(&CONTROLLED);

@@ -1,4 +1,4 @@
-//! The test protocols of `icub-reach-grasp`, and what each of their cases asks.
+//! Test protocols of `icub-reach-grasp`, and the conditions of each of their cases.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// The cells of the tested area, which is the same in all conditions, that are tested one by one, along X and Y.
+/// The number of cells along x and y into which the tested area is divided. The area is the same in all conditions.
 pub const CELLS: [u32; 2] = [4, 4];
 /// Trials of a case.
 const TRIALS: u32 = 24;

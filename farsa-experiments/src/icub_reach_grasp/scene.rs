@@ -1,4 +1,4 @@
-//! The scene of `icub-reach-grasp`: how a trial starts in it, and what is seen of it.
+//! The scene of `icub-reach-grasp`. It defines the start of a trial and the observations that are made after each step.
 
 use farsa_body::ports::{ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Kinematics, PairId};
 use farsa_body::robot::Robot;
@@ -25,14 +25,14 @@ struct Part {
     middle: [f64; 3],
 }
 
-/// The robot's description with the names of what matters in it.
+/// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Robot, ball and table.
+    /// The robot, the ball and the table.
     pub robot: Robot,
-    /// The robot in it.
+    /// The iCub from which the description was built.
     pub icub: Icub,
-    /// Every value of the experiment.
+    /// The configuration from which the scene was built.
     pub config: Config,
     /// The joints that move, with their angles at the start \[rad\].
     start: Vec<(JointId, f32)>,
@@ -46,15 +46,15 @@ pub(crate) fn wrong(error: &dyn core::fmt::Display) -> Error {
 }
 
 impl Scene {
-    /// The palm.
+    /// The body of the right palm.
     pub const PALM: BodyId = BodyId(19);
-    /// The ball.
+    /// The body of the ball.
     pub const BALL: BodyId = IcubTabletop::BALL;
 
-    /// The scene of a configuration.
+    /// Builds the scene for a configuration.
     ///
     /// # Errors
-    /// The errors of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    /// Returns the errors of [`Config::check`], or [`Error::Other`] if the robot cannot be simulated.
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let icub = config.icub();
@@ -92,50 +92,54 @@ impl Scene {
         Ok(Self { robot, icub, config, start, parts, others })
     }
 
-    /// Options of the articulated world.
+    /// Returns the options of the articulated world.
     pub fn options(&self) -> Options {
         let Config { time_step, substeps, .. } = self.config;
         Options { time_step, substeps, ..Options::default() }
     }
 
-    /// The actuator on a joint.
+    /// Returns the actuator of the joint with the given name.
     ///
     /// # Errors
-    /// [`Error::Other`] for a joint that there is not, or that is rigid.
+    /// Returns [`Error::Other`] if the joint does not exist or is rigid.
     pub fn actuator(&self, joint: &str) -> Result<ActuatorId, Error> {
         self.icub.actuator(joint).map_err(|error| wrong(&error))
     }
 
-    /// A joint.
+    /// Returns the joint with the given name.
     ///
     /// # Errors
-    /// As [`Scene::actuator`].
+    /// Returns the same errors as [`Scene::actuator`].
     pub fn joint(&self, joint: &str) -> Result<JointId, Error> {
         self.icub.joint(joint).map_err(|error: IcubError| wrong(&error))
     }
 
-    /// The limits of a joint \[rad\].
+    /// Returns the limits of the joint with the given name \[rad\].
     ///
     /// # Errors
-    /// As [`Scene::actuator`].
+    /// Returns the same errors as [`Scene::actuator`].
     pub fn range(&self, joint: &str) -> Result<[f64; 2], Error> {
         self.icub.range(joint).map_err(|error| wrong(&error))
     }
 
-    /// The pairs of palm, then phalanges from the thumb's to the little finger's, with the ball.
+    /// Returns the contact pairs of the hand and the ball. The palm comes first, followed by the phalanges from the
+    /// thumb to the little finger.
     pub fn on_ball(&self) -> impl Iterator<Item = PairId> + '_ {
         self.parts.iter().map(|part| part.on_ball)
     }
 
-    /// The place of the ball in a trial, X and Y \[m\]. Twelve consecutive trials take one each of the twelve parts of the area.
+    /// Draws the x and y coordinates of the ball for a trial \[m\]. The area is divided into twelve parts, and twelve
+    /// consecutive trials use each part once.
     ///
-    /// From the stream of [`Domain::Start`]: the same for all individuals of a generation.
+    /// The coordinates are drawn from the stream of [`Domain::Start`], so all individuals of a generation have the same
+    /// starts.
     pub fn place(&self, id: EpisodeId) -> [f64; 2] {
         let part = id.trial % (GRID[0] * GRID[1]);
         self.place_of(id, [part / GRID[1], part % GRID[1]], GRID, self.config.area_size)
     }
 
-    /// The place of the ball in a trial within a cell of the tested area, which has `cells` cells along X and Y \[m\].
+    /// Draws the position of the ball for a trial from one cell of the tested area \[m\]. The argument `cells` gives
+    /// the number of cells along x and y.
     pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
         self.place_of(id, cell, cells, self.config.tested_size)
     }
@@ -148,7 +152,7 @@ impl Scene {
         })
     }
 
-    /// Sets a world up with the robot at its start and the ball at a place of the table \[m\].
+    /// Moves the robot to its initial posture and places the ball on the table at the given coordinates \[m\].
     pub fn arrange<W>(&self, world: &mut W, [x, y]: [f64; 2])
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -162,7 +166,7 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// The observation of a world.
+    /// Computes an observation from the current state of a world.
     pub fn observe<W>(&self, world: &W) -> Observation
     where
         W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized,

@@ -1,4 +1,4 @@
-//! The recorded channels of `icub-reach-grasp`, by name.
+//! The names of the channels that are recorded in `icub-reach-grasp`.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{PairId, Vision};

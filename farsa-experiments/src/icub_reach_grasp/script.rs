@@ -1,4 +1,4 @@
-//! A grasp by script, with the agent's own motors: the task is possible.
+//! A handwritten controller, which demonstrates that the task can be solved with the motors of the evolved agents.
 
 use farsa_body::Pose;
 use farsa_body::actuators::Law;
@@ -16,7 +16,8 @@ use crate::smooth::smooth;
 
 /// Downward pitch of the palm, which comes from above and from the right \[deg\].
 const DOWN: f64 = 60.0;
-/// Turns of the palm's direction about the vertical, from the left. The first one in reach of inverse kinematics is taken \[deg\].
+/// Turns of the palm's direction about the vertical, from the left. The first one in reach of inverse kinematics is
+/// taken \[deg\].
 const TURNS: [f64; 6] = [40.0, 20.0, 0.0, -20.0, -40.0, -60.0];
 /// Distance of the ball ahead of the palm's center, towards the fingertips \[m\].
 const AHEAD: f64 = 0.015;
@@ -31,9 +32,11 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// Angles of the nine joints \[rad\].
 type Angles = [f64; 9];
 
-/// Reaches by kinematics for a ball at a given place, closes the hand and lifts it. It has no sensors.
+/// A controller that reaches for a ball at a given position, closes the hand and lifts the ball. It does not use any
+/// sensors.
 ///
-/// It commands the angles that inverse kinematics has for trunk and arm, and what the servos give way under gravity.
+/// The joint angles of the trunk and the arm are computed with inverse kinematics. The script adds a correction for the
+/// deflection of the servos under gravity.
 #[derive(Clone, Debug)]
 pub struct Script {
     tree: KinematicTree,
@@ -51,10 +54,10 @@ pub struct Script {
 }
 
 impl Script {
-    /// A script for a scene.
+    /// Creates a script for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a robot without kinematics.
+    /// Returns [`Error::Other`] if the kinematics of the robot cannot be computed.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = KinematicTree::new(&arm(scene)?).map_err(|error| wrong(&error))?;
         let (mut start, mut ranges, mut stiffness) = ([0.0; 9], [[0.0; 2]; 9], [0.0; 9]);
@@ -82,7 +85,8 @@ impl Script {
         })
     }
 
-    /// True if it has postures for the ball of this trial. Without any the robot does not move.
+    /// Returns true if the script has found postures for the ball of the current trial. Otherwise the robot does not
+    /// move.
     pub fn has_found(&self) -> bool {
         self.found
     }

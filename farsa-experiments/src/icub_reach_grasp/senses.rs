@@ -1,4 +1,4 @@
-//! The senses of the robot: the ball in its left eye, four of its joints, touch.
+//! The sensors of the robot, which are the left eye, four joint angles and touch.
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, PairId, Sensor};
@@ -41,9 +41,13 @@ impl<W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized> Sensor<W> for P
     }
 }
 
-/// The sensors in the order of the network's inputs. First the ball's offset from the hand in the left eye's image, to the left and
-/// upwards, -1..1 \[2\]. Then pitch and yaw of the neck and of the trunk, 0 at the lower and 1 at the upper limit \[4\]. Then touch
-/// of the five fingertips with ball or table, from the thumb on, and of four patches of the palm with the ball, 0 or 1 \[9\].
+/// The sensors, in the same order as the inputs of the network.
+///
+/// The first two channels measure the offset of the ball from the hand in the image of the left eye. They are positive
+/// to the left and upwards and range from -1 to 1. The next four channels are the pitch and yaw of the neck and the
+/// trunk, scaled from 0 at the lower to 1 at the upper limit. The last nine channels are touch sensors with values of 0
+/// or 1. Five of them are on the fingertips, starting with the thumb, and react to the ball and the table. The other
+/// four are patches of the palm and react to the ball only.
 #[derive(Clone, Debug)]
 pub struct Senses {
     offset: VisualOffset,
@@ -56,10 +60,10 @@ pub struct Senses {
 }
 
 impl Senses {
-    /// The sensors in a scene.
+    /// Creates the sensors for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for an eye that cannot be.
+    /// Returns [`Error::Other`] if the eye is invalid.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let eye = Self::camera(scene, [1, 1])?;
         let palm_centre = scene.icub.palm_centre(Side::Right).map(|x| x as f32);
@@ -103,13 +107,14 @@ impl Senses {
         Camera::new(Icub::HEAD, Self::eye(), size, view, RANGE).map_err(|error| wrong(&error))
     }
 
-    /// Starts a trial with errors of the offsets up to `noise`. The readings do not depend on earlier trials.
+    /// Starts a trial. The offsets will have random errors of at most `noise`. The sensor values do not depend on
+    /// earlier trials.
     pub fn start(&mut self, id: EpisodeId, noise: f32) {
         self.noise = noise;
         self.errors = Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation);
     }
 
-    /// The channels' names, in their order.
+    /// Returns the names of the channels.
     pub fn names() -> [&'static str; SENSORS] {
         [
             "dx",
@@ -130,7 +135,7 @@ impl Senses {
         ]
     }
 
-    /// Reads all channels.
+    /// Reads all channels into `x`.
     pub fn read<W>(&mut self, world: &W, x: &mut [f32; SENSORS])
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,

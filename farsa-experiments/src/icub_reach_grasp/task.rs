@@ -1,4 +1,4 @@
-//! The description of `icub-reach-grasp`, and its episodes over parameters.
+//! The task of `icub-reach-grasp`, which runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::schema;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// A trial run by a network, with what it records.
+/// Runs the trials of a network and defines the channels that are recorded.
 #[derive(Clone)]
 pub struct GraspTask {
     episode: GraspEpisode<Agent>,
@@ -34,10 +34,10 @@ pub struct GraspTask {
 }
 
 impl GraspTask {
-    /// Trials in a scene.
+    /// Creates the task for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a network, an eye or servos that cannot be.
+    /// Returns [`Error::Other`] if the network, the eye or the servos are invalid.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let (config, agent) = (scene.config, Agent::new(&scene.config)?);
         let range = config.weight_range;
@@ -51,7 +51,7 @@ impl GraspTask {
         &self.episode.scene().config
     }
 
-    /// The episode.
+    /// Returns the current episode.
     pub fn episode(&self) -> &GraspEpisode<Agent> {
         &self.episode
     }

@@ -1,4 +1,4 @@
-//! The demonstrator: the scripted grasp, with the network's own commands mixed in.
+//! The demonstrator, which executes the scripted grasp and optionally mixes in the commands of the network.
 
 use std::sync::Arc;
 
@@ -24,11 +24,12 @@ const ROLLED: f64 = 0.03;
 
 /// Guides the arm through reach, grasp and lift, and returns its commands at every tick.
 ///
-/// The script is that of [`ScriptEpisode`](crate::reach_grasp_lift::ScriptEpisode): way-points by inverse kinematics, inverse
-/// statics of the muscles, feedback on the arm's joints. It differs in two ways. A torque has infinitely many pairs of activations,
-/// and this script takes the pair nearest to 0.5 in both. That is a smooth function of the torque, in the middle of the network's
-/// logistic outputs, where the other script has one muscle at rest and a kink. And its clock stops while the arm is farther than
-/// 0.25 rad from its target, so that a delayed arm is guided on from its place.
+/// The script is that of [`ScriptEpisode`](crate::reach_grasp_lift::ScriptEpisode): way-points by inverse kinematics,
+/// inverse statics of the muscles, feedback on the arm's joints. It differs in two ways. A torque has infinitely many
+/// pairs of activations, and this script takes the pair nearest to 0.5 in both. That is a smooth function of the
+/// torque, in the middle of the network's logistic outputs, where the other script has one muscle at rest and a kink.
+/// And its clock stops while the arm is farther than 0.25 rad from its target, so that a delayed arm is guided on from
+/// its place.
 pub(crate) struct Demonstrator {
     scene: Arc<Scene>,
     world: World<f32>,
@@ -69,10 +70,11 @@ impl Demonstrator {
         Ok(Self { scene, world, statics, judge, senses, motors })
     }
 
-    /// Guides the arm through the trial of an id. The motors get the demonstrator's commands, mixed with `share` \[0..1\] of the
-    /// network's commands for the same sensor values. The network starts from rest.
+    /// Guides the arm through the trial of an id. The motors get the demonstrator's commands, mixed with `share`
+    /// \[0..1\] of the network's commands for the same sensor values. The network starts from rest.
     ///
-    /// The record ends with the trial, or where the sphere has rolled away by 3 cm. It is empty if the sphere is out of reach.
+    /// The record ends with the trial, or where the sphere has rolled away by 3 cm. It is empty if the sphere is out of
+    /// reach.
     pub(crate) fn roll_out<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
         let Self { scene, world, statics, judge, senses, motors } = self;
         (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
@@ -182,8 +184,8 @@ fn wanted(statics: &Statics, plan: &GraspPlan, positions: &[f64], torques: &[f64
     y
 }
 
-/// The activations nearest to [`TONUS`] that give a torque \[N m\] at an angle \[rad\] at rest. A torque beyond the pair's range is
-/// clamped.
+/// The activations nearest to [`TONUS`] that give a torque \[N m\] at an angle \[rad\] at rest. A torque beyond the
+/// pair's range is clamped.
 fn with_tonus(muscle: &MusclePair<f64>, q: f64, torque: f64) -> [f64; 2] {
     let at = |activations| muscle.effort(q, 0.0, activations).torque;
     let passive = at([0.0, 0.0]);

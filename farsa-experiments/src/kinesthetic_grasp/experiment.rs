@@ -1,4 +1,4 @@
-//! The experiment `kinesthetic-grasp`: the arm is guided, and the network learns to do it alone.
+//! The experiment `kinesthetic-grasp`, in which a network learns to grasp from demonstrations.
 
 use std::sync::Arc;
 
@@ -16,29 +16,32 @@ use farsa_lab::exports::Exports;
 use farsa_lab::strategy::{Learning, StrategyDefinition};
 use farsa_lab::{Error, Evaluation, Evaluator, Experiment, InWorld, Outcome, Setting, Settings, Task, TaskInfo};
 
-/// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
+/// Trains the network of [`reach-grasp-lift`](crate::ReachGraspLift) with demonstrations of the task.
 ///
-/// Robot, sensors, motors, trials and fitness are those of `reach-grasp-lift` with labels. Instead of evolving, one network is
-/// trained. The scripted grasp guides the arm through reach, grasp and lift, and (sensors, desired motors) is recorded. The network
-/// learns the desired motors by back-propagation through time. A generation is an episode of the network in the four trials, which
-/// is its fitness, and then an iteration of training. `learning.csv` in the run's directory has the errors.
+/// The robot, the sensors, the motors, the trials and the fitness are those of `reach-grasp-lift` with labels. Instead
+/// of evolving a population, this experiment trains a single network. A scripted grasp guides the arm through the
+/// phases reach, grasp and lift while the sensor values and the desired motor values are recorded. The network learns
+/// the desired motor values with back-propagation through time. In every generation the network is first evaluated in
+/// the four trials, which determines its fitness. Then an iteration of the training follows. The errors are written to
+/// `learning.csv` in the directory of the run.
 ///
-/// The desired motors are the script's commands at the arm's place. The network's commands are mixed in. The first demonstration of
-/// an iteration has none of them, and its last one a share that grows with the iterations \[Ross2011\]. A network that has only
-/// seen the script's way cannot correct its errors. The evaluated and mixed network is the mean of the networks after the latest
-/// gradient steps \[Polyak1992\].
+/// The desired motor values are computed by the script for the current state of the arm. A network that is trained only
+/// with states of the script cannot correct its errors. Therefore the commands of the network are mixed into the
+/// demonstrations \[Ross2011\]. The first demonstration of an iteration is executed by the script alone, and the share
+/// of the network in the last one increases with each iteration. The network that is evaluated and mixed in is an
+/// average over the latest gradient steps \[Polyak1992\].
 ///
-/// Deviations from `reach-grasp-lift`: 24 hidden neurons, slope 1 and weights within 20. With slope 0.2 and weights within 6 two
-/// layers cannot amplify as the script's feedback does.
+/// Unlike `reach-grasp-lift`, the network has 24 hidden neurons, a slope of 1 and weights up to 20. With a slope of 0.2
+/// and weights up to 6, two layers do not reach the gain of the script's feedback.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct KinestheticGrasp;
 
-/// The values of `kinesthetic-grasp`.
+/// The configuration of `kinesthetic-grasp`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The robot, its world, its network and its trials.
+    /// The configuration of the robot, its world, its network and its trials.
     pub reach: Reach,
-    /// The training.
+    /// The configuration of the training.
     pub training: Training,
 }
 
@@ -50,10 +53,11 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The configuration that checked settings describe.
+    /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// The errors of `reach-grasp-lift`, and [`Error::Setting`] for another world than ours, in which the arm is not guided.
+    /// Returns the errors of `reach-grasp-lift`. It returns [`Error::Setting`] if another world is selected, because
+    /// the arm can only be guided in the articulated world.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let reach = Reach::read(true, settings)?;
         if reach.engine != Engine::Articulated {
@@ -118,17 +122,17 @@ impl Experiment for KinestheticGrasp {
     }
 }
 
-/// Evaluates as `reach-grasp-lift` does, and learns.
+/// Evaluates a network in the trials of `reach-grasp-lift` and trains it after each evaluation.
 pub struct Trainee {
     evaluator: InWorld<World<f32>, ReachTask>,
     trainer: Trainer,
 }
 
 impl Trainee {
-    /// Trials and training under a configuration.
+    /// Creates the trials and the training for a configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for a configuration whose robot or network cannot be built.
+    /// Returns [`Error::Other`] if the robot or the network cannot be built.
     pub fn new(config: Config) -> Result<Self, Error> {
         let scene = Arc::new(Scene::new(config.reach.clone())?);
         Ok(Self { evaluator: evaluator(config.reach)?, trainer: Trainer::new(scene, config.training)? })

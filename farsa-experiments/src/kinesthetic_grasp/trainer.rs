@@ -1,5 +1,4 @@
-//! Imitation learning: the arm is guided, and a network learns by back-propagation through time what its motors should
-//! do.
+//! Imitation learning from demonstrations with back-propagation through time.
 
 use std::sync::Arc;
 
@@ -20,22 +19,24 @@ const FIRST_WEIGHTS: f32 = 0.5;
 /// Gradients with a larger norm are scaled down to it.
 const MAX_GRADIENT_NORM: f64 = 1.0;
 
-/// The training of a network.
+/// The parameters of the training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Training {
-    /// Demonstrations in an iteration, each from another start.
+    /// The number of demonstrations in an iteration. Each of them has a different start.
     pub demonstrations: u32,
-    /// Epochs: how often an iteration learns from each of them.
+    /// The number of times that an iteration uses each demonstration.
     pub epochs: u32,
-    /// Demonstrations in a gradient step.
+    /// The number of demonstrations that contribute to a gradient step.
     pub batch: u32,
-    /// Learning rate of Adam.
+    /// The initial learning rate of Adam.
     pub rate: f64,
-    /// Iterations after which that is half, and a third after twice as many.
+    /// The number of iterations after which the learning rate is reduced to one half. It is one third after twice as
+    /// many iterations.
     pub half_rate: f64,
-    /// Gradient steps over which parameters are averaged. 1 takes the latest ones.
+    /// The number of gradient steps over which the parameters are averaged. A value of 1 disables averaging.
     pub averaging: u32,
-    /// Iterations until the mixing coefficient of an iteration's last demonstration is 1. With 0 the network never acts in one.
+    /// The number of iterations after which the network controls the last demonstration of an iteration completely.
+    /// With 0, the network is never mixed in.
     pub mixing: u32,
 }
 

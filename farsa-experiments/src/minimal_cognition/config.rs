@@ -1,51 +1,52 @@
-//! The values of `minimal-cognition`, as settings.
+//! Configuration of the experiment `minimal-cognition`, and its settings.
 
 use core::f64::consts::FRAC_PI_6;
 
 use farsa_lab::{Error, Setting, Settings};
 
-/// An agent under falling objects. The defaults are those of \[Beer2003\] where the settings are marked as given.
+/// The configuration of the agent, the objects and the network. Settings that are marked as given have the defaults of
+/// \[Beer2003\].
 ///
-/// Lengths and times have no units in the source.
+/// The source does not specify units for lengths and times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Width of the line.
+    /// The width of the line on which the agent moves.
     pub width: f64,
-    /// Step of the Euler method, of the network and of all that moves.
+    /// The time step of the Euler method, which is used for the network and for all movements.
     pub time_step: f64,
-    /// Trials of an evaluation, circles and diamonds by turns.
+    /// The number of trials in an evaluation. Circles and diamonds alternate.
     pub trials: u32,
-    /// Diameter of the agent.
+    /// The diameter of the agent.
     pub body: f64,
-    /// Angle between the outermost rays \[rad\].
+    /// The angle between the two outermost rays \[rad\].
     pub fan: f64,
-    /// Length of the rays, from the agent's outline.
+    /// The length of the rays, measured from the outline of the agent.
     pub ray_length: f64,
-    /// The input of a ray that is cut at its origin.
+    /// The input from a ray that hits an object at its origin.
     pub input_gain: f64,
-    /// Velocity for a difference of 1 between the motor neurons.
+    /// The velocity of the agent when the outputs of the two motor neurons differ by 1.
     pub velocity_gain: f64,
-    /// Diameter of the circles.
+    /// The diameter of a circle.
     pub diameter: f64,
-    /// Side of the diamonds.
+    /// The side length of a diamond.
     pub side: f64,
-    /// Speed of the objects.
+    /// The speed of the falling objects.
     pub speed: f64,
-    /// Height of an object's center above the agent's at the start.
+    /// The initial height of the center of an object above the center of the agent.
     pub start_height: f64,
-    /// That height at which a trial ends.
+    /// The height at which a trial ends.
     pub end_height: f64,
-    /// Objects start at most this far to a side of the agent.
+    /// The largest horizontal distance between the object and the agent at the start.
     pub offset: f64,
-    /// Distances beyond this count as this.
+    /// The largest distance that is taken into account in the fitness.
     pub clip: f64,
-    /// Weights are decoded to plus and minus this.
+    /// The largest absolute value of a weight.
     pub weight_range: f64,
-    /// Biases are decoded to plus and minus this.
+    /// The largest absolute value of a bias.
     pub bias_range: f64,
-    /// Least and greatest time constant.
+    /// The smallest and the largest time constant.
     pub time_constants: [f64; 2],
-    /// Least and greatest gain of the sensory neurons.
+    /// The smallest and the largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 
@@ -76,13 +77,14 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Steps of a trial: as many as an object needs to the height at which it ends.
+    /// Returns the number of steps of a trial, which follows from the speed of the objects and the distance that they
+    /// fall.
     pub fn steps(&self) -> u32 {
         let steps = (self.start_height - self.end_height) / (self.speed * self.time_step);
         steps.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
     }
 
-    /// The settings with these values as defaults.
+    /// Returns the table of settings with the values of this configuration as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, value: f64| Setting::number(key, value, 1.0..=10_000.0);
         vec![
@@ -139,10 +141,10 @@ impl Config {
         ]
     }
 
-    /// The values of checked settings.
+    /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what does not go together.
+    /// Returns [`Error::Setting`] if the values are not compatible with each other.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let number = |key: &str| settings.number(key);
         let ends = |key: &str| {

@@ -1,4 +1,4 @@
-//! An episode of `minimal-cognition`: one object falls, and the agent moves under it.
+//! Episodes of `minimal-cognition`, in which an object falls toward the agent.
 
 use farsa_evo::ObservationStatistics;
 use farsa_lab::advanced::{Intervention, NormalizedController};
@@ -10,7 +10,7 @@ use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::network::{LAYOUT, MOTORS, RAYS};
 use crate::minimal_cognition::object::Object;
 
-/// An agent under a falling object.
+/// A trial with one falling object.
 #[derive(Clone, Debug)]
 pub struct AgentEpisode {
     config: Config,
@@ -26,10 +26,10 @@ pub struct AgentEpisode {
 }
 
 impl AgentEpisode {
-    /// An episode of an agent whose network has these parameters.
+    /// Creates an episode for an agent whose network has the given parameters.
     ///
     /// # Errors
-    /// [`Error::Other`] for parameters that make no network.
+    /// Returns [`Error::Other`] if the parameters are invalid.
     pub fn new(config: Config, parameters: Vec<f32>) -> Result<Self, Error> {
         let state = vec![0.0; LAYOUT.state_len()];
         let network = Ctrnn::new(LAYOUT, config.time_step as f32, parameters, state)
@@ -45,25 +45,27 @@ impl AgentEpisode {
         Ok(Self { config, rays, network, object, places: [0.0; 2], steps: 0, x: [0.0; RAYS], y: [0.0; MOTORS] })
     }
 
-    /// Gives the agent another network.
+    /// Replaces the parameters of the network.
     ///
     /// # Errors
-    /// [`Error::Other`] for parameters that make no network.
+    /// Returns [`Error::Other`] if the parameters are invalid.
     pub fn set_parameters(&mut self, parameters: &[f32]) -> Result<(), Error> {
         let copied = self.network.controller_mut().copy_parameters(parameters);
         copied.map_err(|error| Error::Other(format!("minimal-cognition: {error}")))
     }
 
-    /// Begins a trial: the agent in the middle and at rest, the object so far to its right.
+    /// Starts a trial. The agent is at rest in the middle of the line, and the object is `offset` to the right of it.
     pub fn place(&mut self, object: Object, offset: f64) {
         (self.object, self.places, self.steps) = (object, [offset, 0.0], 0);
         (self.x, self.y) = ([0.0; RAYS], [0.0; MOTORS]);
         self.network.reset();
     }
 
-    /// Begins the trial of an id: circles and diamonds by turns, each trial at distances in its part of the range.
+    /// Starts the trial with the given identifier. Circles and diamonds alternate, and each trial draws the distance
+    /// from a different part of the range.
     ///
-    /// Distance and side are drawn in this order from the stream of [`Domain::Start`], the same for all individuals.
+    /// The distance and then the side are drawn from the stream of [`Domain::Start`]. They are the same for all
+    /// individuals of a generation.
     pub fn arrange(&mut self, id: EpisodeId) {
         let Config { trials, offset, diameter, side, .. } = self.config;
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
@@ -75,12 +77,12 @@ impl AgentEpisode {
         self.place(object, if right { distance } else { -distance });
     }
 
-    /// Free length of each ray.
+    /// Returns the free length of each ray.
     pub fn free(&self) -> [f64; RAYS] {
         self.free_at(self.height())
     }
 
-    /// The same if the object were at another height.
+    /// Returns the free length of each ray for an object at a different height.
     pub fn free_at(&self, height: f64) -> [f64; RAYS] {
         let [object, agent] = self.places;
         let Config { body, ray_length, .. } = self.config;
@@ -90,7 +92,7 @@ impl AgentEpisode {
         })
     }
 
-    /// One step: senses, thinks, moves, and the object falls.
+    /// Performs one step of the network and moves the agent and the object.
     pub fn step(&mut self) {
         let Config { width, time_step, ray_length, input_gain, velocity_gain, .. } = self.config;
         self.x = self.free().map(|free| (input_gain * (ray_length - free) / ray_length) as f32);
@@ -101,23 +103,23 @@ impl AgentEpisode {
         self.steps += 1;
     }
 
-    /// True if the object has come down.
+    /// Returns true if the object has reached the height at which a trial ends.
     pub fn ended(&self) -> bool {
         self.steps >= self.config.steps()
     }
 
-    /// Height of the object's center above the agent's.
+    /// Returns the height of the center of the object above the center of the agent.
     pub fn height(&self) -> f64 {
         let Config { start_height, speed, time_step, .. } = self.config;
         start_height - f64::from(self.steps) * speed * time_step
     }
 
-    /// Horizontal distance between the centers.
+    /// Returns the horizontal distance between the two centers.
     pub fn distance(&self) -> f64 {
         (self.places[1] - self.places[0]).abs()
     }
 
-    /// The reward if the trial ends now, 0 to 1.
+    /// Computes the reward as if the trial ended now. It is between 0 and 1.
     pub fn score(&self) -> f64 {
         let part = (self.distance() / self.config.clip).min(1.0);
         match self.object {
@@ -126,22 +128,23 @@ impl AgentEpisode {
         }
     }
 
-    /// The configuration.
+    /// Returns the configuration of the episode.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The parameters of the network, in the order of [`LAYOUT`].
+    /// Returns the parameters of the network, in the order of [`LAYOUT`].
     pub fn parameters(&self) -> &[f32] {
         self.network.controller().parameters()
     }
 
-    /// The network.
+    /// Returns the network that controls the agent.
     pub fn network(&self) -> &Ctrnn<Vec<f32>, Vec<f32>> {
         self.network.controller()
     }
 
-    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
+    /// Normalizes the inputs of the network with earlier statistics, or disables normalization for `None`. Returns
+    /// `false` if the statistics have a different number of channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
@@ -151,37 +154,39 @@ impl AgentEpisode {
         self.network.intervene(intervention, id, 0);
     }
 
-    /// The observations since [`normalise`](Self::normalise), if they are normalized.
+    /// Returns the statistics of the inputs since the last call of [`normalise`](Self::normalise), or `None` if
+    /// normalization is disabled.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// The falling object.
+    /// Returns the falling object.
     pub fn object(&self) -> Object {
         self.object
     }
 
-    /// Where the object and the agent are on the line.
+    /// Returns the positions of the object and of the agent along the line.
     pub fn places(&self) -> [f64; 2] {
         self.places
     }
 
-    /// Steps taken.
+    /// Returns the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// The sines and cosines of the rays' angles, clockwise from straight up.
+    /// Returns the sine and the cosine of the angle of each ray. Angles are measured clockwise from the upward
+    /// direction.
     pub fn rays(&self) -> &[[f64; 2]; RAYS] {
         &self.rays
     }
 
-    /// The last inputs \[7\].
+    /// Returns the seven inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The last outputs of the motor neurons \[2\].
+    /// Returns the outputs of the two motor neurons in the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

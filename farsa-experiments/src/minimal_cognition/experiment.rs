@@ -1,4 +1,4 @@
-//! The experiment `minimal-cognition`: categorical perception.
+//! The experiment `minimal-cognition`, which studies categorical perception.
 
 use core::f64::consts::FRAC_PI_4;
 
@@ -23,18 +23,20 @@ use farsa_num::{Domain, Stream};
 use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
 use farsa_view::{Channel, Links, NodeParameters, Schema, View};
 
-/// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
+/// An agent with seven rays and a small dynamical network has to catch circles and avoid diamonds \[Beer2003\].
 ///
-/// The agent moves along a line under an object that falls. Its continuous-time recurrent network has a sensory neuron for
-/// each ray, five inner and two motor neurons, the same on both sides ([`Wiring`]).
+/// The agent moves along a line under a falling object. Its continuous-time recurrent network has one sensory neuron
+/// for each ray, five inner neurons and two motor neurons. The weights are symmetric with respect to left and right
+/// (see [`Wiring`]).
 ///
-/// Deviations: the search is truncation selection over genes of 16 bits, where the source has a genetic algorithm over real
-/// numbers. Starts are random within even parts of the range and drawn in every generation, so that none is learned by heart. A
-/// trial ends when a circle would touch the agent. The settings mark the values that are ours, among them the ranges of the
-/// network's parameters.
+/// The search is a genetic algorithm with truncation selection and genes of 16 bits, whereas the source uses real
+/// numbers. Starts are drawn in every generation from equal parts of the range, so that no start can be learned by
+/// heart. A trial ends when a circle would touch the agent. The settings mark all values that had to be chosen,
+/// including the ranges of the parameters.
 ///
-/// A mirrored trial has the mirrored way only while rounding does not matter. The kernel adds in the order of the neurons. Where
-/// the two sides of a network compete, the last bit of such a sum can decide between them before anything is seen.
+/// Note that a mirrored trial leads to the mirrored path only as long as rounding errors do not matter. The order of
+/// the neurons determines the order of additions in the kernel. If the two sides of a network compete, the last bit of
+/// a sum can decide between them before the object is in view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct MinimalCognition;
 
@@ -70,15 +72,15 @@ const THICK: f64 = 2.0;
 const AWAY: f64 = -20.0;
 const PAPER: Color = [244, 243, 238];
 
-/// Evaluates under a configuration.
+/// Creates an evaluator for the given configuration.
 ///
 /// # Errors
-/// [`Error::Other`] for values that make no network.
+/// Returns [`Error::Other`] if no network can be built from these values.
 pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Agent>, Error> {
     Ok(InWorld::new(NoWorld, Agent::new(config)?))
 }
 
-/// An agent, and how its network is made of parameters.
+/// The task of the agent, and the mapping from genes to the parameters of its network.
 #[derive(Clone, Debug)]
 pub struct Agent {
     wiring: Wiring,
@@ -89,10 +91,10 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// An agent under a configuration.
+    /// Creates the task for a configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for values that make no network.
+    /// Returns [`Error::Other`] if no network can be built from these values.
     pub fn new(config: Config) -> Result<Self, Error> {
         let wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
         let first: Vec<f32> = wiring.parameters().iter().map(|parameter| parameter.ends[0] as f32).collect();

@@ -1,4 +1,4 @@
-//! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
+//! The network of `minimal-cognition`. Its layers of sensory, inner and motor neurons are symmetric.
 
 use farsa_lab::{Error, Parameter};
 use farsa_nn::block::Span;
@@ -6,16 +6,16 @@ use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry};
 
 use crate::minimal_cognition::config::Config;
 
-/// Rays, and sensory neurons, from left to right.
+/// The number of rays, which equals the number of sensory neurons. They are ordered from left to right.
 pub const RAYS: usize = 7;
-/// Inner neurons, from left to right.
+/// The number of inner neurons, which are ordered from left to right.
 pub const INNER: usize = 5;
-/// Motor neurons: to the right, to the left.
+/// The number of motor neurons. The first one moves the agent to the right and the second one to the left.
 pub const MOTORS: usize = 2;
-/// All neurons: sensory, then inner, then motor.
+/// The total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
 pub const NEURONS: usize = RAYS + INNER + MOTORS;
 
-/// The layout: each ray is the external input of a sensory neuron.
+/// The layout of the network. Each ray is connected to one sensory neuron.
 pub const LAYOUT: CtrnnLayout = CtrnnLayout::new(RAYS, NEURONS, MOTORS).with_direct_inputs(0);
 
 const SENSORY: Span = Span::new(0, RAYS);
@@ -27,10 +27,10 @@ pub(crate) const LINKED: [(Span, Span); 3] =
 /// The neuron on the other side: layers are turned about their middle.
 const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
 
-/// Which gene each parameter of the network is decoded from.
+/// Defines from which gene each parameter of the network is decoded.
 ///
-/// A parameter and its mirror image share a gene, and the sensory neurons share one bias, time constant and gain. That
-/// makes the 47 parameters of the source:
+/// A parameter and its mirror image share a gene, and all sensory neurons share one bias, time constant and gain. This
+/// results in the 47 parameters of the source:
 ///
 /// | what | parameters | in pairs | genes |
 /// |---|---|---|---|
@@ -41,8 +41,9 @@ const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
 /// | gain of the sensory neurons | 7 | 1 | 1 |
 /// | time constants | 14 | as the biases | 5 |
 ///
-/// All other weights are 0, all other gains 1. Genes have the order of the first parameters that they fill, as in
-/// [`CtrnnSymmetry`]: an inner neuron's weights to the motor neurons follow those to the inner ones.
+/// All other weights are 0, and all other gains are 1. Genes are ordered by the first parameter that they determine, as
+/// in [`CtrnnSymmetry`]. For an inner neuron, the weights to the inner neurons come first, followed by the weights to
+/// the motor neurons.
 #[derive(Clone, Debug)]
 pub struct Wiring {
     symmetry: CtrnnSymmetry<'static>,
@@ -51,10 +52,10 @@ pub struct Wiring {
 }
 
 impl Wiring {
-    /// The wiring, its genes decoded to the ranges of a configuration.
+    /// Creates the wiring. Genes are decoded to the ranges of the configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for an empty range.
+    /// Returns [`Error::Other`] if a range is empty.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?
             .with_links(&LINKED)?
@@ -81,17 +82,19 @@ impl Wiring {
         Ok(Self { symmetry, parameters })
     }
 
-    /// Number of genes: 47.
+    /// Returns the number of genes, which is 47.
     pub fn genes(&self) -> usize {
         self.parameters.len()
     }
 
-    /// The numbers that the network is made of, with their ranges, in the order of the first parameters that they fill.
+    /// Returns the encoded parameters and their ranges. They are ordered by the first parameter of the network that
+    /// they determine.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// The network's parameters, in the order of [`LAYOUT`], or `None` for another count of numbers.
+    /// Computes the parameters of the network, in the order of [`LAYOUT`]. Returns `None` if the number of values is
+    /// wrong.
     pub fn expand(&self, values: &[f32]) -> Option<Vec<f32>> {
         let mut parameters = vec![0.0; LAYOUT.parameter_count()];
         self.symmetry.expand(values, &mut parameters).ok()?;

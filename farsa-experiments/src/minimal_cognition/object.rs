@@ -1,32 +1,33 @@
 //! The falling objects of `minimal-cognition`, and their intersections with rays.
 
-/// A falling object, about its center.
+/// The shape of a falling object. Coordinates are relative to its center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Object {
-    /// To be caught.
+    /// A circle, which the agent has to catch.
     Circle {
-        /// Radius.
+        /// The radius of the circle.
         radius: f64,
     },
-    /// A square on its tip, to be avoided: all points with |x| + |y| <= `half`.
+    /// A square that is rotated by 45 degrees, which the agent has to avoid. It contains all points with |x| + |y| <=
+    /// `half`.
     Diamond {
-        /// Half the diagonal.
+        /// Half the length of the diagonal.
         half: f64,
     },
 }
 
 impl Object {
-    /// A circle of this diameter.
+    /// Creates a circle with the given diameter.
     pub fn circle(diameter: f64) -> Self {
         Self::Circle { radius: 0.5 * diameter }
     }
 
-    /// A diamond of this side.
+    /// Creates a diamond with the given side length.
     pub fn diamond(side: f64) -> Self {
         Self::Diamond { half: side * core::f64::consts::FRAC_1_SQRT_2 }
     }
 
-    /// The name.
+    /// Returns the name of the shape.
     pub fn name(self) -> &'static str {
         match self {
             Self::Circle { .. } => "circle",
@@ -34,8 +35,9 @@ impl Object {
         }
     }
 
-    /// The distance at which a ray from `from`, seen from the object's center, along the unit vector `direction` enters the object.
-    /// It is 0 from within and `None` for a miss.
+    /// Computes the distance at which a ray enters the object. The origin `from` is relative to the center of the
+    /// object, and `direction` must be a unit vector. Returns 0 if the ray starts inside the object, and `None` if it
+    /// misses the object.
     pub fn meet(self, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
         let ([x, y], [u, v]) = (from, direction);
         let [first, last] = match self {
@@ -84,7 +86,8 @@ mod tests {
         }
     }
 
-    /// Marches along the ray in small steps and bisects the step that enters. Rays that graze by less than a step are missed.
+    /// Marches along the ray in small steps and bisects the step that enters. Rays that graze by less than a step are
+    /// missed.
     fn marched(object: Object, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
         const STEP: f64 = 0.02;
         let at = |distance: f64| [0, 1].map(|k| from[k] + distance * direction[k]);

@@ -1,27 +1,29 @@
-//! A pusher without evolution, to compare evolved ones with.
+//! A simple controller that serves as a baseline for evolved controllers.
 
 use farsa_nn::Controller;
 
 use crate::push_box::config::PushConfig;
 use crate::push_box::episode::OUTPUTS;
 
-/// Turns to where its infrared sensors see most and drives ahead. It drives in circles while they see nothing.
+/// A controller that turns toward the strongest infrared signal and drives ahead. It drives in circles as long as there
+/// is no signal.
 ///
-/// No memory. Inputs and outputs are those of [`PushEpisode`](crate::push_box::PushEpisode).
+/// The controller has no memory. Its inputs and outputs are the same as those of
+/// [`PushEpisode`](crate::push_box::PushEpisode).
 #[derive(Clone, Debug)]
 pub struct HomingPusher {
     /// Where the sensors look: ahead and to the left.
     eyes: Vec<[f32; 2]>,
 }
 
-/// The wheels' values while nothing is seen. The left one is half as fast as the right one, in circles of one and a half times the
-/// track in radius.
+/// The wheels' values while nothing is seen. The left one is half as fast as the right one, in circles of one and a
+/// half times the track in radius.
 const CIRCLE: [f32; OUTPUTS] = [0.75, 1.0];
 /// Gain of the steering.
 const GAIN: f32 = 1.5;
 
 impl HomingPusher {
-    /// A pusher for the robot of a configuration.
+    /// Creates a controller for the robot of the given configuration.
     pub fn new(config: &PushConfig) -> Self {
         let eyes = config.robot.infrared.angles.iter().map(|angle| {
             let (sine, cosine) = farsa_num::sin_cos(*angle);

@@ -1,34 +1,34 @@
-//! The values of `push-box`, as settings.
+//! Configuration of the experiment `push-box`, and its settings.
 
 use farsa_body::robots::MobileRobot;
 use farsa_lab::advanced::ENGINE;
 use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::Arena;
 
-/// A robot that pushes a box. The defaults are those of the experiment, all of them chosen.
+/// The configuration of the robot, the box and the trials. All defaults were chosen for this experiment.
 ///
 /// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PushConfig {
-    /// The robot.
+    /// The robot that pushes the box.
     pub robot: MobileRobot,
-    /// Control step \[s\].
+    /// The duration of a control step, in seconds.
     pub time_step: f64,
-    /// Trials of an evaluation, each with its own start.
+    /// The number of trials in an evaluation. Each trial has a different start.
     pub trials: u32,
-    /// Steps of a trial.
+    /// The number of steps of a trial.
     pub steps: u32,
-    /// Length, breadth and height of the box.
+    /// The length, width and height of the box.
     pub size: [f64; 3],
-    /// Mass of the box \[kg\].
+    /// The mass of the box \[kg\].
     pub mass: f64,
-    /// Coefficient of friction between box and ground.
+    /// The coefficient of friction between the box and the ground.
     pub friction: f64,
-    /// Least and greatest distance between hull and the circle around the box at the start.
+    /// The smallest and the largest initial distance between the robot and a circle around the box.
     pub apart: [f64; 2],
-    /// Displacement of the box in a successful trial.
+    /// The displacement of the box that is required in a successful trial.
     pub far: f64,
-    /// Weights and biases are decoded to plus and minus this.
+    /// The largest absolute value of a weight or bias.
     pub weight_range: f64,
 }
 
@@ -50,7 +50,7 @@ impl Default for PushConfig {
 }
 
 impl PushConfig {
-    /// Every value as a setting, with these as defaults.
+    /// Returns the table of settings with the values of this configuration as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=100.0).unit("m");
         vec![
@@ -83,10 +83,10 @@ impl PushConfig {
         ]
     }
 
-    /// These values with those of checked settings.
+    /// Replaces the values of this configuration by settings that have been checked.
     ///
     /// # Errors
-    /// [`Error::Setting`] for what does not go together.
+    /// Returns [`Error::Setting`] if the values are not compatible with each other.
     pub fn read(self, settings: &Settings) -> Result<Self, Error> {
         let size = settings.numbers("box.size")?;
         let apart = [settings.number("start.nearest")?, settings.number("start.farthest")?];
@@ -108,30 +108,30 @@ impl PushConfig {
         })
     }
 
-    /// The endless plane with the robot on it, away from the box. Every trial places the robot.
+    /// Builds an unbounded arena with the robot. Each trial moves the robot to its initial position.
     pub fn arena(&self) -> Arena {
         let mut arena = Arena { time_step: self.time_step, ..Arena::new() };
         arena.add_robot(self.robot.clone(), [self.size[0] + self.size[1] + 1.0, 0.0], 0.0);
         arena
     }
 
-    /// Radius of the circle around the box, seen from above.
+    /// Returns the radius of the circle around the box, as seen from above.
     pub fn around(&self) -> f64 {
         let [a, b, _] = self.size;
         0.5 * farsa_num::Scalar::sqrt(a * a + b * b)
     }
 
-    /// The fastest that the robot drives \[m/s\].
+    /// Returns the maximum speed of the robot \[m/s\].
     pub fn speed(&self) -> f64 {
         self.robot.max_wheel_speed * self.robot.wheel_radius
     }
 
-    /// Channels that a controller reads: the infrared sensors.
+    /// Returns the number of infrared sensors, which are the inputs of the controller.
     pub fn inputs(&self) -> usize {
         self.robot.infrared.angles.len()
     }
 
-    /// The arena with the box in the middle, of which rapier makes a world.
+    /// Builds the arena with the box in the middle.
     #[cfg(feature = "rapier")]
     pub fn scene(&self) -> farsa_physics::rapier::ArenaScene {
         use farsa_physics::rapier::{ArenaScene, Block};
@@ -141,10 +141,10 @@ impl PushConfig {
         scene
     }
 
-    /// A world of that scene.
+    /// Creates a world for this scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for values that make no world.
+    /// Returns [`Error::Other`] if the values do not describe a valid world.
     #[cfg(feature = "rapier")]
     pub fn world(&self) -> Result<farsa_physics::rapier::ArenaWorld, Error> {
         use farsa_physics::rapier::{ArenaOptions, ArenaWorld};

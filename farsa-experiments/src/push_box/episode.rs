@@ -1,4 +1,4 @@
-//! An episode of `push-box`: one trial with a robot and a box on an endless plane.
+//! Episodes of `push-box`, in which a robot pushes a box on an unbounded plane.
 
 use core::f32::consts::PI;
 
@@ -22,24 +22,24 @@ use crate::push_box::layer::{place_and_heading, record_step, wheel_speeds};
 /// Values that a controller gives: left and right wheel.
 pub(crate) const OUTPUTS: usize = 2;
 
-/// The score of a trial.
+/// The measurements that are collected during a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PushTrial {
-    /// Steps taken.
+    /// The number of steps that have been completed.
     pub steps: u32,
-    /// Steps in which hull and box touched.
+    /// The number of steps in which the robot touched the box.
     pub touched: u32,
-    /// From the first to the last place of the box, in the plane \[m\].
+    /// The horizontal distance between the first and the last position of the box \[m\].
     pub moved: f64,
-    /// Length of the way that it took \[m\].
+    /// The length of the path of the box \[m\].
     pub way: f64,
-    /// The fastest that it was at the end of a step \[m/s\].
+    /// The largest speed of the box at the end of a step \[m/s\].
     pub fastest: f64,
-    /// A number was not finite.
+    /// True if a measured value was not finite.
     pub failed: bool,
 }
 
-/// The robot next to its box with a controller: sensors, motors, and the judge of the trial.
+/// A trial in which a controller drives the robot near the box.
 #[derive(Clone, Debug)]
 pub struct PushEpisode<C> {
     config: PushConfig,
@@ -58,10 +58,11 @@ pub struct PushEpisode<C> {
 }
 
 impl<C: Controller> PushEpisode<C> {
-    /// A trial of this controller, of [`PushConfig::inputs`] inputs and two outputs, left and right wheel.
+    /// Creates an episode for a controller with two outputs, which drive the left and the right wheel. The number of
+    /// inputs is given by [`PushConfig::inputs`].
     ///
     /// # Errors
-    /// [`Error::Other`] for a controller of another shape.
+    /// Returns [`Error::Other`] if the controller has a different number of inputs or outputs.
     pub fn new(config: PushConfig, controller: C) -> Result<Self, Error> {
         let (inputs, outputs, wanted) = (controller.inputs(), controller.outputs(), config.inputs());
         if inputs != wanted || outputs != OUTPUTS {
@@ -88,11 +89,11 @@ impl<C: Controller> PushEpisode<C> {
         })
     }
 
-    /// Puts the box into the middle and the robot next to it. The headings of both, the direction of the robot and its distance are
-    /// uniform.
+    /// Places the box in the middle of the arena and the robot near it. Both headings and the direction and distance of
+    /// the robot are uniformly distributed.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the id's trial and generation: the individuals of a generation
-    /// have the same starts.
+    /// The values are drawn from the stream of [`Domain::Start`] for the given trial and generation. All individuals of
+    /// a generation therefore have the same starts.
     pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
@@ -109,48 +110,48 @@ impl<C: Controller> PushEpisode<C> {
         world.finish_placement();
     }
 
-    /// The reward so far: the displacement of the box in meters, or NaN for a failed trial.
+    /// Returns the current reward, which is the displacement of the box in meters. It is NaN if the trial failed.
     pub fn fitness(&self) -> f64 {
         if self.trial.failed { f64::NAN } else { self.trial.moved }
     }
 
-    /// The configuration.
+    /// Returns the configuration of the episode.
     pub fn config(&self) -> &PushConfig {
         &self.config
     }
 
-    /// The score of the trial.
+    /// Returns the measurements of the current trial.
     pub fn trial(&self) -> &PushTrial {
         &self.trial
     }
 
-    /// The ids of the robot's parts.
+    /// Returns the identifiers of the robot's parts.
     pub fn parts(&self) -> &MobileParts {
         &self.parts
     }
 
-    /// The box.
+    /// Returns the body of the box.
     pub fn cube(&self) -> BodyId {
         self.cube
     }
 
-    /// The controller.
+    /// Returns the controller of the robot.
     pub fn controller(&self) -> &C {
         &self.controller
     }
 
-    /// Another controller of the same shape.
+    /// Replaces the controller. The new controller must have the same number of inputs and outputs.
     pub fn set_controller(&mut self, controller: C) {
         debug_assert_eq!((controller.inputs(), controller.outputs()), (self.x.len(), OUTPUTS), "inputs and outputs");
         self.controller = controller;
     }
 
-    /// The last inputs \[8\].
+    /// Returns the eight inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The last outputs \[2\].
+    /// Returns the two outputs of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

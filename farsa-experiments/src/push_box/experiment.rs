@@ -1,4 +1,4 @@
-//! The experiment `push-box`: what only a general world can do.
+//! The experiment `push-box`, which requires a world with movable objects.
 
 use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 
@@ -8,12 +8,15 @@ use crate::push_box::episode::{OUTPUTS, PushEpisode};
 #[cfg(feature = "rapier")]
 use crate::push_box::task::{Layer, layer};
 
-/// Can a robot push a box that it senses by infrared alone?
+/// A robot has to push a box that it can only detect with infrared sensors.
 ///
-/// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive its
-/// wheels. It starts next to a box, often without sensing it. It earns the displacement of the box after 20 s in meters, on the
-/// mean over the trials. It runs in rapier alone, as a rigid body on driven wheels (`farsa_physics::rapier::ArenaWorld`). The crate
-/// must be built with the feature `rapier`. All values are chosen.
+/// An e-puck moves on an unbounded plane. A layer of two logistic units reads its eight infrared sensors, which are
+/// simulated by rays, and drives the wheels. The robot starts near the box, often without sensing it. The reward of a
+/// trial is the displacement of the box after 20 s in meters, and the fitness is the mean over the trials.
+///
+/// The experiment runs only in rapier, where the robot is a rigid body with driven wheels
+/// (`farsa_physics::rapier::ArenaWorld`). Therefore the feature `rapier` must be enabled. All values were chosen for
+/// this experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PushBox;
 

@@ -1,4 +1,4 @@
-//! The layer of the pushing robot: its recording, its protocols and its wheels.
+//! The neural layer of the pushing robot, with its recorded channels and its test protocols.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{BodyId, Handles, Kinematics};
@@ -34,7 +34,8 @@ pub(super) fn wheel_speeds(y: &[f32], largest: f64) -> impl Iterator<Item = f64>
     y.iter().map(move |y| (2.0 * f64::from(*y) - 1.0) * largest)
 }
 
-/// The protocols of a layer without hidden neurons whose sensors are these: `lesions`, of each sensor alone, and `noise`.
+/// The protocols of a layer without hidden neurons whose sensors are these: `lesions`, of each sensor alone, and
+/// `noise`.
 pub(super) fn layer_protocols(schema: &Schema) -> Interventions {
     let sensors = schema.sensors.iter().enumerate().map(|(number, sensor)| (&sensor.name, number..number + 1));
     Interventions::default().with_lesions(sensors, []).with_noise(&Interventions::NOISE)

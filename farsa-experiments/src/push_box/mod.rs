@@ -1,4 +1,4 @@
-//! The experiment `push-box`: what only a general world can do.
+//! The experiment `push-box`, which requires a world with movable objects.
 
 /// A pusher without evolution, to compare evolved ones with.
 #[cfg(feature = "rapier")]

@@ -1,4 +1,4 @@
-//! The description of `push-box`, and its episodes over parameters.
+//! The task of `push-box`, which runs and records episodes of evolved controllers.
 
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};

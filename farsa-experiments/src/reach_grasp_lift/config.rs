@@ -1,4 +1,4 @@
-//! The values of `reach-grasp-lift` and what is built from them.
+//! Configuration of the experiment `reach-grasp-lift`.
 
 use farsa_body::actuators::{MuscleVariant, Servo};
 use farsa_body::robot::Surface;
@@ -10,121 +10,123 @@ use farsa_physics::articulated::Options;
 use crate::reach_grasp_lift::fitness::Judgement;
 use crate::worlds::Engine;
 
-/// Trials of an evaluation, each with its own start \[Ferrauto2010, 2.3.4\].
+/// The number of trials in an evaluation. Each trial has a different start \[Ferrauto2010, 2.3.4\].
 pub const TRIALS: usize = 4;
 
-/// Which individuals share the random displacements of a trial's start.
+/// Defines which individuals share the random displacements at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Displacement {
-    /// All individuals of a generation: their fitness is compared on equal terms.
+    /// All individuals of a generation have the same displacements, so their fitness can be compared directly.
     #[default]
     PerGeneration,
-    /// None: every individual draws its own.
+    /// Each individual draws different displacements.
     PerIndividual,
 }
 
-/// The orientation in our world of the source's sphere positions (tx, ty) \[cm\].
+/// Defines how the positions (tx, ty) of the sphere in the source, in centimeters, are mapped to our world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SphereFrame {
-    /// X = ty, Y = tx: negative tx is towards the right arm.
+    /// The mapping X = ty, Y = tx. A negative tx is towards the right arm.
     #[default]
     Forward,
-    /// X = -tx, Y = -ty, the iCub root's axes: the same four places, the pairing with the arm poses reversed.
+    /// The mapping X = -tx, Y = -ty, which corresponds to the axes of the iCub's root. It results in the same four
+    /// positions, but reverses their assignment to the initial postures of the arm.
     Icub,
 }
 
-/// The values of `reach-grasp-lift`. The defaults are those of the specification.
+/// The complete configuration of the experiment. The defaults are those of the specification.
 ///
-/// Lengths are in meters and angles in degrees. Other units are SI, with exceptions at their fields.
+/// Lengths are in meters, angles in degrees, and all other quantities in SI units unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The controller senses the phase: condition A `labels`, or B `no-labels`.
+    /// If true, the network receives a label for the current phase. This is condition A (`labels`). Condition B is
+    /// `no-labels`.
     pub labels: bool,
-    /// The physics of the bodies.
+    /// The physics engine that simulates the robot.
     pub engine: Engine,
-    /// Control step \[s\].
+    /// The duration of a control step, in seconds.
     pub time_step: f64,
-    /// Dynamics steps per control step.
+    /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// Gravity, downwards \[m/s2\].
+    /// The downward acceleration of gravity \[m/s2\].
     pub gravity: f64,
-    /// Sweeps of the contact solver per dynamics step.
+    /// The number of sweeps of the contact solver in each dynamics step.
     pub sweeps: u32,
-    /// Creep of a sticking contact: tangential speed per impulse of a dynamics step \[m/s per N s\].
+    /// The creep of a sticking contact, as tangential speed per impulse of a dynamics step \[m/s per N s\].
     pub slip: f64,
-    /// Natural frequency of a joint's stop \[rad/s\].
+    /// The natural frequency of a joint's stop \[rad/s\].
     pub limit_frequency: f64,
-    /// Steps of a trial.
+    /// The number of control steps of a trial.
     pub steps: u32,
-    /// J1..J4 at the start of each trial \[deg\].
+    /// The initial angles of the joints J1 to J4 in each trial, in degrees.
     pub arm_poses: [f64; 4 * TRIALS],
-    /// (tx, ty) of the sphere at the start of each trial \[cm\].
+    /// The initial position (tx, ty) of the sphere in each trial, in centimeters.
     pub sphere_positions: [f64; 2 * TRIALS],
-    /// Their orientation in the world.
+    /// The mapping of these positions to the world.
     pub sphere_frame: SphereFrame,
-    /// Largest displacement of a joint at the start \[deg\].
+    /// The largest random displacement of a joint at the start, in degrees.
     pub joint_displacement: f64,
-    /// Largest displacement of the sphere at the start, along x and y \[cm\].
+    /// The largest random displacement of the sphere along x and y at the start, in centimeters.
     pub sphere_displacement: f64,
-    /// Which individuals share the displacements.
+    /// Defines which individuals share the displacements.
     pub displacement: Displacement,
-    /// The intersection of the axes of J1..J3 \[m\].
+    /// The point in which the axes of the joints J1 to J3 intersect \[m\].
     pub shoulder: [f64; 3],
-    /// Which reading of the muscle model.
+    /// The variant of the muscle model.
     pub muscles: MuscleVariant,
-    /// Moment arm of the muscles \[m\].
+    /// The moment arm of the muscles \[m\].
     pub moment_arm: f64,
-    /// Factor on the passive tension of the original program's muscles.
+    /// The factor that reduces the passive tension of the muscles in the original program.
     pub passive_reduction: f64,
-    /// Damping of an arm joint in proportion to its muscles' largest torque, moment arm * Tmax \[s/rad\].
+    /// The damping of each arm joint, relative to the largest torque of its muscles \[s/rad\].
     pub damping: f64,
-    /// Armature of the arm's joints \[kg m2\].
+    /// The armature of the arm joints \[kg m2\].
     pub arm_armature: f64,
-    /// Armature of the hand's joints \[kg m2\].
+    /// The armature of the hand joints \[kg m2\].
     pub hand_armature: f64,
-    /// Position gain of the finger servos \[N m/rad\].
+    /// The position gain of the finger servos \[N m/rad\].
     pub servo_stiffness: f64,
-    /// Speed gain of the finger servos \[N m s/rad\].
+    /// The velocity gain of the finger servos \[N m s/rad\].
     pub servo_damping: f64,
-    /// Largest force in a finger's tendon \[N\].
+    /// The largest force of a finger tendon \[N\].
     pub servo_force: f64,
-    /// Moment arm of a finger's tendon \[m\].
+    /// The moment arm of a finger tendon \[m\].
     pub tendon_radius: f64,
-    /// Passive damping of the hand's joints \[N m s/rad\].
+    /// The passive damping of the hand joints \[N m s/rad\].
     pub hand_damping: f64,
-    /// Radius of the sphere \[m\].
+    /// The radius of the sphere \[m\].
     pub sphere_radius: f64,
-    /// Mass of the sphere \[kg\].
+    /// The mass of the sphere \[kg\].
     pub sphere_mass: f64,
-    /// Where the table's top begins and ends along x \[m\].
+    /// The lower and the upper end of the table top along x \[m\].
     pub table_x: [f64; 2],
-    /// Where the table's top begins and ends along y \[m\].
+    /// The lower and the upper end of the table top along y \[m\].
     pub table_y: [f64; 2],
-    /// Depth of the table, a solid block below z = 0 \[m\].
+    /// The depth of the table, which is a solid block below z = 0 \[m\].
     pub table_depth: f64,
-    /// Coefficient of sliding friction of all surfaces.
+    /// The coefficient of sliding friction, which is the same for all surfaces.
     pub friction: f64,
-    /// Rolling friction of the sphere on the table \[m\].
+    /// The rolling friction between the sphere and the table \[m\].
     pub rolling_friction: f64,
-    /// Normal stiffness of a contact point \[N/m\].
+    /// The normal stiffness of each contact point \[N/m\].
     pub contact_stiffness: f64,
-    /// Normal damping of a contact point \[N s/m\].
+    /// The normal damping of each contact point \[N s/m\].
     pub contact_damping: f64,
-    /// Number of contacts that saturates a touch sensor.
+    /// The number of contacts at which a touch sensor is saturated.
     pub touch_saturation: f64,
-    /// Value of the label that names the phase.
+    /// The value of the label input for the current phase.
     pub label_amplitude: f64,
-    /// Axes of the sensors of the sphere's position.
+    /// The axes of the sensors for the position of the sphere.
     pub target_axes: Axes,
-    /// Number of hidden neurons.
+    /// The number of hidden neurons in the network.
     pub hidden: u32,
-    /// Slope of the logistic function.
+    /// The slope of the logistic function.
     pub slope: f64,
-    /// Which reading of the leak.
+    /// The interpretation of the leak parameters.
     pub leak: Leak,
-    /// Weights and biases are decoded to plus and minus this.
+    /// The largest absolute value of a weight or bias.
     pub weight_range: f64,
-    /// The rules of the judge.
+    /// The rules that determine the reward and the success of a trial.
     pub judgement: Judgement,
 }
 
@@ -186,12 +188,13 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The defaults under a condition: with the labels (A), or without (B).
+    /// Returns the default configuration. Set `labels` to true for condition A and to false for condition B.
     pub fn for_condition(labels: bool) -> Self {
         Self { labels, ..Self::default() }
     }
 
-    /// The sphere's center at the start of a trial, without displacement, x and y in the world \[m\].
+    /// Returns the x and y coordinates of the sphere's center at the start of a trial, without random displacement
+    /// \[m\].
     pub fn sphere_start(&self, trial: usize) -> [f64; 2] {
         let [tx, ty] = [0, 1].map(|k| self.sphere_positions[2 * (trial % TRIALS) + k] / 100.0);
         match self.sphere_frame {
@@ -200,7 +203,7 @@ impl Config {
         }
     }
 
-    /// The arm and hand with these values.
+    /// Builds the description of the arm and the hand.
     pub fn arm(&self) -> ArmAndHand {
         let limit = self.servo_force * self.tendon_radius;
         ArmAndHand {
@@ -218,7 +221,7 @@ impl Config {
         }
     }
 
-    /// The table and the sphere with these values.
+    /// Builds the description of the table and the sphere.
     pub fn tabletop(&self) -> Tabletop {
         let surface = self.surface();
         Tabletop {
@@ -243,7 +246,7 @@ impl Config {
         }
     }
 
-    /// Options of rapier. The other numbers of [`Config::options`] have no meaning there.
+    /// Returns the options for simulations in rapier. The other values of [`Config::options`] have no effect there.
     #[cfg(feature = "rapier")]
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
         farsa_physics::rapier::Options {
@@ -254,7 +257,7 @@ impl Config {
         }
     }
 
-    /// Options of our physics.
+    /// Returns the options of the articulated world.
     pub fn options(&self) -> Options {
         Options {
             time_step: self.time_step,
@@ -267,13 +270,13 @@ impl Config {
         }
     }
 
-    /// The shape of the network: 29 sensors with labels or 26 without, 23 outputs.
+    /// Returns the layout of the network, with 23 outputs. It has 29 sensors with labels and 26 sensors without.
     pub fn layout(&self) -> LeakyLayout {
         let sensors = if self.labels { 29 } else { 26 };
         LeakyLayout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
     }
 
-    /// Steps in a second, at least one.
+    /// Returns the number of control steps per second, which is at least one.
     pub fn steps_per_second(&self) -> u32 {
         (1.0 / self.time_step).round().max(1.0) as u32
     }

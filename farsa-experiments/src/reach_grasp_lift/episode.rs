@@ -1,4 +1,4 @@
-//! An episode of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
+//! Episodes of `reach-grasp-lift`. A trial ends after its last step or when the sphere falls off the table.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::reach_grasp_lift::fitness::{Rewards, Trial};
 use crate::reach_grasp_lift::phase::Observation;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
 
-/// The judge of one trial. It sees every step, keeps the score and ends the trial.
+/// Observes every step of a trial, collects the reward and decides when the trial ends.
 #[derive(Clone, Debug)]
 pub struct Judge {
     scene: Arc<Scene>,
@@ -24,13 +24,13 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// A judge of trials in this scene.
+    /// Creates a judge for trials in the given scene.
     pub fn new(scene: Arc<Scene>) -> Self {
         let (trial, seen, earned) = (Trial::default(), Observation::default(), Rewards::default());
         Self { scene, trial, seen, earned, starts: None }
     }
 
-    /// Sets the world up for a trial and resets the score.
+    /// Prepares the world for a trial and resets the reward.
     pub fn start<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -39,9 +39,11 @@ impl Judge {
         self.trial = Trial::default();
     }
 
-    /// Judges the step that has passed. `Some` ends the trial with its reward alone, NaN if the world broke down.
+    /// Updates the reward after a step. Returns `None` as long as the trial continues. At the end it returns the reward
+    /// of this trial, or NaN after a numerical failure.
     ///
-    /// A trial ends after its last step or when the sphere's center is below the table's top. The rewards so far remain.
+    /// A trial ends after its last step or when the center of the sphere is below the table top. Rewards that were
+    /// collected before a fall are kept.
     pub fn judge<W>(&mut self, world: &W) -> Option<f64>
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -61,36 +63,36 @@ impl Judge {
         None
     }
 
-    /// The scene.
+    /// Returns the scene in which the trials take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The score of the trial.
+    /// Returns the reward and the phase of the current trial.
     pub fn trial(&self) -> &Trial {
         &self.trial
     }
 
-    /// The observation of the last step.
+    /// Returns the observation that was made after the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
 
-    /// The rewards of the last step.
+    /// Returns the rewards of the last step.
     pub fn earned(&self) -> &Rewards {
         &self.earned
     }
 
-    /// True if the trial succeeds when it ends now.
+    /// Returns true if the trial would count as a success if it ended now.
     pub fn succeeds(&self) -> bool {
         self.trial.succeeds(self.scene.config.steps_per_second())
     }
 }
 
-/// A trial run by a controller: the robot senses, the controller steps, the motors act, every control step.
+/// A trial in which a controller reads the sensors and drives the motors in every control step.
 ///
-/// The return of this [`Episode`] is the reward of its one trial alone. The return of an individual takes the sums of the rewards
-/// of its four trials ([`Rewards::total`]).
+/// Note that the return value of this [`Episode`] is the reward of a single trial. The fitness of an individual is
+/// computed from the summed rewards of its four trials (see [`Rewards::total`]).
 #[derive(Clone, Debug)]
 pub struct ReachEpisode<C> {
     judge: Judge,
@@ -104,10 +106,12 @@ pub struct ReachEpisode<C> {
 }
 
 impl<C: Controller> ReachEpisode<C> {
-    /// A trial of this controller, whose inputs must be the sensors' channels and whose outputs the motors'.
+    /// Creates an episode for a controller. Its inputs and outputs must match the channels of the sensors and the
+    /// motors.
     ///
     /// # Errors
-    /// [`Error::Other`] for a controller of another shape or a scene without sensible channels.
+    /// Returns [`Error::Other`] if the controller has a different number of inputs or outputs, or if the sensors of the
+    /// scene are invalid.
     pub fn new(scene: Arc<Scene>, controller: C) -> Result<Self, Error> {
         let (senses, motors) = (scene.senses()?, scene.motors()?);
         let (inputs, outputs) = (controller.inputs(), controller.outputs());
@@ -122,43 +126,43 @@ impl<C: Controller> ReachEpisode<C> {
         Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS], wrong_label: false })
     }
 
-    /// The judge of the trial.
+    /// Returns the judge of the trial.
     pub fn judge(&self) -> &Judge {
         &self.judge
     }
 
-    /// The sensors.
+    /// Returns the sensors of the robot.
     pub fn senses(&self) -> &Senses {
         &self.senses
     }
 
-    /// The motors.
+    /// Returns the motors of the robot.
     pub fn motors(&self) -> &Motors {
         &self.motors
     }
 
-    /// The controller.
+    /// Returns the controller of the robot.
     pub fn controller(&self) -> &C {
         &self.controller
     }
 
-    /// The same, for other parameters.
+    /// Returns a mutable reference to the controller, for example to load different parameters.
     pub fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
     }
 
-    /// Starts from the arm's posture and the sphere's place of these trials instead of the trial's own, with the label of a
-    /// wrong phase or the right one.
+    /// Starts from the arm's posture and the sphere's place of these trials instead of the trial's own, with the label
+    /// of a wrong phase or the right one.
     pub(crate) fn change(&mut self, starts: Option<[usize; 2]>, wrong_label: bool) {
         (self.judge.starts, self.wrong_label) = (starts, wrong_label);
     }
 
-    /// The last inputs \[29 or 26\].
+    /// Returns the sensor values of the last step. There are 29 of them with labels and 26 without.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The last outputs \[23\].
+    /// Returns the 23 motor values of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

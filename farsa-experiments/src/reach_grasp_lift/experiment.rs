@@ -1,4 +1,4 @@
-//! The experiment `reach-grasp-lift` as the `farsa` command runs it.
+//! Registration of `reach-grasp-lift` as an experiment of the `farsa` command.
 
 use farsa_physics::articulated::{Batch, Model, World};
 
@@ -9,11 +9,12 @@ use crate::worlds::Engine;
 use farsa_lab::advanced::Lanes;
 use farsa_lab::{Error, Evaluator, Experiment, InWorld, Setting, Settings};
 
-/// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
+/// Tests if the labels of a caretaker help a robot to learn manipulation \[Ferrauto2010, chapter 2\] \[Massera2010\].
 ///
-/// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere. Three more inputs give the phase of the task
-/// (condition `labels`, A) or are missing (`no-labels`, B). Every value that the source does not give is a setting with its reason.
-/// [`Config`] lists them.
+/// A simulated arm and hand, similar to those of the iCub, evolve to reach for a sphere, grasp it and lift it. With the
+/// condition `labels` (A), three additional inputs indicate the phase of the task. The condition `no-labels` (B)
+/// removes these inputs. All values that the source does not specify are settings, which also state the reasons for the
+/// choice. See [`Config`] for a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ReachGraspLift;
 
@@ -55,10 +56,10 @@ fn wrong(error: &dyn std::fmt::Display) -> Error {
     Error::Other(format!("reach-grasp-lift: {error}"))
 }
 
-/// Evaluates under a configuration, in our articulated world.
+/// Creates an evaluator for the given configuration. It uses the articulated world.
 ///
 /// # Errors
-/// [`Error::Other`] for a configuration whose robot or network cannot be built.
+/// Returns [`Error::Other`] if the robot or the network cannot be built.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error> {
     let scene = Scene::new(config)?;
     let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
@@ -69,10 +70,10 @@ pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error
     Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch).with_displacements().with_pushes())
 }
 
-/// Evaluates under a configuration, in rapier.
+/// Creates an evaluator for the given configuration. It uses rapier.
 ///
 /// # Errors
-/// As [`evaluator`].
+/// Returns the same errors as [`evaluator`].
 #[cfg(feature = "rapier")]
 pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapier::World, ReachTask>, Error> {
     let scene = Scene::new(config)?;

@@ -1,4 +1,4 @@
-//! The controller of `reach-grasp-lift` and its starts for other programs.
+//! Export of the controller and the initial states of `reach-grasp-lift` for other programs.
 
 use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
 use farsa_body::robot::Pair;

@@ -1,36 +1,38 @@
-//! The reward of `reach-grasp-lift`: what a step earns, the caps over an individual's trials, and success.
+//! Computation of the reward in `reach-grasp-lift`, and the criterion for success.
 
 use serde::{Deserialize, Serialize};
 
 use crate::reach_grasp_lift::phase::{Observation, Phase};
 
-/// Largest sum of the reach terms over an individual's trials \[Ferrauto2010, 2.3.4\].
+/// The largest possible sum of the reach terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const REACH_CAP: f64 = 500.0;
-/// Largest sum of the grasp terms over an individual's trials \[Ferrauto2010, 2.3.4\].
+/// The largest possible sum of the grasp terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const GRASP_CAP: f64 = 720.0;
-/// Largest sum of the lift terms over an individual's trials \[Ferrauto2010, 2.3.4\].
+/// The largest possible sum of the lift terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const LIFT_CAP: f64 = 1600.0;
 
-/// The reading of the contact part of the grasp term, whose fraction the print flattens to "0.2 1+contacts(t)4".
+/// An interpretation of the contact term of the grasp reward. In the source, the typesetting reduces its fraction to
+/// "0.2 1+contacts(t)4".
 ///
-/// Values of different readings are not comparable: a run records the name.
+/// Fitness values with different interpretations must not be compared. Each run therefore records the name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactTerm {
-    /// 0.2 min(1, contacts/4): a grasp step pays at most 0.6, as the cap of 720 = 0.6 * 1200 suggests.
+    /// The term is 0.2 min(1, contacts/4). A grasp step then earns at most 0.6, which agrees with the cap of 720 = 0.6
+    /// * 1200.
     #[default]
     Capped,
-    /// 0.2/(1 + contacts/4), as printed. It punishes contacts.
+    /// The term is 0.2/(1 + contacts/4), which follows the print literally. Note that it penalizes contacts.
     Literal,
-    /// 0.2 (1 - 1/(1 + contacts/4)).
+    /// The term is 0.2 (1 - 1/(1 + contacts/4)).
     Saturating,
 }
 
 impl ContactTerm {
-    /// All readings.
+    /// All interpretations of the contact term.
     pub const ALL: [Self; 3] = [Self::Capped, Self::Literal, Self::Saturating];
 
-    /// The reward of a grasp step for `contacts` phalanges on the sphere.
+    /// Returns the contact term for the given number of phalanges that touch the sphere.
     pub fn value(self, contacts: u32) -> f64 {
         let quarter = f64::from(contacts) / 4.0;
         match self {
@@ -41,7 +43,7 @@ impl ContactTerm {
         }
     }
 
-    /// The reading's name.
+    /// Returns the name of the interpretation.
     pub fn name(self) -> &'static str {
         match self {
             Self::Capped => "capped",
@@ -51,13 +53,13 @@ impl ContactTerm {
     }
 }
 
-/// The choices of the judge that the source leaves open.
+/// The rules for reward and success that are not fully specified by the source.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// The reading of the contact term.
+    /// The interpretation of the contact term.
     pub contact_term: ContactTerm,
-    /// Height of the sphere's center above the table from which a lift may be a success \[cm\], 5 by default. The printed reward
-    /// alone also accepts a sphere on a hand that rests on the table.
+    /// The height above the table that the center of the sphere must reach in a successful lift, in centimeters. The
+    /// default is 5. Without this limit, a sphere on a hand that rests on the table would also count as lifted.
     pub success_height: f64,
 }
 
@@ -67,21 +69,21 @@ impl Default for Judgement {
     }
 }
 
-/// The reward so far, term by term and before the caps.
+/// The terms of the reward before the caps are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Rewards {
-    /// FR: sum over reach steps of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot).
+    /// The term FR, which is the sum of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot) over all reach steps.
     pub reach: f64,
-    /// FG: sum over grasp steps of 0.4/(1 + graspQ) and the contact term.
+    /// The term FG, which is the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
     pub grasp: f64,
-    /// FL: number of lift steps with the sphere on the fingers and off the table.
+    /// The term FL, which is the number of lift steps in which the fingers touched the sphere and the table did not.
     pub lift: f64,
-    /// Bonuses of the trials that have ended.
+    /// The sum of the bonuses of all trials that have ended.
     pub bonus: f64,
 }
 
 impl Rewards {
-    /// The reward of one step in `phase` \[Ferrauto2010, 2.3.4\].
+    /// Computes the reward of one step in the given phase \[Ferrauto2010, 2.3.4\].
     pub fn from_step(phase: Phase, seen: &Observation, term: ContactTerm) -> Self {
         let mut earned = Self::default();
         match phase {
@@ -95,7 +97,7 @@ impl Rewards {
         earned
     }
 
-    /// Adds other rewards.
+    /// Adds the rewards of another step or trial.
     pub fn add(&mut self, other: &Self) {
         self.reach += other.reach;
         self.grasp += other.grasp;
@@ -103,9 +105,9 @@ impl Rewards {
         self.bonus += other.bonus;
     }
 
-    /// F = min(500, FR) + min(720, FG) + min(1600, FL) + bonus, the sums being those of all trials.
+    /// Computes F = min(500, FR) + min(720, FG) + min(1600, FL) + bonus from the sums over all trials.
     ///
-    /// NaN if a term is NaN: `f64::min` alone would turn it into a full cap.
+    /// The result is NaN if any term is NaN. Note that `f64::min` alone would replace NaN by the cap.
     pub fn total(&self) -> f64 {
         let sum = self.reach + self.grasp + self.lift + self.bonus;
         if sum.is_nan() {
@@ -115,29 +117,30 @@ impl Rewards {
     }
 }
 
-/// One trial as the reward sees it: the phase, what was earned, and for how long the sphere has been held up.
+/// The state of a trial, from which its reward and its success are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Trial {
-    /// The phase after the last step, and the one that the next label names.
+    /// The phase after the last step. The next label indicates this phase.
     pub phase: Phase,
-    /// Number of steps judged.
+    /// The number of steps that have been judged.
     pub steps: u32,
-    /// Number of steps up to the last one, without a gap, in each of which the sphere touched the fingers and not the
+    /// The number of consecutive steps up to the last one in which the sphere touched the fingers and did not touch the
     /// table.
     pub lifted: u32,
-    /// Lifted steps with the sphere's center at least [`Judgement::success_height`] above the table.
+    /// The number of consecutive lifted steps in which the center of the sphere was at least
+    /// [`Judgement::success_height`] above the table.
     pub held: u32,
-    /// The largest height of the sphere's center above the table so far \[cm\].
+    /// The largest height of the sphere's center above the table so far, in centimeters.
     pub highest: f64,
-    /// The sphere fell off the table and ended the trial.
+    /// True if the trial ended because the sphere fell off the table.
     pub fallen: bool,
-    /// The rewards of the steps. The bonus is added when the trial has ended.
+    /// The rewards of all steps. The bonus is added at the end of the trial.
     pub rewards: Rewards,
 }
 
 impl Trial {
-    /// Judges one step: first the phase, which then pays for the step, the one that switches included. Returns what
-    /// the step earned.
+    /// Adds the observation of a step and returns its reward. The phase is updated first, so a step that changes the
+    /// phase is already rewarded according to the new phase.
     pub fn judge(&mut self, seen: &Observation, by: &Judgement) -> Rewards {
         self.phase = self.phase.next(seen);
         let earned = Rewards::from_step(self.phase, seen, by.contact_term);
@@ -149,13 +152,13 @@ impl Trial {
         earned
     }
 
-    /// Ends the trial: the bonus for the phase it reached is paid.
+    /// Ends the trial and adds the bonus for the phase that was reached.
     pub fn end(&mut self) {
         self.rewards.bonus = self.phase.bonus();
     }
 
-    /// True if the trial succeeds when it ends now: the sphere was held up in every one of the last `second` steps and did not
-    /// fall.
+    /// Returns true if the trial would count as a success if it ended now. For this the sphere must have been held up
+    /// in each of the last `second` steps and must not have fallen.
     pub fn succeeds(&self, second: u32) -> bool {
         second > 0 && self.held >= second && !self.fallen
     }

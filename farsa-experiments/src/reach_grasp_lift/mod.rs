@@ -1,4 +1,4 @@
-//! The experiment `reach-grasp-lift`: an arm and hand reach for a sphere, grasp it and lift it.
+//! The experiment `reach-grasp-lift`, in which an arm and a hand reach for a sphere, grasp it and lift it.
 
 /// The values of `reach-grasp-lift` and what is built from them.
 pub(crate) mod config;

@@ -1,11 +1,12 @@
-//! The parameters of `reach-grasp-lift`.
+//! The mapping from genes to the network parameters of `reach-grasp-lift`.
 
 use farsa_nn::{Leak, LeakyLayout, LeakyParameter};
 
 use farsa_lab::advanced::network_parameters;
 use farsa_lab::{Error, Parameter};
 
-/// Weights and biases from minus to plus the range of weights, and leaks from 0 to 1, or as the original program has them.
+/// Weights and biases from minus to plus the range of weights, and leaks from 0 to 1, or as the original program has
+/// them.
 #[derive(Clone, Debug)]
 pub(crate) struct Ranges {
     layout: LeakyLayout,

@@ -1,71 +1,75 @@
-//! The three phases of `reach-grasp-lift` and what is observed of a step to distinguish them.
+//! The three phases of `reach-grasp-lift`, and the observations that distinguish them.
 
 use farsa_num::exp;
 use serde::{Deserialize, Serialize};
 
-/// A phase of a trial. A trial passes through them in this order and never back.
+/// A phase of a trial. The phases follow each other in this order, and a trial never returns to an earlier phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
-    /// The hand approaches the sphere.
+    /// The hand moves toward the sphere.
     #[default]
     Reach,
     /// The hand closes around the sphere.
     Grasp,
-    /// The hand raises the sphere.
+    /// The hand lifts the sphere.
     Lift,
 }
 
-/// The reward's view of the world after one step.
+/// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// ds: distance from the palm's center to the point 5 cm above the sphere's center \[cm\].
+    /// The distance ds between the center of the palm and a point 5 cm above the center of the sphere, in centimeters.
     pub reach_distance: f64,
-    /// graspQ: distance from the centroid of fingertips and palm center to the sphere's center \[cm\].
+    /// The distance graspQ between the centroid of the fingertips and the palm and the center of the sphere, in
+    /// centimeters.
     pub grasp_distance: f64,
-    /// Number of phalanges that touch the sphere. The palm does not count.
+    /// The number of phalanges that touch the sphere. The palm is not counted.
     pub contacts: u32,
-    /// fOpen: mean openness of the 15 flexion joints, 0 closed, 1 extended.
+    /// The mean openness fOpen of the 15 flexion joints. It is 0 for a closed hand and 1 for extended fingers.
     pub openness: f64,
-    /// pRot: cosine between the palm's direction and straight down, 1 for palm down, -1 for palm up.
+    /// The cosine pRot of the angle between the direction of the palm and the vertical. It is 1 if the palm points down
+    /// and -1 if it points up.
     pub palm_down: f64,
-    /// The sphere touches the table.
+    /// True if the sphere touches the table.
     pub on_table: bool,
-    /// Height of the sphere's center above the table's top \[cm\].
+    /// The height of the sphere's center above the table top, in centimeters.
     pub height: f64,
-    /// The palm's center in the world \[m\]. The reward uses the distances only.
+    /// The position of the palm's center in the world \[m\]. Only distances enter the reward.
     pub palm: [f64; 3],
-    /// The centroid of fingertips and palm center in the world \[m\].
+    /// The centroid of the fingertips and the center of the palm in the world \[m\].
     pub grasp_centre: [f64; 3],
 }
 
 impl Observation {
-    /// True if a phalanx touches the sphere.
+    /// Returns true if at least one phalanx touches the sphere.
     pub fn on_fingers(&self) -> bool {
         self.contacts > 0
     }
 
-    /// oLifted: the sphere touches the fingers and not the table.
+    /// Returns oLifted, which is true if the sphere touches the fingers but not the table.
     pub fn lifted(&self) -> bool {
         self.on_fingers() && !self.on_table
     }
 
-    /// r = 1 - exp(-0.1 ds): 0 at the goal of reaching, towards 1 far from it.
+    /// Returns r = 1 - exp(-0.1 ds). It is 0 at the target of the reach phase and approaches 1 far away from it.
     pub fn r(&self) -> f64 {
         1.0 - exp(-0.1 * self.reach_distance)
     }
 
-    /// g = exp(-0.2 graspQ): 1 with the sphere in the middle of the hand, towards 0 far from it.
+    /// Returns g = exp(-0.2 graspQ). It is 1 if the sphere is in the middle of the hand and approaches 0 far away from
+    /// it.
     pub fn g(&self) -> f64 {
         exp(-0.2 * self.grasp_distance)
     }
 
-    /// l = 1 - exp(-0.3 contacts): 0 untouched, towards 1 with many phalanges on the sphere.
+    /// Returns l = 1 - exp(-0.3 contacts). It is 0 without contacts and approaches 1 if many phalanges touch the
+    /// sphere.
     pub fn l(&self) -> f64 {
         1.0 - exp(-0.3 * f64::from(self.contacts))
     }
 
-    /// True if every number is finite.
+    /// Returns true if all values are finite.
     pub fn is_finite(&self) -> bool {
         [self.reach_distance, self.grasp_distance, self.openness, self.palm_down, self.height]
             .iter()
@@ -74,13 +78,13 @@ impl Observation {
 }
 
 impl Phase {
-    /// All phases in their order.
+    /// All phases in the order in which they occur.
     pub const ALL: [Self; 3] = [Self::Reach, Self::Grasp, Self::Lift];
 
-    /// The phase after a step that ended as `seen` \[Ferrauto2010, 2.3.4\].
+    /// Returns the phase after a step with the given observation \[Ferrauto2010, 2.3.4\].
     ///
-    /// Reach changes to grasp when not (r > g or g < 0.5), grasp to lift when g > 0.7 and l > 0.6, and never back. Deviations: the
-    /// source gives the three conditions as a classification. At most one transition a step is ours.
+    /// Reach changes to grasp unless r > g or g < 0.5. Grasp changes to lift if g > 0.7 and l > 0.6. Deviations: the
+    /// source defines the three conditions as a classification. Here a step can change the phase only once.
     #[must_use]
     pub fn next(self, seen: &Observation) -> Self {
         let g = seen.g();
@@ -100,12 +104,12 @@ impl Phase {
         }
     }
 
-    /// The phase's position in [`Phase::ALL`].
+    /// Returns the index of the phase in [`Phase::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// The phase's name.
+    /// Returns the name of the phase.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reach => "reach",
@@ -114,7 +118,8 @@ impl Phase {
         }
     }
 
-    /// The bonus of a trial that ends in this phase, on top of its steps \[Ferrauto2010, 2.3.4\].
+    /// Returns the bonus for a trial that ends in this phase, which is added to the rewards of its steps
+    /// \[Ferrauto2010, 2.3.4\].
     pub fn bonus(self) -> f64 {
         match self {
             Self::Reach => 0.0,

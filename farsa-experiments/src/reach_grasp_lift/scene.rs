@@ -1,4 +1,5 @@
-//! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
+//! The scene of `reach-grasp-lift`. It defines the start of a trial, the sensors and motors of the robot, and the
+//! observations that are made after each step.
 
 use farsa_body::motors::{Muscles, ServoGroup, ServoRange};
 use farsa_body::ports::{
@@ -20,7 +21,8 @@ use crate::reach_grasp_lift::phase::{Observation, Phase};
 const PLAIN_SENSORS: usize = 26;
 /// Units per meter of the sphere's position: centimeters.
 pub(crate) const TARGET_SCALE: f32 = 100.0;
-/// Output channels: an activation for each of the 14 muscles, a position for each of the 9 servo groups.
+/// The number of output channels. There is an activation for each of the 14 muscles, and a position for each of the 9
+/// servo groups.
 pub const OUTPUTS: usize = 23;
 
 /// The joints of the hand that are sensed, one of every linked group.
@@ -29,38 +31,42 @@ const SENSED_HAND_JOINTS: [usize; 10] = [8, 9, 10, 13, 14, 17, 18, 21, 22, 16];
 /// Touch sensors of a list of pairs each.
 type TouchPatches = Vec<Touch<Vec<PairId>>>;
 
-/// The robot's description with the names of what matters in it.
+/// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Arm, hand, sphere and table.
+    /// The arm, the hand, the sphere and the table.
     pub robot: Robot,
-    /// The arm and hand in it.
+    /// The arm and hand from which the description was built.
     pub arm: ArmAndHand,
-    /// Every value of the experiment.
+    /// The configuration from which the scene was built.
     pub config: Config,
-    /// The sphere with the fifteen phalanges, from the thumb's to the little finger's.
+    /// The contact pairs of the sphere and the fifteen phalanges, from the thumb to the little finger.
     pub sphere_on_phalanges: [PairId; 15],
-    /// The sphere with the palm.
+    /// The contact pair of the sphere and the palm.
     pub sphere_on_palm: PairId,
-    /// The sphere with the table.
+    /// The contact pair of the sphere and the table.
     pub sphere_on_table: PairId,
 }
 
-/// The robot's sensors in the order of the network's inputs, 29 or (without labels) 26 channels \[Ferrauto2010, 2.3.3\]:
+/// The sensors of the robot, in the same order as the inputs of the network. There are 29 channels with labels and 26
+/// channels without \[Ferrauto2010, 2.3.3\].
 ///
-/// 17 proprioceptors (J1..J7, J8, J9, J10, J13, J14, J17, J18, J21, J22, J16) and 6 tactile sensors (thumb, index, middle, ring,
-/// little finger, palm). Then come 3 channels for the sphere's center relative to the palm's \[cm\] and 3 labels.
+/// The first 17 channels are proprioceptors for the joints J1..J7, J8, J9, J10, J13, J14, J17, J18, J21, J22 and J16.
+/// They are followed by 6 tactile sensors on the thumb, the four other fingers from index to little finger, and the
+/// palm. Then come 3 channels for the position of the sphere relative to the palm, in centimeters, and 3 labels.
 ///
-/// Deviations: the page with the source's list is not available. The choice of the ten sensed hand joints and the scales are ours.
-/// Touch sensors feel with all sides of a phalanx, not the inner one alone.
+/// Deviations: the page that contains the source's list is not available. The ten hand joints and the scales were
+/// therefore chosen. Touch sensors respond to all sides of a phalanx and not only to the inner side.
 #[derive(Clone, Debug)]
 pub struct Senses {
     parts: (Vec<JointPosition>, TouchPatches, TargetPosition, Option<Signal<3>>),
     label_amplitude: f32,
 }
 
-/// The robot's motors in the order of the network's outputs, 23 channels \[Ferrauto2010, 2.3.2\]: agonist and antagonist
-/// of J1..J7, then the nine servo groups of [`ArmAndHand::servo_groups`].
+/// The motors of the robot, in the same order as the outputs of the network \[Ferrauto2010, 2.3.2\].
+///
+/// There are 23 channels. The first 14 channels drive the agonists and antagonists of J1..J7, and the others drive the
+/// nine servo groups of [`ArmAndHand::servo_groups`].
 #[derive(Clone, Debug)]
 pub struct Motors {
     parts: (Vec<Muscles>, Vec<ServoGroup<Vec<ServoRange>>>),
@@ -76,10 +82,10 @@ fn wrong_robot(error: &RobotError) -> Error {
 }
 
 impl Scene {
-    /// The scene of a configuration.
+    /// Builds the scene for a configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for a configuration whose robot no world can simulate.
+    /// Returns [`Error::Other`] if the robot cannot be simulated.
     pub fn new(config: Config) -> Result<Self, Error> {
         let arm = config.arm();
         let robot = config.tabletop().scene(&arm).map_err(|error| wrong_robot(&error))?;
@@ -96,10 +102,10 @@ impl Scene {
         Ok(Self { robot, arm, config, sphere_on_phalanges, sphere_on_palm, sphere_on_table })
     }
 
-    /// The sensors.
+    /// Creates the sensors of the robot.
     ///
     /// # Errors
-    /// [`Error::Other`] for ranges of joints that are empty.
+    /// Returns [`Error::Other`] if the range of a joint is empty.
     pub fn senses(&self) -> Result<Senses, Error> {
         let joints = self.sensed_joints().into_iter();
         let joints = joints.map(|(joint, [from, to])| JointPosition::new(joint, from, to).map_err(wrong_channel));
@@ -113,10 +119,10 @@ impl Scene {
         Ok(Senses { parts: (joints, patches, target.map_err(wrong_channel)?, label), label_amplitude })
     }
 
-    /// The motors.
+    /// Creates the motors of the robot.
     ///
     /// # Errors
-    /// [`Error::Other`] for servo positions that are not finite.
+    /// Returns [`Error::Other`] if the position of a servo is not finite.
     pub fn motors(&self) -> Result<Motors, Error> {
         let muscles = (0..7).map(|i| Muscles::new(ActuatorId(i))).collect();
         let groups: Result<Vec<_>, _> = self.arm.servo_groups().into_iter().map(ServoGroup::new).collect();
@@ -156,16 +162,18 @@ impl Scene {
             .collect()
     }
 
-    /// J1..J27 at the start of a trial \[rad\] and the sphere's place on the table \[m\], displacements included.
+    /// Draws the initial angles of J1..J27 in radians and the initial position of the sphere on the table in meters.
     ///
-    /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y. Joints are
-    /// clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by up to 1.5 cm.
-    /// Uniform distributions and displaced joints of the hand are our choice.
+    /// The displacements are drawn from the stream of [`Domain::Start`]. The joints come first, followed by x and y of
+    /// the sphere. Angles are clamped to the range of the joint. Deviations: the source displaces "each joint" by up to
+    /// 1 degree and the sphere by up to 1.5 cm. It does not specify the distribution, which is uniform here, and it
+    /// does not state that the joints of the hand are displaced.
     pub fn start(&self, id: EpisodeId) -> ([f64; 27], [f64; 2]) {
         self.start_from(id, [id.trial as usize; 2])
     }
 
-    /// The same from the arm's posture and the sphere's place of these trials, with the displacements of the id's.
+    /// Draws an initial state that combines the arm posture and the sphere position of two trials. The displacements
+    /// are those of the trial in `id`.
     pub fn start_from(&self, id: EpisodeId, starts: [usize; 2]) -> ([f64; 27], [f64; 2]) {
         let config = &self.config;
         let [posture, place] = starts.map(|trial| trial % TRIALS);
@@ -184,7 +192,8 @@ impl Scene {
         (joints, sphere)
     }
 
-    /// Options of a MuJoCo model of the scene: the dynamics step, and the starts without displacements.
+    /// Returns the options for a MuJoCo model of the scene, which contain the dynamics step and the starts without
+    /// displacements.
     pub fn mjcf_options(&self) -> MjcfOptions {
         let config = &self.config;
         let start = |trial: usize| {
@@ -203,7 +212,7 @@ impl Scene {
         }
     }
 
-    /// Sets a world up for the start of a trial.
+    /// Moves the arm and the sphere to the initial state of a trial.
     pub fn arrange<W>(&self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -211,7 +220,7 @@ impl Scene {
         self.arrange_from(world, id, [id.trial as usize; 2]);
     }
 
-    /// The same from the arm's posture and the sphere's place of these trials, [`start_from`](Self::start_from).
+    /// Moves the arm and the sphere to the initial state that is returned by [`start_from`](Self::start_from).
     pub fn arrange_from<W>(&self, world: &mut W, id: EpisodeId, starts: [usize; 2])
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -226,17 +235,17 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// The palm's center in the world \[m\].
+    /// Returns the position of the palm's center in the world \[m\].
     pub fn palm_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(ArmAndHand::PALM).cast::<f64>().transform(self.arm.palm_centre)
     }
 
-    /// The sphere's center in the world \[m\].
+    /// Returns the position of the sphere's center in the world \[m\].
     pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(Tabletop::SPHERE).position.map(f64::from)
     }
 
-    /// The judge's view of a world.
+    /// Computes an observation from the current state of a world.
     pub fn observe<W>(&self, world: &W) -> Observation
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -276,14 +285,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Senses {
-    /// Sets the label of the next reading, if there are labels.
+    /// Sets the phase that the labels will indicate in the next reading. Without labels it has no effect.
     pub fn set_label(&mut self, phase: Phase) {
         if let Some(label) = &mut self.parts.3 {
             label.set_one_hot(phase.index(), self.label_amplitude);
         }
     }
 
-    /// The channels' names, in their order.
+    /// Returns the names of the channels.
     pub fn names(&self) -> Vec<String> {
         let joints = (1..=7).chain(SENSED_HAND_JOINTS).map(|n| format!("J{n}"));
         let touch = ["thumb", "index", "middle", "ring", "little", "palm"].map(|part| format!("touch {part}"));
@@ -313,7 +322,7 @@ where
 }
 
 impl Motors {
-    /// The channels' names, in their order.
+    /// Returns the names of the channels.
     pub fn names(&self) -> Vec<String> {
         let muscles = (1..=7).flat_map(|n| [format!("J{n} agonist"), format!("J{n} antagonist")]);
         let groups = ["J8", "J9", "J10 J11", "J13", "J14 J15", "J17", "J18 J19", "J12 J16 J20 J24", "J21-J23 J25-J27"];

@@ -1,4 +1,4 @@
-//! The recorded channels of `reach-grasp-lift`, by name.
+//! The names of the channels that are recorded in `reach-grasp-lift`.
 
 use farsa_body::actuators::{Law, MusclePair};
 use farsa_body::ports::{BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairId};
@@ -15,8 +15,8 @@ use crate::reach_grasp_lift::scene::Scene;
 /// The controller's episode in a trial.
 pub(crate) type NetworkEpisode = ReachEpisode<NormalizedController<OwnedNetwork>>;
 
-/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17 forces, 27 +
-/// 6 speeds of joints and sphere.
+/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17
+/// forces, 27 + 6 speeds of joints and sphere.
 pub(crate) const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
 
 /// Fills the first places of a slice and returns the others.

@@ -1,4 +1,4 @@
-//! A grasp by script: what the task asks of arm, hand and contacts, shown without evolution.
+//! A handwritten grasp. It demonstrates that the task can be solved by the simulated arm and hand.
 
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
 use crate::smooth::smooth;
 
-/// Postures with the palm exactly down, its center 5 cm above the sphere in its four places \[deg\]. The search for a posture
-/// begins there.
+/// Postures with the palm exactly down, its center 5 cm above the sphere in its four places \[deg\]. The search for a
+/// posture begins there.
 const PALM_DOWN: [[f64; 7]; 4] = [
     [-92.0, -8.0, 53.0, -102.0, -28.0, -48.0, 11.0],
     [-82.0, -26.0, 18.0, -66.0, -18.0, -25.0, 6.0],
@@ -24,25 +24,26 @@ const PALM_DOWN: [[f64; 7]; 4] = [
 /// The places that they belong to, X and Y in the world \[m\].
 const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
-/// The times of the script, chosen by trial in another simulator and in ours.
+/// The timing and the gains of the script, which were tuned by hand in two simulators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
-    /// Duration of reaching the way-point, descending, closing and lifting, one after the other \[s\]. The rest is holding.
+    /// The durations of reaching the way-point, descending, closing and lifting, in seconds. The lifted posture is held
+    /// for the rest of the trial.
     pub durations: [f64; 4],
-    /// Height of the palm's center above the table at the way-point \[m\].
+    /// The height of the palm's center above the table at the way-point \[m\].
     pub way_point: f64,
-    /// Target height of the palm's center above the table for grasping \[m\]: below the sphere's top, so that the palm presses
-    /// gently.
+    /// The height of the palm's center above the table during the grasp \[m\]. It is chosen below the top of the
+    /// sphere, so that the palm presses gently.
     pub palm: f64,
-    /// Distance of the sphere ahead of the palm's center, towards the fingertips \[m\].
+    /// The distance from the palm's center to the sphere in the direction of the fingertips \[m\].
     pub ahead: f64,
-    /// Height of the lift \[m\].
+    /// The height by which the hand is lifted \[m\].
     pub lift: f64,
-    /// The nine servo groups closed around the sphere.
+    /// The positions of the nine servo groups when the hand is closed around the sphere.
     pub closed: [f64; 9],
-    /// Feedback on the position of J1..J7 \[N m/rad\].
+    /// The position gains of the feedback for J1..J7 \[N m/rad\].
     pub stiffness: [f64; 7],
-    /// Feedback on their speed \[N m s/rad\].
+    /// The velocity gains of the feedback for J1..J7 \[N m s/rad\].
     pub damping: [f64; 7],
 }
 
@@ -61,7 +62,7 @@ impl Default for Timetable {
     }
 }
 
-/// The statics of the arm: postures and the activations that hold them.
+/// A static model of the arm, which computes postures and the muscle activations that hold them.
 #[derive(Clone, Debug)]
 pub struct Statics {
     tree: KinematicTree,
@@ -71,10 +72,10 @@ pub struct Statics {
 }
 
 impl Statics {
-    /// The statics of a scene's arm.
+    /// Creates the static model for the arm of a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] if the arm is not driven by muscles.
+    /// Returns [`Error::Other`] if the arm is not driven by muscles.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let tree = KinematicTree::new(&scene.robot).map_err(|error| Error::Other(error.to_string()))?;
         let laws: Vec<_> = scene.robot.actuators.iter().map(|actuator| actuator.law).collect();
@@ -87,15 +88,16 @@ impl Statics {
         Ok(Self { tree, muscles, palm_centre: scene.arm.palm_centre, gravity })
     }
 
-    /// The kinematics of the scene.
+    /// Returns the kinematic tree of the scene.
     pub fn tree(&self) -> &KinematicTree {
         &self.tree
     }
 
-    /// The posture with the palm down and its center at a place in the world \[m\], searched from another posture, J1..J27 \[rad\].
+    /// Computes the joint angles J1..J27 for which the palm points down and its center is at the given position in the
+    /// world. Positions are in meters and angles in radians. The search starts from the posture `from`.
     ///
     /// # Errors
-    /// [`InverseKinematicsError`] without a posture within the joints' ranges.
+    /// Returns [`InverseKinematicsError`] if the joint ranges do not permit such a posture.
     pub fn palm_down(&self, place: [f64; 3], from: &[f64]) -> Result<Vec<f64>, InverseKinematicsError> {
         let goal = Goal {
             body: ArmAndHand::PALM,
@@ -106,10 +108,11 @@ impl Statics {
         InverseKinematics::default().solve(&self.tree, &goal, from).map(|solution| solution.joints)
     }
 
-    /// A posture with the palm down and its center at a height \[m\] above a point of the table, J1..J27 \[rad\].
+    /// Computes joint angles J1..J27 for which the palm points down and its center is at a given height above a point
+    /// of the table. Positions are in meters and angles in radians.
     ///
     /// # Errors
-    /// [`InverseKinematicsError`] without a posture within the joints' ranges.
+    /// Returns [`InverseKinematicsError`] if the joint ranges do not permit such a posture.
     pub fn above(&self, [x, y]: [f64; 2], height: f64) -> Result<Vec<f64>, InverseKinematicsError> {
         let far = |place: &[f64; 2]| (place[0] - x) * (place[0] - x) + (place[1] - y) * (place[1] - y);
         let mut nearest = 0;
@@ -125,7 +128,8 @@ impl Statics {
         self.palm_down([x, y, height], &from)
     }
 
-    /// Activations of agonist and antagonist of J1..J7 for torques \[N m\] at a posture \[rad\], and whether they reach them.
+    /// Computes the activations of the agonists and antagonists of J1..J7 that produce the given torques \[N m\] at a
+    /// posture \[rad\]. The second result is true if the muscles are strong enough.
     pub fn activations(&self, joints: &[f64], torques: &[f64]) -> ([[f64; 2]; 7], bool) {
         let mut all_reached = true;
         let activations = core::array::from_fn(|i| {
@@ -141,13 +145,13 @@ impl Statics {
         &self.muscles
     }
 
-    /// The torques that hold a posture \[rad\] against gravity, J1..J27 \[N m\].
+    /// Computes the torques of J1..J27 that hold a posture \[rad\] against gravity \[N m\].
     pub fn gravity_torques(&self, joints: &[f64]) -> Vec<f64> {
         self.tree.gravity_torques(&self.tree.poses(joints), self.gravity)
     }
 }
 
-/// The script for one start: postures on the way and when each is reached.
+/// The sequence of postures that the script follows from one initial state.
 #[derive(Clone, Debug)]
 pub struct GraspPlan {
     timetable: Timetable,
@@ -161,10 +165,11 @@ fn seven(joints: &[f64]) -> [f64; 7] {
 }
 
 impl GraspPlan {
-    /// A plan from the start posture \[J1..J27, rad\] for a sphere that lies at a place of the table \[m\].
+    /// Plans the grasp of a sphere at the given position on the table \[m\]. The arm starts at the posture `start`,
+    /// which contains the angles of J1..J27 in radians.
     ///
     /// # Errors
-    /// [`InverseKinematicsError`] when the sphere is out of reach.
+    /// Returns [`InverseKinematicsError`] if the sphere is out of reach.
     pub fn new(
         timetable: Timetable,
         statics: Arc<Statics>,
@@ -184,7 +189,7 @@ impl GraspPlan {
         Ok(Self { timetable, statics, postures })
     }
 
-    /// The target posture at a time \[s\], and the share by which the hand is closed.
+    /// Returns the desired posture at the given time in seconds, and the degree to which the hand is closed.
     pub fn wanted(&self, time: f64) -> ([f64; 7], f64) {
         let [reach, descend, close, lift] = self.timetable.durations;
         let ends = [reach, reach + descend, reach + descend + close];
@@ -202,7 +207,8 @@ impl GraspPlan {
         (posture, smooth((time - ends[1]) / (0.8 * close)))
     }
 
-    /// J1..J27 \[rad\], and the torques \[N m\] that follow the plan at a time \[s\]: against gravity, with feedback on J1..J7.
+    /// J1..J27 \[rad\], and the torques \[N m\] that follow the plan at a time \[s\]: against gravity, with feedback on
+    /// J1..J7.
     pub(crate) fn torques<W>(&self, world: &W, time: f64) -> (Vec<f64>, Vec<f64>)
     where
         W: Joints<Joint = JointId> + ?Sized,
@@ -224,7 +230,8 @@ impl GraspPlan {
         self.timetable.closed.map(|position| position * closed)
     }
 
-    /// The 23 outputs at a time \[s\]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
+    /// Computes the 23 outputs at the given time in seconds. The muscles are controlled by inverse statics with
+    /// feedback on J1..J7, and the hand by desired positions.
     pub fn outputs<W>(&self, world: &W, time: f64) -> [f32; OUTPUTS]
     where
         W: Joints<Joint = JointId> + ?Sized,
@@ -239,7 +246,7 @@ impl GraspPlan {
     }
 }
 
-/// A trial run by the script: only the experiment's 23 outputs, its starts and its judge.
+/// A trial that is controlled by the script. It uses only the outputs, the starts and the judge of the experiment.
 #[derive(Clone, Debug)]
 pub struct ScriptEpisode {
     judge: Judge,
@@ -251,32 +258,32 @@ pub struct ScriptEpisode {
 }
 
 impl ScriptEpisode {
-    /// An episode with this timetable in a scene.
+    /// Creates an episode in a scene with the given timetable.
     ///
     /// # Errors
-    /// [`Error::Other`] for a scene whose arm is not driven by muscles.
+    /// Returns [`Error::Other`] if the arm is not driven by muscles.
     pub fn new(scene: Arc<Scene>, timetable: Timetable) -> Result<Self, Error> {
         let (motors, statics) = (scene.motors()?, Arc::new(Statics::new(&scene)?));
         let judge = Judge::new(scene);
         Ok(Self { judge, motors, timetable, statics, plan: None, done: [0.0; OUTPUTS] })
     }
 
-    /// The judge of the trial.
+    /// Returns the judge of the trial.
     pub fn judge(&self) -> &Judge {
         &self.judge
     }
 
-    /// The statics of the arm.
+    /// Returns the static model of the arm.
     pub fn statics(&self) -> &Arc<Statics> {
         &self.statics
     }
 
-    /// The plan of the trial, or `None` if the sphere was out of reach.
+    /// Returns the plan of the trial, or `None` if the sphere is out of reach.
     pub fn plan(&self) -> Option<&GraspPlan> {
         self.plan.as_ref()
     }
 
-    /// The last outputs.
+    /// Returns the outputs of the last step.
     pub fn done(&self) -> &[f32; OUTPUTS] {
         &self.done
     }

@@ -1,4 +1,4 @@
-//! Every value of `reach-grasp-lift` as a setting: its key, limits, unit, source and reason.
+//! The settings of `reach-grasp-lift`, with their limits, units, sources and reasons.
 
 use std::ops::RangeInclusive;
 
@@ -410,10 +410,10 @@ impl Config {
             .collect()
     }
 
-    /// The configuration that checked settings describe.
+    /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// [`Error::Unknown`] if the settings are of another table, and [`Error::Setting`] for a table's end before its beginning.
+    /// Returns [`Error::Unknown`] for settings of another experiment, and [`Error::Setting`] for an invalid table top.
     pub fn read(labels: bool, settings: &Settings) -> Result<Self, Error> {
         let mut config = Self::for_condition(labels);
         for Entry { key, field, .. } in entries() {

@@ -1,4 +1,4 @@
-//! The description of `reach-grasp-lift`, and its episodes over parameters.
+//! The task of `reach-grasp-lift`, which runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, StartExport};
 use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_view::Schema;
 
-/// A trial run by a network, with what it records.
+/// Runs the trials of a network and defines the channels that are recorded.
 #[derive(Clone)]
 pub struct ReachTask {
     episode: NetworkEpisode,
@@ -31,10 +31,10 @@ pub struct ReachTask {
 }
 
 impl ReachTask {
-    /// Trials in a scene.
+    /// Creates the task for a scene.
     ///
     /// # Errors
-    /// [`Error::Other`] for a configuration whose network cannot be built.
+    /// Returns [`Error::Other`] if the network cannot be built.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let (config, layout) = (&scene.config, scene.config.layout());
         let ranges = Ranges::new(layout, config.leak, config.weight_range as f32)?;
@@ -48,8 +48,8 @@ impl ReachTask {
         Ok(task)
     }
 
-    /// `start-positions` has every posture of the arm with every place of the sphere, of which four pairs were trained. `labels`,
-    /// where there are any, has the right one, none, and those of another phase. Then come `lesions`.
+    /// `start-positions` has every posture of the arm with every place of the sphere, of which four pairs were trained.
+    /// `labels`, where there are any, has the right one, none, and those of another phase. Then come `lesions`.
     fn interventions(&self) -> Interventions {
         let config = &self.scene().config;
         let groups = self.description().sensors;

@@ -1,4 +1,4 @@
-//! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
+//! The experiment `body-evolution`, which evolves the body of a walker and optionally a network at its hip.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -26,15 +26,16 @@ use farsa_lab::{
 };
 use farsa_view::Schema;
 
-/// Which bodies walk far? `[McGeer1990]`
+/// Evolves walkers that cover a large distance `[McGeer1990]`.
 ///
-/// Genes make the legs, the masses, the soles, and the first push of a walker. The fitness is the distance that it walks. Under
-/// `passive` it walks down a slope without motor and controller. Under `powered` it walks on flat ground, and further genes make a
-/// small network that drives a motor at the hip. Distance is counted at footfalls. A body that rolls, slides, hops or finds energy
-/// earns nothing by it ([`Rules`]).
+/// The genes determine the legs, the masses, the soles and the initial push of a walker. Its fitness is the distance
+/// that it walks. With the condition `passive`, it walks down a slope without a motor or a controller. With `powered`,
+/// it walks on flat ground, and additional genes encode a small network that drives a motor at the hip. Since distance
+/// is measured at footfalls, a body gains nothing if it rolls, slides, hops or exploits errors of the simulation (see
+/// [`Rules`]).
 ///
-/// Deviations from the source: its walkers are built, not evolved. Hip spacing is a gene without effect, because the pairs of legs
-/// keep the walker in a plane. It shows the drift of genes without selection.
+/// Unlike here, the walkers in the source were built and not evolved. The spacing of the hips is a gene without effect,
+/// because the walker moves in a plane. It demonstrates genetic drift in the absence of selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct BodyEvolution;
 
@@ -73,29 +74,30 @@ const BODY: [Part; 10] = [
 /// Parameters of a body.
 const BODY_PARAMETERS: usize = BODY.len();
 
-/// The values of `body-evolution`, without the genes' ranges.
+/// The configuration of `body-evolution`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Trials.
+    /// The number of trials in an evaluation.
     pub trials: u32,
-    /// Dynamics steps of a tick.
+    /// The number of dynamics steps in each tick.
     pub substeps: u32,
-    /// The surroundings.
+    /// The environment in which the walkers move.
     pub walk: Walk,
-    /// Values of all bodies.
+    /// The properties that are the same for all bodies.
     pub walker: Walker,
-    /// Lowest and highest value of each kind of gene.
+    /// The lowest and the highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
-    /// Hidden neurons of the network, if there is a motor.
+    /// The number of hidden neurons of the network, which exists only if there is a motor.
     pub hidden: u32,
-    /// Largest weight.
+    /// The largest absolute value of a weight.
     pub weights: f64,
-    /// Whose dynamics.
+    /// The physics engine that simulates the walkers.
     pub engine: Engine,
 }
 
 impl Config {
-    /// The defaults: a passive walker on a slope, or one with a motor on the flat.
+    /// Returns the default configuration. If `powered` is true, the walker has a motor and moves on flat ground.
+    /// Otherwise it walks down a slope.
     pub fn new(powered: bool) -> Self {
         let rules = Rules { settling: 0.05, ..Rules::default() };
         let slope = if powered { 0.0 } else { 0.03 };
@@ -266,13 +268,13 @@ const WORK: &str = "work of the motor [J]";
 const LEGS: &str = "outer legs [m]";
 const SOLES: &str = "soles [m]";
 
-/// Evaluates walkers, each in the world of its body.
+/// Evaluates walkers. Every individual is simulated in a different world, because the bodies differ.
 pub struct Walkers {
     config: Config,
 }
 
 impl Walkers {
-    /// Evaluates under a configuration.
+    /// Creates an evaluator for the given configuration.
     pub fn new(config: Config) -> Self {
         Self { config }
     }
@@ -384,7 +386,8 @@ impl Exports for Walkers {
         Some(mjcf_options(&self.config.walk))
     }
 
-    /// The robot of parameters for other programs: ball soles, as in the [`schema`](TaskInfo::schema) of the middle of all bodies.
+    /// The robot of parameters for other programs: ball soles, as in the [`schema`](TaskInfo::schema) of the middle of
+    /// all bodies.
     fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
         parameters.map(|parameters| exported(&self.body(parameters)))
     }

@@ -1,4 +1,5 @@
-//! An episode of a walker, with or without a network at the hip: a launch, then steps until it falls or its time is over.
+//! Episodes of a walker with or without a network. A walk starts with a launch and ends when the walker falls or the
+//! time is over.
 
 use farsa_body::motors::TorqueMotor;
 use farsa_body::ports::{
@@ -17,51 +18,51 @@ use farsa_num::{Domain, Scalar, Stream};
 use crate::walking::gait::{End, Gait, Rules};
 use crate::walking::walker::{Posture, Walker, WalkerParts};
 
-/// Inputs of the network of a walker: two angles, two speeds, two touches.
+/// The number of inputs of a walker's network, which are two angles, two speeds and two touch sensors.
 pub const SENSES: usize = 6;
 /// The number of last steps in the mean of the pace.
 const LAST: usize = 10;
 /// Angle that an angle sensor reads 1 at \[rad\], and speed that a speed sensor reads 1 at \[rad/s\].
 pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 
-/// The start of a walk: angles ahead of the ground's normal \[rad\] and rates \[rad/s\] of the stance and the swing leg.
+/// The initial state of a walk. Angles are measured forward from the normal of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Launch {
-    /// Angles of the stance leg and the swing leg \[rad\].
+    /// The angles of the stance leg and the swing leg \[rad\].
     pub angles: [f64; 2],
-    /// Their rates \[rad/s\].
+    /// The angular velocities of the stance leg and the swing leg \[rad/s\].
     pub rates: [f64; 2],
 }
 
-/// The surroundings of a walk.
+/// The environment of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// Slope, falling ahead \[rad\].
+    /// The slope of the ground, which descends in the walking direction \[rad\].
     pub slope: f64,
-    /// Gravity \[m/s2\].
+    /// The acceleration of gravity \[m/s2\].
     pub gravity: f64,
-    /// Time of a tick \[s\].
+    /// The duration of a tick, in seconds.
     pub time_step: f64,
-    /// Most ticks of a walk.
+    /// The largest number of ticks of a walk.
     pub steps: u32,
-    /// By how much the launch's rates differ from trial to trial at most, in parts of themselves.
+    /// The largest relative difference between the launch rates of a trial and those of the configuration.
     pub noise: f64,
-    /// Limits of a walk.
+    /// The rules that a walk must not violate.
     pub rules: Rules,
 }
 
-/// The mean of the last steps.
+/// Mean values over the last steps of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pace {
-    /// Backward lean of the leading leg at footfalls \[rad\].
+    /// The backward lean of the leading leg at footfalls \[rad\].
     pub angle: f64,
-    /// Its rate after them \[rad/s\].
+    /// The angular velocity of that leg after the footfalls \[rad/s\].
     pub rate: f64,
-    /// Rate of the leg that began to swing \[rad/s\].
+    /// The angular velocity of the leg that starts to swing \[rad/s\].
     pub swing_rate: f64,
-    /// Time of a step \[s\].
+    /// The duration of a step, in seconds.
     pub period: f64,
-    /// Length of a step \[m\].
+    /// The length of a step \[m\].
     pub length: f64,
 }
 
@@ -69,10 +70,10 @@ type Angle = JointPosition<JointId>;
 type Speed = Scaled<JointSpeed<JointId>, Vec<f32>>;
 type Sole = Touch<[PairId; 1]>;
 
-/// A network between a walker's senses and its hip's motor.
+/// A network that controls the motor at the hip.
 ///
-/// It senses how far the outer legs lean and how far the inner legs are turned against them, both speeds, and which feet
-/// touch.
+/// Its inputs are the lean of the outer legs, the angle between the inner and the outer legs, both angular velocities,
+/// and the contacts of the feet.
 #[derive(Clone, Debug)]
 pub struct Brain {
     network: NormalizedController<OwnedNetwork>,
@@ -88,10 +89,11 @@ pub struct Brain {
 }
 
 impl Brain {
-    /// A network of [`SENSES`] sensors and one output, 1/2 for no torque, with these parameters.
+    /// Creates a network with [`SENSES`] sensors and one output. An output of 1/2 corresponds to zero torque.
     ///
     /// # Errors
-    /// [`Error::Other`] for a walker without motor, a layout of another shape, and invalid parameters.
+    /// Returns [`Error::Other`] if the walker has no motor, if the layout has the wrong shape, or if the parameters are
+    /// invalid.
     pub fn new(walker: &Walker, parts: &WalkerParts, layout: LeakyLayout, parameters: Vec<f32>) -> Result<Self, Error> {
         let wrong = |error: ChannelError| Error::Other(format!("walker: {error}"));
         let Some(motor) = parts.motor else { return Err(Error::Other("walker: no motor at the hip".into())) };
@@ -143,43 +145,45 @@ impl Brain {
         self.torque * (f64::from(world.position(self.hinge)) - self.angle)
     }
 
-    /// The last inputs \[6\].
+    /// Returns the six inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// The hidden neurons' activations.
+    /// Returns the activations of the hidden neurons.
     pub fn hidden(&self) -> &[f32] {
         self.network.controller().hidden()
     }
 
-    /// The last output \[1\].
+    /// Returns the output of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }
 
-    /// The network's parameters.
+    /// Returns the parameters of the network.
     pub fn parameters(&self) -> &[f32] {
         self.network.controller().parameters()
     }
 
-    /// Normalizes observations by earlier ones, or not at all. Returns false for statistics of other channels.
+    /// Normalizes the inputs of the network with earlier statistics, or disables normalization for `None`. Returns
+    /// `false` if the statistics have a different number of channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
     }
 
-    /// The observations since [`normalise`](Self::normalise), if there are any statistics.
+    /// Returns the statistics of the inputs since the last call of [`normalise`](Self::normalise), or `None` if
+    /// normalization is disabled.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// The torque that was commanded last \[N m\].
+    /// Returns the torque that was commanded in the last step \[N m\].
     pub fn torque(&self) -> f64 {
         self.torque
     }
 }
 
-/// A walker's episode.
+/// An episode in which a walker moves over the ground.
 #[derive(Clone, Debug)]
 pub struct WalkerEpisode {
     walk: Walk,
@@ -193,14 +197,15 @@ pub struct WalkerEpisode {
 }
 
 impl WalkerEpisode {
-    /// An episode of a walker with these parts.
+    /// Creates an episode for a walker with the given parts.
     pub fn new(walker: Walker, parts: WalkerParts, walk: Walk, launch: Launch, brain: Option<Brain>) -> Self {
         let gravity = Walker::gravity(walk.gravity, walk.slope);
         let gait = Gait::new(walker, parts, walk.rules, gravity, walk.time_step);
         Self { walk, launch, gait, brain, noted: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
-    /// From the first stance to the last footfall \[m\]. NaN for a broken walk, 0 for one with energy from nowhere.
+    /// Returns the distance between the first stance and the last footfall \[m\]. It is NaN after a numerical failure,
+    /// and 0 if the walker gained energy from errors of the simulation.
     pub fn distance(&self) -> f64 {
         match self.gait.end() {
             Some(End::Broken) => f64::NAN,
@@ -209,7 +214,7 @@ impl WalkerEpisode {
         }
     }
 
-    /// The mean of the last ten steps, or `None` before there are ten.
+    /// Returns the mean of the last ten steps, or `None` if there were fewer steps.
     pub fn pace(&self) -> Option<Pace> {
         let mean = |of: fn(&Pace) -> f64| self.paces.iter().map(of).sum::<f64>() / LAST as f64;
         (self.known >= LAST).then(|| Pace {
@@ -221,22 +226,23 @@ impl WalkerEpisode {
         })
     }
 
-    /// A time in sqrt(leg length / gravity), of the outer legs: what the walking model's unit is \[s\].
+    /// Returns the unit of time of the walking model in seconds, which is sqrt(leg length / gravity) for the outer
+    /// legs.
     pub fn unit_of_time(&self) -> f64 {
         Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
     }
 
-    /// The record of the feet.
+    /// Returns the recorded movement of the feet.
     pub fn gait(&self) -> &Gait {
         &self.gait
     }
 
-    /// The network, if there is one.
+    /// Returns the network, or `None` for a passive walker.
     pub fn brain(&self) -> Option<&Brain> {
         self.brain.as_ref()
     }
 
-    /// The surroundings.
+    /// Returns the environment of the walk.
     pub fn walk(&self) -> &Walk {
         &self.walk
     }
@@ -252,8 +258,9 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
         + ?Sized,
 {
-    /// Launches the walker. Its rates are those of the launch times 1 + noise * u, with a u from -1 to 1 for each leg, the stance
-    /// leg's first. They are drawn from the stream of [`Domain::Start`] of the id's trial, individual and generation.
+    /// Launches the walker. Its rates are those of the launch times 1 + noise * u, with a u from -1 to 1 for each leg,
+    /// the stance leg's first. They are drawn from the stream of [`Domain::Start`] of the id's trial, individual and
+    /// generation.
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));

@@ -1,26 +1,26 @@
-//! The feet of a walker: stance and swing, the change between them, and the end of the walk.
+//! Tracks the feet of a walker, which alternate between stance and swing, and detects the end of a walk.
 
 use farsa_body::ports::{Arrange, Contacts, Handles, JointId, Joints};
 
 use crate::walking::walker::{ASIDE, Posture, Walker, WalkerParts};
 
-/// The end of a walk.
+/// The reason why a walk ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The hip came too low, or a leg too far over.
+    /// The hip was too low, or a leg leaned too far.
     Fell,
-    /// The standing foot slid.
+    /// The stance foot slid over the ground.
     Slid,
-    /// Neither foot was on the ground for too long.
+    /// Both feet were off the ground for too long.
     Flew,
-    /// There was more energy than gravity and motor had given.
+    /// The energy of the walker increased by more than gravity and the motor can explain.
     Gained,
-    /// A number was none.
+    /// A value was not finite.
     Broken,
 }
 
 impl End {
-    /// The word for it in tables.
+    /// Returns the name that is used in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fell => "fell",
@@ -32,20 +32,20 @@ impl End {
     }
 }
 
-/// Limits of a walk. Lengths are in units of the longer legs, times in seconds.
+/// The rules that end a walk. Lengths are in units of the longer legs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// A foot counts as ahead, and finds ground, from this distance to the standing one on.
+    /// The smallest distance to the stance foot at which the other foot counts as ahead and can touch the ground.
     pub shortest_step: f64,
-    /// The hip's lowest height, in the shorter legs.
+    /// The lowest permitted height of the hip, in units of the shorter legs.
     pub lowest_hip: f64,
-    /// Longest slide of the stance foot within a step.
+    /// The longest permitted slide of the stance foot during a step.
     pub longest_slide: f64,
-    /// Longest time of both feet off the ground \[s\].
+    /// The longest permitted time during which both feet are off the ground, in seconds.
     pub longest_flight: f64,
-    /// Largest gain of energy from nowhere, in weight times leg.
+    /// The largest permitted gain of energy that is not explained by the motor, in units of weight times leg length.
     pub largest_gain: f64,
-    /// Time after a footfall before the rate of the walker can be measured \[s\].
+    /// The time after a footfall at which the angular velocities can be measured, in seconds.
     pub settling: f64,
 }
 
@@ -62,20 +62,21 @@ impl Default for Rules {
     }
 }
 
-/// One step of a walk: the other foot begins its stance.
+/// The beginning of a new step, when the swing foot touches the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Footfall {
-    /// When the foot met the ground \[s\], between two ticks.
+    /// The time at which the foot touched the ground, in seconds. It is interpolated between two ticks.
     pub time: f64,
-    /// Whose foot: 0 outer, 1 inner.
+    /// The index of the foot, which is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
-    /// Where the sole met the ground \[m\].
+    /// The position at which the sole touched the ground \[m\].
     pub place: f64,
-    /// Backward lean of its leg from the ground's normal at the footfall, `theta` of the walking model \[rad\].
+    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model
+    /// \[rad\].
     pub angle: f64,
-    /// Rates after the blow of this leg and of the leg that then swings, forward of the ground's normal: `theta'` and `theta' -
-    /// phi'` of the walking model at the footfall. Straight lines through the rates one and two times [`Rules::settling`] later
-    /// give them \[rad/s\]. `None` before.
+    /// The angular velocities \[rad/s\] after the impact of this leg and of the leg that then swings, forward of the
+    /// ground's normal. They correspond to `theta'` and `theta' - phi'` of the walking model at the footfall. Both are
+    /// extrapolated linearly from the rates one and two times [`Rules::settling`] later, and are `None` until then.
     pub rates: Option<[f64; 2]>,
 }
 
@@ -90,11 +91,12 @@ enum Phase {
     Both,
 }
 
-/// The record of a walk.
+/// Tracks the steps of a walk.
 ///
-/// A leg that swings has no ground from the moment its foot leaves the ground until that foot is ahead of the stance foot and above
-/// the ground again. Stiff legs would scuff as they pass. A step counts only when the foot ahead carries and the hind foot has left
-/// the ground. A body that rolls, slides, hops or rests makes no steps.
+/// Since stiff legs would scuff as they pass, the swing leg has no ground. Its ground is removed when the foot is
+/// lifted and returns when the foot is ahead of the stance foot and above the ground again. A step counts only if the
+/// front foot carries weight and the rear foot has left the ground. A body that rolls, slides, hops or rests does not
+/// make any steps.
 #[derive(Clone, Debug)]
 pub struct Gait {
     walker: Walker,
@@ -120,7 +122,8 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// The record of a walker's walks under a gravity \[m/s2\] in steps of a time \[s\].
+    /// Creates a tracker for a walker under the given gravity \[m/s2\]. The duration of a tick is `time_step` in
+    /// seconds.
     pub fn new(walker: Walker, parts: WalkerParts, rules: Rules, gravity: [f64; 3], time_step: f64) -> Self {
         Self {
             walker,
@@ -145,7 +148,7 @@ impl Gait {
         }
     }
 
-    /// Puts a world's walker on its stance foot and resets the score.
+    /// Places the walker on its stance foot and resets the tracker.
     pub fn start<W>(&mut self, world: &mut W, stance: usize, posture: &Posture)
     where
         W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
@@ -177,8 +180,8 @@ impl Gait {
         [posture.hip[0] + x, posture.hip[1] + low]
     }
 
-    /// Judges the step that has passed, with the motor's work in it \[J\], and gives and takes ground. `Some` is the end of the
-    /// walk.
+    /// Updates the tracker after a tick, in which the motor did the given work in joules. It also removes and returns
+    /// the ground of the feet. Returns the reason if the walk has ended.
     pub fn judge<W>(&mut self, world: &mut W, work: f64) -> Option<End>
     where
         W: Joints + Contacts + Arrange + Handles<Joint = JointId> + ?Sized,
@@ -303,52 +306,52 @@ impl Gait {
         }
     }
 
-    /// Steps made.
+    /// Returns the number of steps that were made.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// From the first place of the stance foot to that of the last footfall \[m\].
+    /// Returns the distance between the first position of the stance foot and the last footfall \[m\].
     pub fn distance(&self) -> f64 {
         self.footfalls[1].place - self.started
     }
 
-    /// The last two footfalls, the older first.
+    /// Returns the last two footfalls. The older one comes first.
     pub fn footfalls(&self) -> [Footfall; 2] {
         self.footfalls
     }
 
-    /// The stance foot: 0 outer, 1 inner.
+    /// Returns the index of the stance foot, which is 0 for the outer and 1 for the inner foot.
     pub fn stance(&self) -> usize {
         self.stance
     }
 
-    /// Posture of the walker after the last tick.
+    /// Returns the posture of the walker after the last tick.
     pub fn posture(&self) -> &Posture {
         &self.last
     }
 
-    /// Ticks judged.
+    /// Returns the number of ticks that have been judged.
     pub fn ticks(&self) -> u32 {
         self.ticks
     }
 
-    /// The end, if the walk is over.
+    /// Returns the reason for the end of the walk, or `None` as long as it continues.
     pub fn end(&self) -> Option<End> {
         self.end
     }
 
-    /// The motor's work so far, and the change of the walker's energy \[J\].
+    /// Returns the work of the motor and the change of the walker's energy since the start \[J\].
     pub fn energies(&self) -> [f64; 2] {
         [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
     }
 
-    /// The walker.
+    /// Returns the walker.
     pub fn walker(&self) -> &Walker {
         &self.walker
     }
 
-    /// The ids of its parts.
+    /// Returns the identifiers of the walker's parts.
     pub fn parts(&self) -> &WalkerParts {
         &self.parts
     }

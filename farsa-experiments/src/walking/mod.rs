@@ -1,12 +1,13 @@
 //! The experiments `passive-walker` and `body-evolution`, and the simplest walking model.
 
-/// The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
+/// The experiment `body-evolution`, which evolves the body of a walker and optionally a network at its hip.
 pub mod body_evolution;
-/// An episode of a walker, with or without a network at the hip: a launch, then steps until it falls or its time is over.
+/// An episode of a walker, with or without a network at the hip: a launch, then steps until it falls or its time is
+/// over.
 mod episode;
 /// The feet of a walker: stance and swing, the change between them, and the end of the walk.
 mod gait;
-/// The experiment `passive-walker`: two legs walk down a slope by themselves.
+/// The experiment `passive-walker`, in which two legs walk down a slope without a motor.
 pub mod passive_walker;
 /// The recording of a walker, and its shapes.
 mod schema;

@@ -1,4 +1,4 @@
-//! The experiment `passive-walker`: two legs walk down a slope by themselves.
+//! The experiment `passive-walker`, in which two legs walk down a slope without a motor.
 
 pub use crate::walking::{
     episode::Brain, episode::Launch, episode::Pace, episode::SENSES, episode::Walk, episode::WalkerEpisode,
@@ -24,29 +24,30 @@ use farsa_lab::{
 };
 use farsa_view::Schema;
 
-/// Can a rigid body with light feet walk like the simplest walking model? \[Garcia1998\]
+/// Tests if a rigid body with light feet walks like the simplest walking model \[Garcia1998\].
 ///
-/// A biped of two stiff pairs of legs is launched down a slope as the walking model of that slope walks, with a small disturbance.
-/// Nothing evolves: a run is one walker in one generation. Its one gene has no effect and exists so that `farsa run`, `test`,
-/// `replay`, `draw` and `report` work as for the others. The fitness is the distance walked \[m\]. The world computes in f64.
+/// A biped with two stiff pairs of legs is launched down a slope. The initial state is that of the walking model for
+/// this slope, with a small disturbance. Nothing evolves in this experiment. A run consists of one generation with one
+/// walker. It has one gene without effect, so that `farsa run`, `test`, `replay`, `draw` and `report` can be used as
+/// usual. The fitness is the distance in meters. The world uses double precision.
 ///
-/// Deviations from the source: feet have mass and a radius, the ground yields, and the walker is a rigid body with contacts.
-/// `docs/results/walking.md` compares the results.
+/// In contrast to the source, the feet have a mass and a radius, the ground is compliant, and the walker is a rigid
+/// body with contacts. The results are compared in `docs/results/walking.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PassiveWalker;
 
-/// The values of `passive-walker`.
+/// The configuration of `passive-walker`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Trials.
+    /// The number of trials in an evaluation.
     pub trials: u32,
-    /// Dynamics steps of a tick.
+    /// The number of dynamics steps in each tick.
     pub substeps: u32,
-    /// The surroundings.
+    /// The environment in which the walker moves.
     pub walk: Walk,
-    /// The body.
+    /// The body of the walker.
     pub walker: Walker,
-    /// Whose dynamics.
+    /// The physics engine that simulates the walker.
     pub engine: Engine,
 }
 
@@ -65,10 +66,10 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The walker in these surroundings as a world's model, and the ids of its parts.
+    /// Builds a model of the walker for the articulated world, and returns the identifiers of its parts.
     ///
     /// # Errors
-    /// [`Error::Other`] for a body that cannot be.
+    /// Returns [`Error::Other`] if the body is invalid.
     pub fn model<R: Real>(&self) -> Result<(Model<R>, WalkerParts), Error> {
         let (robot, parts) = self.walker.robot();
         let options = Options {
@@ -84,23 +85,24 @@ impl Config {
         Ok((model, parts))
     }
 
-    /// Options of rapier for this walker. Its contacts are harder by far than the ground's stiffness.
+    /// Returns the options for simulations in rapier. Note that contacts are much harder there than the stiffness of
+    /// the ground suggests.
     #[cfg(feature = "rapier")]
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
         crate::walking::settings::rapier_options(&self.walk, &self.walker, self.substeps, 200)
     }
 
-    /// The walking model's gait on this slope.
+    /// Computes the gait of the walking model on this slope.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a slope without one.
+    /// Returns [`Error::Setting`] if there is no gait for the slope.
     pub fn gait(&self) -> Result<ModelGait, Error> {
         let model = WalkingModel::new(self.walk.slope).map_err(|error| Error::setting("world.slope", error))?;
         let none = || Error::setting("world.slope", "the walking model has no gait on it; 0.009 has one");
         model.gait().ok_or_else(none)
     }
 
-    /// The launch that begins a gait, in seconds.
+    /// Returns the initial state of a gait, with rates converted to radians per second.
     pub fn launch(&self, gait: &ModelGait) -> Launch {
         let per_second = Scalar::sqrt(self.walk.gravity / self.walker.legs[0].length);
         // The swing leg's own angle is theta - phi.
@@ -201,19 +203,19 @@ impl Experiment for PassiveWalker {
     }
 }
 
-/// Evaluates a walker under a configuration, in our articulated world.
+/// Creates an evaluator that simulates a walker in the articulated world.
 ///
 /// # Errors
-/// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
+/// Returns [`Error::Setting`] if there is no gait for the slope, or [`Error::Other`] if the body is invalid.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f64>, PassiveTrial>, Error> {
     let (model, parts) = config.model()?;
     Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?).with_displacements().with_pushes())
 }
 
-/// Evaluates a walker under a configuration, in rapier.
+/// Creates an evaluator that simulates a walker in rapier.
 ///
 /// # Errors
-/// As [`evaluator`].
+/// Returns the same errors as [`evaluator`].
 #[cfg(feature = "rapier")]
 pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapier::World, PassiveTrial>, Error> {
     let (robot, parts) = config.walker.robot();
@@ -222,7 +224,7 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
     Ok(InWorld::new(world, PassiveTrial::new(config, parts)?).with_displacements().with_pushes())
 }
 
-/// A walk on the slope, with the gait of the simplest walking model.
+/// A walk down the slope that starts with the gait of the simplest walking model.
 pub struct PassiveTrial {
     config: Config,
     episode: WalkerEpisode,

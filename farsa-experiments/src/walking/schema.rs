@@ -1,4 +1,4 @@
-//! The recording of a walker, and its shapes.
+//! The channels that are recorded for a walker, and its shapes in drawings.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -54,8 +54,8 @@ pub(crate) fn drawn(walker: &Walker) -> Robot {
     })
 }
 
-/// The walker as other simulators may have it: each sole a ball with half of the pair's surface, one ground for all and no
-/// plates, so that its feet scuff.
+/// The walker as other simulators may have it: each sole a ball with half of the pair's surface, one ground for all and
+/// no plates, so that its feet scuff.
 pub(crate) fn exported(walker: &Walker) -> Robot {
     let surface = walker.robot().0.pairs.first().map(|pair| pair.surface);
     figure(walker, |robot, body, name, centre, radius| {

@@ -1,4 +1,4 @@
-//! The settings that all experiments with walkers have, and how a walk is run and recorded.
+//! Settings that are common to all experiments with walkers, and functions to run and record a walk.
 
 use farsa_lab::advanced::ENGINE;
 use farsa_lab::{Error, Note, Outcome, Setting, Settings};
@@ -29,15 +29,15 @@ pub(crate) fn engine() -> Setting {
 
 /// Least ratio in rapier of the frequency of a contact and that of the whole walker on the ground's stiffness.
 ///
-/// rapier counts it for the mass that a foot alone resists a blow with, a fraction of the walker's on a leaning light leg. At 1 the
-/// walker of `passive-walker` falls after four steps, at 8 it walks with steps 2 % short.
+/// rapier counts it for the mass that a foot alone resists a blow with, a fraction of the walker's on a leaning light
+/// leg. At 1 the walker of `passive-walker` falls after four steps, at 8 it walks with steps 2 % short.
 #[cfg(feature = "rapier")]
 const HARDER: f64 = 64.0;
 
 /// Options of rapier for a walk, with the given numbers of sweeps for places and for speeds.
 ///
-/// A sweep leaves `1 - foot / (hip * (sin(2 angle) / 2)^2)` of the remaining blow on a leaning leg, for masses of light feet and
-/// hip. The next step returns the rest.
+/// A sweep leaves `1 - foot / (hip * (sin(2 angle) / 2)^2)` of the remaining blow on a leaning leg, for masses of light
+/// feet and hip. The next step returns the rest.
 #[cfg(feature = "rapier")]
 pub(crate) fn rapier_options(
     walk: &Walk,

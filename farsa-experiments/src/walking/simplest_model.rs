@@ -1,4 +1,5 @@
-//! The simplest walking model: two massless legs, a mass at the hip, feet of vanishing mass, on a slope.
+//! The simplest walking model, which consists of two massless legs, a point mass at the hip and very light feet on a
+//! slope.
 
 use std::fmt;
 
@@ -11,23 +12,25 @@ const LONGEST: f64 = 20.0;
 /// By how much a state is moved for the derivatives of the return map.
 const PROBE: f64 = 1e-5;
 
-/// Where gaits of two legs one before the other exist: slopes \[rad\] up to which the long-period gait was found.
+/// The smallest and the largest slope for which a long-period gait was found, in radians.
 pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 
-/// The simplest walking model on one slope \[Garcia1998\].
+/// The simplest walking model on a given slope \[Garcia1998\].
 ///
-/// Lengths are in legs, times in sqrt(leg length / gravity). `theta` is the angle of the stance leg from the slope's
-/// normal, positive while it leans back, `phi` the angle between the legs:
+/// Lengths are in units of the leg length, and times in units of sqrt(leg length / gravity). The angle `theta` of the
+/// stance leg is measured from the normal of the slope and is positive while it leans back. The angle between the legs
+/// is `phi`:
 ///
 /// ```text
 /// theta'' = sin(theta - gamma)
 /// phi''   = theta'' + theta'^2 sin(phi) - cos(theta - gamma) sin(phi)
 /// ```
 ///
-/// The swing foot passes through the slope next to the stance foot and strikes when `phi = 2 theta` comes from below while `theta <
-/// 0`. Then the legs change places, `theta -> -theta`, `theta' -> cos(2 theta) theta'`, `phi' -> cos(2 theta) (1 - cos(2 theta))
-/// theta'`. Deviations: none in the equations. They are integrated by the classic Runge-Kutta method of fourth order in steps of
-/// 0.005, and the strike is found by bisection.
+/// The swing foot passes through the slope next to the stance foot. It strikes the ground when `phi = 2 theta` is
+/// reached from below while `theta < 0`. Then the legs are exchanged, with `theta -> -theta`, `theta' -> cos(2 theta)
+/// theta'`, and `phi' -> cos(2 theta) (1 - cos(2 theta)) theta'`. Deviations: none in the equations. They are
+/// integrated with the classical fourth-order Runge-Kutta method in steps of 0.005, and the strike is found by
+/// bisection.
 ///
 /// ```
 /// use farsa_experiments::WalkingModel;
@@ -42,7 +45,7 @@ pub struct WalkingModel {
     slope: f64,
 }
 
-/// A slope that the walking model has no gait for.
+/// The error that is returned for a slope without a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeError {
     /// The slope \[rad\].
@@ -58,32 +61,32 @@ impl fmt::Display for SlopeError {
 
 impl std::error::Error for SlopeError {}
 
-/// A step of the model: where it ends and how long it took.
+/// The result of one step of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelStep {
-    /// Angle and rate of the new stance leg just after the strike.
+    /// The angle and the angular velocity of the new stance leg just after the strike.
     pub end: [f64; 2],
-    /// Time since the last strike \[sqrt(leg length / gravity)\].
+    /// The time since the last strike, in units of sqrt(leg length / gravity).
     pub period: f64,
 }
 
-/// A gait that repeats itself at every step.
+/// A periodic gait, in which every step is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelGait {
-    /// Angle of the stance leg just after a strike, `theta*` \[rad\].
+    /// The angle `theta*` of the stance leg just after a strike \[rad\].
     pub angle: f64,
-    /// Its rate, `theta'*` \[rad sqrt(gravity / leg length)\].
+    /// The angular velocity `theta'*` of the stance leg \[rad sqrt(gravity / leg length)\].
     pub rate: f64,
-    /// Rate of the angle between the legs, `phi'*`.
+    /// The rate of change `phi'*` of the angle between the legs.
     pub swing_rate: f64,
-    /// Time of a step \[sqrt(leg length / gravity)\].
+    /// The duration of a step, in units of sqrt(leg length / gravity).
     pub period: f64,
-    /// The eigenvalues of the return map's derivative, each real and imaginary part.
+    /// The eigenvalues of the derivative of the return map, each as real and imaginary part.
     pub multipliers: [[f64; 2]; 2],
 }
 
 impl ModelGait {
-    /// The larger absolute value of the multipliers: below 1 small disturbances die out.
+    /// Returns the larger absolute value of the two multipliers. If it is below 1, small disturbances decay.
     pub fn largest_multiplier(&self) -> f64 {
         let size = |[re, im]: [f64; 2]| Scalar::sqrt(re * re + im * im);
         size(self.multipliers[0]).max(size(self.multipliers[1]))
@@ -98,10 +101,10 @@ fn moved(state: &State, by: f64, rate: &State) -> State {
 }
 
 impl WalkingModel {
-    /// The model on a slope \[rad\].
+    /// Creates the model for a slope in radians.
     ///
     /// # Errors
-    /// [`SlopeError`] beyond [`SLOPES`].
+    /// Returns [`SlopeError`] if the slope is outside [`SLOPES`].
     pub fn new(slope: f64) -> Result<Self, SlopeError> {
         let [low, high] = SLOPES;
         if (low..=high).contains(&slope) { Ok(Self { slope }) } else { Err(SlopeError { slope }) }
@@ -124,10 +127,10 @@ impl WalkingModel {
         [0, 1, 2, 3].map(|k| state[k] + h / 6.0 * (a[k] + 2.0 * (b[k] + c[k]) + d[k]))
     }
 
-    /// Where a step ends that begins just after a strike with this angle and rate of the stance leg, or `None` if the walker falls
-    /// without a strike.
+    /// Computes the end of a step that starts with the given angle and angular velocity of the stance leg just after a
+    /// strike. Returns `None` if the walker falls.
     ///
-    /// The swing leg begins where the strike left it, at `2 theta` with `(1 - cos(2 theta)) theta'`.
+    /// The swing leg starts where the strike left it, at `2 theta` with the rate `(1 - cos(2 theta)) theta'`.
     pub fn step(self, [angle, rate]: [f64; 2]) -> Option<ModelStep> {
         // The feet are level where phi = 2 theta. A strike is the crossing from below with the stance leg behind the normal, theta < 0.
         let below = |state: &State| state[2] - 2.0 * state[0] < 0.0;
@@ -171,10 +174,12 @@ impl WalkingModel {
         Some([[a, b], [c, d]])
     }
 
-    /// The long-period gait: the fixed point of the return map, by Newton's method. `None` if it does not converge.
+    /// Computes the long-period gait, which is a fixed point of the return map, with Newton's method. Returns `None` if
+    /// the iteration does not converge.
     ///
-    /// The first guess, `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` with `s = slope^(1/3)`, follows the
-    /// gaits of small slopes. There is another gait, of a shorter period and unstable.
+    /// The iteration starts with `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` where `s =
+    /// slope^(1/3)`, which approximates the gaits on small slopes. Note that there is a second gait with a shorter
+    /// period, which is unstable.
     pub fn gait(self) -> Option<ModelGait> {
         let size = farsa_num::exp(farsa_num::ln(self.slope) / 3.0);
         let square = size * size;
@@ -216,8 +221,8 @@ fn eigenvalues(a: f64, b: f64, c: f64, d: f64) -> [[f64; 2]; 2] {
 mod tests {
     use super::*;
 
-    /// Slope, theta*, theta'*, phi'*, period, largest multiplier of the long-period gaits, as `tests/fixtures/walking_model.py`
-    /// prints them.
+    /// Slope, theta*, theta'*, phi'*, period, largest multiplier of the long-period gaits, as
+    /// `tests/fixtures/walking_model.py` prints them.
     const GAITS: [[f64; 6]; 3] = [
         [0.004, 0.153_389_564_9, -0.156_080_146_7, -0.007_287_197_1, 3.852_613_462, 0.633_920],
         [0.009, 0.200_310_900_5, -0.199_832_473_0, -0.015_822_999_9, 3.882_463_753, 0.589_113],

@@ -1,4 +1,4 @@
-//! A biped of two stiff pairs of legs, as data: the rigid body that the simplest walking model is the limit of.
+//! A biped with two stiff pairs of legs. The simplest walking model is a limit of this rigid body.
 
 use farsa_body::Pose;
 use farsa_body::actuators::{Law, Torque};
@@ -17,72 +17,76 @@ const THICKNESS: f64 = 0.5;
 /// Mass of the rail that guides the hip, in hips.
 const RAIL: f64 = 1e-9;
 
-/// A pair of legs that move as one.
+/// A pair of legs that are rigidly connected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legs {
-    /// From the hip to the sole \[m\].
+    /// The distance from the hip to the sole \[m\].
     pub length: f64,
-    /// Mass of the shanks, spread evenly from hip to sole \[kg\].
+    /// The mass of the shanks, which is uniformly distributed between hip and sole \[kg\].
     pub mass: f64,
-    /// Mass at the sole \[kg\].
+    /// The mass at the sole \[kg\].
     pub foot_mass: f64,
-    /// Radius of the round sole, whose center is on the leg \[m\].
+    /// The radius of the round sole, whose center is on the leg \[m\].
     pub foot_radius: f64,
 }
 
-/// A walker of two stiff pairs of legs on one axle. Frame: x ahead, y to the left, z along the ground's normal.
+/// A walker that consists of two stiff pairs of legs on a common axle.
 ///
-/// The outer pair and the inner pair hold the walker upright sideways, so it moves in the plane of x and z alone. Joints make the
-/// plane. The hip slides along x and z without weight or friction of the guide, the outer legs turn about it, the inner legs turn
-/// on the outer ones. A slope is gravity that leans ([`Walker::gravity`]).
+/// In its frame, x points ahead, y to the left and z along the normal of the ground. The outer and the inner pair keep
+/// each other upright sideways, so the walker only moves in the x-z plane. This plane is enforced by joints. The hip
+/// slides along x and z without friction, the outer legs rotate about it, and the inner legs rotate relative to the
+/// outer legs. A slope is represented by tilted gravity (see [`Walker::gravity`]).
 ///
-/// Stiff legs cannot clear the ground next to each other, so each pair has a separate ground, a plate that a world can slide aside
-/// while that pair swings. The plate slides across the plane of motion: no force of the walk acts on it, and its weight has no
-/// effect.
+/// Stiff legs cannot clear the ground when they pass each other. Therefore each pair has a separate ground plate, which
+/// can be moved aside while the pair swings. The plates slide perpendicular to the plane of motion. They are not
+/// affected by the forces of the walk, and their weight has no effect.
 ///
-/// `[McGeer1990]` is such a machine with round feet, `[Garcia1998]` its limit for point feet without mass.
+/// Source: `[McGeer1990]` describes such a machine with round feet, and `[Garcia1998]` its limit for massless point
+/// feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
-    /// The outer legs and the inner legs.
+    /// The outer and the inner legs.
     pub legs: [Legs; 2],
-    /// Mass at the hip \[kg\].
+    /// The mass at the hip \[kg\].
     pub hip_mass: f64,
-    /// Distance of the outer feet \[m\]. The inner ones are half as far apart. Drawn, and without effect on the motion in the
-    /// plane.
+    /// The distance between the outer feet \[m\]. The distance between the inner feet is half as large. It is used in
+    /// drawings and does not affect the motion in the plane.
     pub hip_spacing: f64,
-    /// Coefficient of friction.
+    /// The coefficient of friction between the feet and the ground.
     pub friction: f64,
-    /// Stiffness of a foot on the ground \[N/m\].
+    /// The stiffness of the contact between a foot and the ground \[N/m\].
     pub stiffness: f64,
-    /// Damping ratio of the whole walker's mass on that stiffness.
+    /// The damping ratio of this contact for the mass of the entire walker.
     pub damping_ratio: f64,
-    /// Largest turn of the inner legs against the outer ones, to each side \[rad\].
+    /// The largest angle between the inner and the outer legs, in both directions \[rad\].
     pub hip_range: f64,
-    /// Largest torque of the hip's motor \[N m\], or 0 without a motor.
+    /// The largest torque of the motor at the hip \[N m\]. A value of 0 removes the motor.
     pub torque: f64,
 }
 
-/// The ids of the parts of a walker.
+/// The identifiers of the parts of a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkerParts {
-    /// The hip's place along x and z.
+    /// The joints that move the hip along x and z.
     pub slides: [JointId; 2],
-    /// The outer legs' turn from upright, and the inner legs' against the outer: positive moves the foot back.
+    /// The joint between the hip and the outer legs, and the joint between the outer and the inner legs. A positive
+    /// angle moves the foot back.
     pub hinges: [JointId; 2],
-    /// The plates' joints, of the outer and the inner legs.
+    /// The joints of the ground plates for the outer and the inner legs.
     pub plates: [JointId; 2],
-    /// The contacts of outer and inner feet.
+    /// The contact pairs of the outer and the inner feet.
     pub soles: [PairId; 2],
-    /// The hip.
+    /// The body of the hip.
     pub hip: BodyId,
-    /// The outer and inner legs.
+    /// The bodies of the outer and the inner legs.
     pub legs: [BodyId; 2],
-    /// The hip's motor, if there is one.
+    /// The motor at the hip, or `None` for a passive walker.
     pub motor: Option<ActuatorId>,
 }
 
 impl Default for Walker {
-    /// Legs of 1 m, 10 kg at the hip, feet of 10 g and 0.1 mm: nearly the simplest walking model.
+    /// Returns a walker that is close to the simplest walking model. Its legs are 1 m long, with 10 kg at the hip, and
+    /// its feet have a mass of 10 g and a radius of 0.1 mm.
     fn default() -> Self {
         let legs = Legs { length: 1.0, mass: 0.0, foot_mass: 0.01, foot_radius: 1e-4 };
         Self {
@@ -107,8 +111,8 @@ impl Legs {
         foot.with(&shank.placed(&at(-0.5 * self.length)))
     }
 
-    /// The sole's center and its lowest point, seen from the hip, with the leg turned back by an angle \[rad\]. Returns x and z of
-    /// the center, and z of the lowest point \[m\].
+    /// The sole's center and its lowest point, seen from the hip, with the leg turned back by an angle \[rad\]. Returns
+    /// x and z of the center, and z of the lowest point \[m\].
     pub(crate) fn sole(&self, angle: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(angle);
         let arm = self.length - self.foot_radius;
@@ -117,18 +121,19 @@ impl Legs {
 }
 
 impl Walker {
-    /// Mass of all \[kg\].
+    /// Returns the total mass \[kg\].
     pub fn mass(&self) -> f64 {
         self.hip_mass + self.legs.iter().map(|legs| legs.mass + legs.foot_mass).sum::<f64>()
     }
 
-    /// Gravity \[m/s2\] of a size on a slope \[rad\] that falls along x, in the frame of the slope.
+    /// Returns the gravity vector \[m/s2\] of the given magnitude in the frame of a slope, which descends along x at
+    /// the given angle \[rad\].
     pub fn gravity(size: f64, slope: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(slope);
         [size * sine, 0.0, -size * cosine]
     }
 
-    /// The walker with the plates that it walks on, and the ids of its parts.
+    /// Builds the description of the walker and its ground plates, and returns the identifiers of its parts.
     pub fn robot(&self) -> (Robot, WalkerParts) {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let mut robot = Robot::new("walker");
@@ -181,7 +186,7 @@ impl Walker {
         (robot, parts)
     }
 
-    /// Kinetic energy, and potential energy under a gravity \[J\], of a [`Posture`].
+    /// Computes the sum of the kinetic and the potential energy of a [`Posture`] under the given gravity \[J\].
     pub fn energy(&self, posture: &Posture, gravity: [f64; 3]) -> f64 {
         let mut energy = 0.0;
         let mut add = |mass: f64, [x, z]: [f64; 2], [u, w]: [f64; 2]| {
@@ -204,21 +209,21 @@ impl Walker {
     }
 }
 
-/// Where a walker is and how it moves in its plane.
+/// The position and the velocity of a walker in its plane.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Posture {
-    /// The hip's place, x and z \[m\].
+    /// The x and z coordinates of the hip \[m\].
     pub hip: [f64; 2],
-    /// Its velocity \[m/s\].
+    /// The velocity of the hip \[m/s\].
     pub velocity: [f64; 2],
-    /// Backward turn of outer and inner legs from the ground's normal \[rad\].
+    /// The backward rotation of the outer and the inner legs from the normal of the ground \[rad\].
     pub angles: [f64; 2],
-    /// Their rates \[rad/s\].
+    /// The angular velocities of the legs \[rad/s\].
     pub rates: [f64; 2],
 }
 
 impl Posture {
-    /// The posture of a world's walker.
+    /// Reads the posture of the walker from a world.
     pub fn from_world<W>(world: &W, parts: &WalkerParts) -> Self
     where
         W: farsa_body::ports::Joints<Joint = JointId> + ?Sized,
@@ -234,7 +239,8 @@ impl Posture {
         }
     }
 
-    /// Sets the posture of a world's walker. [`Arrange::finish_placement`](farsa_body::ports::Arrange::finish_placement) must follow.
+    /// Sets the posture of the walker in a world.
+    /// [`Arrange::finish_placement`](farsa_body::ports::Arrange::finish_placement) must be called afterwards.
     pub fn place<W>(&self, world: &mut W, parts: &WalkerParts)
     where
         W: farsa_body::ports::Arrange<Joint = JointId> + ?Sized,
@@ -248,8 +254,10 @@ impl Posture {
         world.place_joint(parts.hinges[1], (inner - outer) as f32, (inner_rate - rate) as f32);
     }
 
-    /// The posture of a walker whose stance foot (0 outer, 1 inner) rests and rolls at the origin, as in the walking model. `theta`
-    /// and `theta_rate` are those of the stance leg, `swing` and `swing_rate` of the other, turned ahead of the ground's normal.
+    /// Returns the posture of a walker whose stance foot is at the origin and rolls without slipping, as in the walking
+    /// model. The stance foot is 0 for the outer and 1 for the inner legs. The arguments `theta` and `rate` belong to
+    /// the stance leg, and `swing` and `swing_rate` to the other leg. Both are measured forward from the normal of the
+    /// ground.
     pub fn standing(walker: &Walker, stance: usize, [theta, swing]: [f64; 2], [rate, swing_rate]: [f64; 2]) -> Self {
         let mut posture = Self::default();
         posture.angles[stance] = -theta;
