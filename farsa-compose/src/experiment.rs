@@ -71,7 +71,7 @@ impl ComposedExperiment {
     /// Reads a file, and the files that it names in its folder. The name of the file without `.toml` is the experiment's.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Damaged`] for unreadable files, and the errors of [`from_text`](Self::from_text).
+    /// [`Error::Io`] and [`Error::File`] for unreadable files, and the errors of [`from_text`](Self::from_text).
     pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         let text = read_text_file(path, MAX_BYTES)?;
         Self::read(Limits::default(), &path.display().to_string(), &text, path.parent(), strategies)
@@ -83,7 +83,7 @@ impl ComposedExperiment {
     /// run does. No other file is read.
     ///
     /// # Errors
-    /// [`Error::Usage`] for invalid TOML, [`Error::Unknown`] with the nearest word for an unknown one, and [`Error::Setting`]
+    /// [`Error::Usage`] for invalid TOML, [`Error::Setting`] with the nearest word for an unknown one, and [`Error::Setting`]
     /// for an invalid value, each with file, line and key. [`Error::Several`] for more than one of them.
     pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         Self::from_text_within(Limits::default(), file, text, strategies)

@@ -3,6 +3,7 @@
 pub use farsa_view::shape::SceneObject;
 pub use farsa_view::{Channel, ImageChannel, Links, NodeParameters, Recording, Schema, View};
 
+pub use crate::error::{FileFault, nearest_name};
 #[cfg(feature = "command")]
 pub use crate::evaluation::TestTrial;
 pub use crate::evaluation::read_genotypes;

@@ -1,4 +1,4 @@
-//! Why a command did not do what it was asked, and the exit code that says so.
+//! Errors of the laboratory and their exit codes.
 
 use std::fmt;
 use std::io;
@@ -6,215 +6,180 @@ use std::path::{Path, PathBuf};
 
 use crate::escaped::{MAX_SHOWN, OneLine, Quoted};
 
-/// The most names that a message lists.
-const MOST_LISTED: usize = 12;
+/// Maximum number of names in a message.
+const MAX_LISTED: usize = 12;
 
-/// What went wrong, with the name of the thing it went wrong with.
+/// An error of the laboratory, by what the caller can do about it.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
-    /// An unknown name.
-    Unknown {
-        /// Where the name stands, such as `my.toml line 3` or `--set`; empty if it is plain from the command line.
-        place: String,
-        /// What it should be the name of.
-        what: &'static str,
-        /// The name.
-        name: String,
-        /// The valid name that looks most like it, if there are any.
-        nearest: Option<String>,
-        /// All valid names, where they are few and none looks like it.
-        valid: Vec<String>,
-    },
-    /// What is wrong with a file, one thing after the other; never empty.
-    Several(Vec<Self>),
-    /// A value that a setting cannot have.
+    /// A wrong setting or an unknown name: correct it.
     Setting {
-        /// Where the value stands, such as `my.toml line 3` or `--set`; empty if that is not known.
+        /// Location, such as `my.toml line 3` or `--set`. Empty if unknown, or for the plain command line.
         place: String,
-        /// The setting's key; empty if it is a file as a whole.
+        /// Key of the setting. Empty for a whole file, and for an unknown name.
         key: String,
-        /// What is wrong with the value.
+        /// Reason.
         why: String,
     },
-    /// A command line or a configuration that makes no sense as a whole.
+    /// Several faults of one file, never empty: correct each.
+    Several(Vec<Self>),
+    /// A command line or configuration that is invalid as a whole: change it.
     Usage(String),
-    /// A run that was asked to go on with another value of a setting.
-    OtherConfiguration {
-        /// The run's directory.
-        directory: PathBuf,
-        /// The setting's key.
-        key: String,
-        /// The value of the run.
-        run: String,
-        /// The value asked for.
-        asked: String,
-    },
-    /// A run that depends on a file whose content is no longer what it was.
-    OtherFile {
-        /// The file.
+    /// A file or directory of a run that cannot be used: choose another, or repair it.
+    File {
+        /// File or directory.
         path: PathBuf,
-        /// The run's directory.
-        directory: PathBuf,
-        /// CRC-32 of the file that the run was made with.
-        run: String,
-        /// CRC-32 of the file as it is.
-        found: String,
-    },
-    /// A run whose trials would differ in this program.
-    OtherVersion {
-        /// The file that says so.
-        path: PathBuf,
-        /// Which version differs.
-        what: String,
-        /// The version in the file.
-        file: u32,
-        /// The version of this program.
-        program: u32,
-    },
-    /// A directory that is in use, so that nothing can be written there.
-    Occupied {
-        /// The directory.
-        directory: PathBuf,
-        /// By what, and what to do about it.
+        /// Reason.
         why: String,
+        /// Kind of fault.
+        fault: FileFault,
     },
-    /// A directory that holds no run.
-    NoRun {
-        /// The directory.
-        directory: PathBuf,
-        /// What is missing.
-        why: String,
-    },
-    /// A file of a run that is truncated, altered or none of ours.
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// The operating system refused to read or write.
+    /// A failed call to the operating system: retry, or free space.
     Io {
-        /// What was being done.
+        /// Verb of the attempted action.
         doing: &'static str,
-        /// The file or directory.
+        /// File or directory.
         path: PathBuf,
-        /// Its reason.
+        /// Error of the system.
         source: io::Error,
     },
-    /// The strategy panicked, which is a mistake in it; a trial that panics is a failed trial.
-    Panicked {
-        /// The generation.
-        generation: u32,
-        /// Its message, and the place in the source.
-        why: String,
-    },
-    /// A trial that was replayed panicked, as the process has said already.
-    TrialPanicked {
-        /// The generation.
-        generation: u32,
-        /// The individual.
-        individual: u32,
-        /// Its trial.
-        trial: u32,
-    },
-    /// What went wrong on another rank of those that run a command together.
+    /// A failure on another rank of the same command: see that rank.
     Rank {
-        /// Its number.
+        /// Number of the rank.
         rank: usize,
-        /// The exit code of the error there.
+        /// Exit code of the failure.
         code: u8,
-        /// Its message.
+        /// Message of the failure.
         why: String,
     },
-    /// Anything else an experiment has to complain about.
-    Other(String),
-    /// The user pressed Ctrl-C; all finished generations are kept.
+    /// Ctrl-C. All finished generations are kept: resume.
     Interrupted {
-        /// How to go on.
+        /// Command that resumes.
         resume: String,
     },
+    /// Any other failure of an experiment, a strategy or a world.
+    Other(String),
+}
+
+/// Kind of fault of a run's file or directory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FileFault {
+    /// Truncated, altered, or not a file of a run.
+    Damaged,
+    /// Made by another version, whose trials differ.
+    OtherVersion,
+    /// In use, or not empty.
+    Occupied,
+    /// Without a run.
+    NoRun,
 }
 
 impl Error {
-    /// A value that does not go together with others; for [`Experiment::prepare`](crate::Experiment::prepare).
+    /// Builds an error about values that contradict each other, for [`Experiment::prepare`](crate::Experiment::prepare).
     pub fn setting(key: &str, why: impl fmt::Display) -> Self {
         Self::Setting { place: String::new(), key: key.into(), why: why.to_string() }
     }
 
-    /// An unknown name, with the nearest of the valid ones, or with all of them where they are few and none is near.
+    /// Builds an error about an unknown name, with the nearest valid name, or with all of them if none is near.
     pub fn unknown<'a>(place: &str, what: &'static str, name: &str, valid: impl IntoIterator<Item = &'a str>) -> Self {
         let mut few: Vec<&str> = Vec::new();
-        let listed = valid.into_iter().inspect(|one| {
-            if few.len() <= MOST_LISTED && !few.contains(one) {
-                few.push(one);
+        let listed = valid.into_iter().inspect(|name| {
+            if few.len() <= MAX_LISTED && !few.contains(name) {
+                few.push(name);
             }
         });
         let nearest = nearest(name, listed);
         let near = nearest.is_some_and(|(letters, valid)| is_near(name, valid, letters));
-        if near || few.len() > MOST_LISTED {
+        if near || few.len() > MAX_LISTED {
             few.clear();
         }
         few.sort_unstable();
-        Self::Unknown {
-            place: place.into(),
-            what,
-            name: name.into(),
-            nearest: nearest.map(|(_, valid)| valid.into()),
-            valid: few.into_iter().map(str::to_owned).collect(),
-        }
+        Self::unknown_name(place, what, name, nearest.map(|(_, valid)| valid), &few)
     }
 
-    /// What is wrong with a file, of one error or more; a single one stays what it is.
-    pub fn several(mut all: Vec<Self>) -> Self {
-        match all.pop() {
-            Some(only) if all.is_empty() => only,
+    /// Builds an error about an unknown name; `few` holds the valid names if none is near.
+    fn unknown_name(place: &str, what: &str, name: &str, nearest: Option<&str>, few: &[&str]) -> Self {
+        let alternatives = match (nearest, few) {
+            (None, []) => "there is none".into(),
+            (Some(nearest), []) => format!("the nearest is {}", Quoted(nearest)),
+            (_, [only]) => format!("the only one is {}", Quoted(only)),
+            (_, [first @ .., last]) => {
+                let first: Vec<String> = first.iter().map(|name| Quoted(name).to_string()).collect();
+                format!("there are {} and {}", first.join(", "), Quoted(last))
+            }
+        };
+        let why = format!("unknown {what} {}; {alternatives}", Quoted(name));
+        Self::Setting { place: place.into(), key: String::new(), why }
+    }
+
+    /// Builds an error from the faults of a file. A single fault stays as it is.
+    pub fn several(mut faults: Vec<Self>) -> Self {
+        match faults.pop() {
+            Some(only) if faults.is_empty() => only,
             last => {
-                all.extend(last);
-                Self::Several(all)
+                faults.extend(last);
+                Self::Several(faults)
             }
         }
     }
 
-    /// An error of the operating system, as a function for `map_err`.
+    /// Returns a function for `map_err` that builds an error of the operating system.
     pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { doing, path: path.into(), source }
     }
 
-    /// A file that would be larger than any that is read in its place, and is not written.
+    /// Builds an error about a file that would exceed what is read of it.
     pub(crate) fn too_large(path: &Path, bytes: u64, most: u64) -> Self {
         Self::Other(format!("{}: would have {bytes} bytes, more than the {most} that are read of it", path.display()))
     }
 
-    /// A file that cannot be what it should be.
+    /// Builds an error about a damaged file.
     pub(crate) fn damaged(path: &Path, why: impl fmt::Display) -> Self {
-        Self::Damaged { path: path.into(), why: why.to_string() }
+        Self::File { path: path.into(), why: why.to_string(), fault: FileFault::Damaged }
     }
 
-    /// The process's exit code: 2 for a wrong command line or configuration, 130 after Ctrl-C, 1 otherwise.
+    /// Builds an error about a directory that is in use.
+    pub(crate) fn occupied(path: &Path, why: &str) -> Self {
+        Self::File { path: path.into(), why: why.into(), fault: FileFault::Occupied }
+    }
+
+    /// Builds an error about a directory without a run.
+    pub(crate) fn no_run(path: &Path, why: &str) -> Self {
+        Self::File { path: path.into(), why: why.into(), fault: FileFault::NoRun }
+    }
+
+    /// Builds an error about a run that was resumed with another value of a setting.
+    pub(crate) fn other_configuration(directory: &Path, key: &str, run: &str, asked: &str) -> Self {
+        Self::Usage(format!(
+            "the run in {} has {} = {}, not {}: another configuration is another run",
+            OneLine(directory.display()),
+            Quoted(key),
+            OneLine(run),
+            OneLine(asked)
+        ))
+    }
+
+    /// Builds an error about a strategy that panicked.
+    pub(crate) fn strategy_panicked(generation: u32, why: &str) -> Self {
+        Self::Other(format!("the strategy panicked in generation {generation}: {}", OneLine(why)))
+    }
+
+    /// Returns the exit code: 2 for a wrong command line or configuration, 130 after Ctrl-C, 1 otherwise.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Unknown { .. }
-            | Self::Setting { .. }
+            Self::Setting { .. }
             | Self::Usage(_)
-            | Self::OtherConfiguration { .. }
-            | Self::Occupied { .. }
-            | Self::NoRun { .. } => 2,
-            Self::OtherVersion { .. }
-            | Self::OtherFile { .. }
-            | Self::Damaged { .. }
-            | Self::Io { .. }
-            | Self::Panicked { .. }
-            | Self::TrialPanicked { .. }
-            | Self::Other(_) => 1,
+            | Self::File { fault: FileFault::Occupied | FileFault::NoRun, .. } => 2,
+            Self::File { .. } | Self::Io { .. } | Self::Other(_) => 1,
             Self::Rank { code, .. } => *code,
-            Self::Several(all) => all.iter().map(Self::exit_code).max().unwrap_or(1),
+            Self::Several(faults) => faults.iter().map(Self::exit_code).max().unwrap_or(1),
             Self::Interrupted { .. } => 130,
         }
     }
 }
 
-/// What robots, worlds, sensors, networks and strategies cannot be built from, so that `?` suffices in
+/// Errors of robots, worlds, sensors, networks and strategies, for `?` in
 /// [`Experiment::prepare`](crate::Experiment::prepare).
 macro_rules! others {
     ($($error:ty),+ $(,)?) => {
@@ -240,16 +205,16 @@ impl From<farsa_view::Error> for Error {
     fn from(error: farsa_view::Error) -> Self {
         match error {
             farsa_view::Error::UnknownCamera { name, nearest } => {
-                Self::Unknown { place: String::new(), what: "camera", name, nearest, valid: Vec::new() }
+                Self::unknown_name("", "camera", &name, nearest.as_deref(), &[])
             }
             other => Self::Other(other.to_string()),
         }
     }
 }
 
-/// The name that takes the fewest changed, added, dropped or swapped letters, of several one that begins like this; letters of
-/// the other case count least. Of a name
-/// longer than any, the beginning is compared. With it comes how many letters that are.
+/// Returns the valid name with the smallest edit distance, and that distance in letters.
+///
+/// Of equally near names one with this beginning wins. Case counts least. Of an overlong name the beginning is compared.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(usize, &'a str)> {
     let name: String = name.chars().take(MAX_SHOWN).collect();
     let lower = name.to_lowercase();
@@ -258,7 +223,7 @@ fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(
     let mut best: Option<(usize, &str)> = None;
     for valid in valid {
         let other = valid.to_lowercase();
-        // Each letter that one has more is one to drop: most names need not be compared.
+        // The difference in length is a lower bound: most names need not be compared.
         if best.is_some_and(|(least, _)| other.chars().count().abs_diff(length) > least) {
             continue;
         }
@@ -272,7 +237,12 @@ fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(
     best
 }
 
-/// Whether one may have been meant by the other, so many letters apart: half of the longer one is right, or one is in the other.
+/// Returns the nearest valid name, if there is any.
+pub fn nearest_name<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    nearest(name, valid).map(|(_, valid)| valid)
+}
+
+/// Whether half of the longer name agrees, or one name contains the other.
 fn is_near(name: &str, valid: &str, letters: usize) -> bool {
     let [name, valid] = [name, valid].map(|text| text.chars().take(MAX_SHOWN).collect::<String>().to_lowercase());
     let longest = name.chars().count().max(valid.chars().count());
@@ -280,28 +250,12 @@ fn is_near(name: &str, valid: &str, letters: usize) -> bool {
 }
 
 impl fmt::Display for Error {
-    /// In one line: what a message repeats of files and names is escaped where it would begin another.
+    /// Writes one line. Control characters of repeated names are escaped.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let start = |f: &mut fmt::Formatter<'_>, place: &str| {
             if place.is_empty() { Ok(()) } else { write!(f, "{}: ", OneLine(place)) }
         };
         match self {
-            Self::Unknown { place, what, name, nearest, valid } => {
-                start(f, place)?;
-                write!(f, "unknown {what} {}", Quoted(name))?;
-                match (nearest, valid.as_slice()) {
-                    (None, []) => write!(f, "; there is none"),
-                    (Some(nearest), []) => write!(f, "; the nearest is {}", Quoted(nearest)),
-                    (_, [only]) => write!(f, "; the only one is {}", Quoted(only)),
-                    (_, [first @ .., last]) => {
-                        write!(f, "; there are ")?;
-                        for (index, name) in first.iter().enumerate() {
-                            write!(f, "{}{}", if index > 0 { ", " } else { "" }, Quoted(name))?;
-                        }
-                        write!(f, " and {}", Quoted(last))
-                    }
-                }
-            }
             Self::Several(all) => {
                 for (index, error) in all.iter().enumerate() {
                     write!(f, "{}{error}", if index > 0 { "; " } else { "" })?;
@@ -316,40 +270,8 @@ impl fmt::Display for Error {
                 write!(f, "{}", OneLine(why))
             }
             Self::Usage(why) | Self::Other(why) => f.write_str(why),
-            Self::OtherConfiguration { directory, key, run, asked } => write!(
-                f,
-                "the run in {} has {} = {}, not {}: another configuration is another run",
-                OneLine(directory.display()),
-                Quoted(key),
-                OneLine(run),
-                OneLine(asked)
-            ),
-            Self::OtherFile { path, directory, run, found } => write!(
-                f,
-                "{}: is another file than the run in {} was made with (CRC-32 {}, not {})",
-                OneLine(path.display()),
-                OneLine(directory.display()),
-                OneLine(found),
-                OneLine(run)
-            ),
-            Self::OtherVersion { path, what, file, program } => write!(
-                f,
-                "{}: made with version {file} of {}, this program has version {program}: \
-                 the same genes would give other results",
-                OneLine(path.display()),
-                OneLine(what)
-            ),
-            Self::Occupied { directory, why } | Self::NoRun { directory, why } => {
-                write!(f, "{}: {}", OneLine(directory.display()), OneLine(why))
-            }
-            Self::Damaged { path, why } => write!(f, "{}: {}", OneLine(path.display()), OneLine(why)),
+            Self::File { path, why, .. } => write!(f, "{}: {}", OneLine(path.display()), OneLine(why)),
             Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", OneLine(path.display())),
-            Self::Panicked { generation, why } => {
-                write!(f, "the strategy panicked in generation {generation}: {}", OneLine(why))
-            }
-            Self::TrialPanicked { generation, individual, trial } => {
-                write!(f, "trial {trial} of individual {individual} of generation {generation} panicked")
-            }
             Self::Rank { rank, why, .. } => write!(f, "rank {rank}: {}", OneLine(why)),
             Self::Interrupted { resume } => write!(f, "interrupted; go on with `{}`", OneLine(resume)),
         }
@@ -439,13 +361,13 @@ mod tests {
             ),
             (Error::setting(evil, evil), format!("`{shown}`: {shown}")),
             (Error::damaged(&path(), evil), format!("{shown}: {shown}")),
-            (Error::NoRun { directory: path(), why: evil.into() }, format!("{shown}: {shown}")),
+            (Error::no_run(&path(), evil), format!("{shown}: {shown}")),
             (
                 Error::io("read", &path())(io::ErrorKind::NotFound.into()),
                 format!("cannot read {shown}: entity not found"),
             ),
             (
-                Error::OtherConfiguration { directory: path(), key: evil.into(), run: evil.into(), asked: evil.into() },
+                Error::other_configuration(&path(), evil, evil, evil),
                 format!(
                     "the run in {shown} has `{shown}` = {shown}, not {shown}: another configuration is another run"
                 ),

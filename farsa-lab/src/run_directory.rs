@@ -93,7 +93,7 @@ impl<'l> RunDirectory<'l> {
     /// Opens the directory of a run of an experiment and a strategy of a laboratory.
     ///
     /// # Errors
-    /// [`Error::NoRun`] for a directory without a run, and the errors of an invalid configuration.
+    /// [`Error::File`] for a directory without a run, and the errors of an invalid configuration.
     pub fn open(path: &Path, laboratory: &Laboratory<'l>) -> Result<Self, Error> {
         let directory = Directory::open(path)?;
         let plan = Plan::from_file(laboratory, &ConfigFile::read_regular(&directory.config())?)?;
@@ -149,7 +149,7 @@ impl<'l> RunDirectory<'l> {
     /// Reads the champion of each population.
     ///
     /// # Errors
-    /// [`Error::Damaged`] before the first generation and for an invalid file, and [`Error::OtherVersion`] for a run whose trials
+    /// [`Error::File`] before the first generation and for an invalid file, and [`Error::File`] for a run whose trials
     /// this program computes differently.
     pub fn champion(&self) -> Result<RunChampion, Error> {
         let evaluator = self.evaluator()?;
@@ -170,7 +170,7 @@ impl<'l> RunDirectory<'l> {
     /// Reads all finished generations. Imported genotypes are one generation without a log.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for an invalid checkpoint or record.
+    /// [`Error::File`] for an invalid checkpoint or record.
     pub fn record(&self) -> Result<GenerationRecord<'_>, Error> {
         let genotype = self.plan.genotype(self.evaluator()?.as_ref());
         if self.directory.genotypes().is_file() {
@@ -189,7 +189,7 @@ impl<'l> RunDirectory<'l> {
     /// Reads the trials of the last `farsa test`. The result is empty if the champion was never tested.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for an invalid table.
+    /// [`Error::File`] for an invalid table.
     #[cfg(feature = "command")]
     pub fn test(&self) -> Result<Vec<TestTrial>, Error> {
         let Some((table, _)) = test::read(&self.directory)? else { return Ok(Vec::new()) };
@@ -213,7 +213,7 @@ impl GenerationRecord<'_> {
     /// Rebuilds the parameters of all individuals of a generation, those of one population after the other.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for a generation that is not finished, and for genomes of another strategy.
+    /// [`Error::File`] for a generation that is not finished, and for genomes of another strategy.
     pub fn parameters(&self, generation: u32) -> Result<Vec<Vec<f32>>, Error> {
         let mut parameters = Vec::new();
         self.history.visit([generation], |_, genomes| {

@@ -55,7 +55,7 @@ const MAX_REPEATED: usize = 200;
 /// # Errors
 /// [`Error::Usage`] for a text that is not a configuration, and for one without a wheeled robot, sensor or motor that can be
 /// converted. Texts of more than a megabyte or 5000 lines, and group names of more than 200 bytes, are errors, too.
-/// [`Error::Unknown`] for a robot without wheels. The errors of an experiment file for parts that do not fit together.
+/// [`Error::Setting`] for a robot without wheels. The errors of an experiment file for parts that do not fit together.
 pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
     from_original_within(Limits::default(), file, name, text)
 }

@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_lab::Error;
-use farsa_lab::advanced::LeftOut;
+use farsa_lab::advanced::{LeftOut, nearest_name};
 
 use crate::ini::{Entry, Group, Ini};
 
@@ -139,10 +138,7 @@ fn nearest(key: &str, known: &[&'static str]) -> Option<String> {
     if !known.iter().any(|known| is_like(key, known)) {
         return None;
     }
-    match Error::unknown("", "key", key, known.iter().copied()) {
-        Error::Unknown { nearest: Some(near), .. } if is_like(key, &near) => Some(near),
-        _ => None,
-    }
+    nearest_name(key, known.iter().copied()).filter(|near| is_like(key, near)).map(str::to_owned)
 }
 
 /// Returns true if common beginning and end are at least three quarters of the longer key.

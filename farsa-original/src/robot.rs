@@ -44,7 +44,7 @@ impl RobotKind {
     /// Reads the group of a robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Usage`] for a robot without wheels.
+    /// [`Error::Setting`] and [`Error::Usage`] for a robot without wheels.
     pub(super) fn from_group(file: &str, group: &Group, remarks: &mut Remarks) -> Result<Self, Error> {
         const KNOWN: [&str; 3] = ["Khepera", "Epuck", "MarXbot"];
         let Some((name, entry)) = group.kind(remarks) else {

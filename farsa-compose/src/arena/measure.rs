@@ -53,7 +53,7 @@ impl Measure {
     /// robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
+    /// [`Error::Setting`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
     pub(crate) fn new(
         kind: &RewardKind,
         path: &str,

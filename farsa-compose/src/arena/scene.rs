@@ -188,7 +188,7 @@ impl Scene {
     /// Returns the thing of a name at a path of the document.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name.
+    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn thing(&self, name: &str, path: &str, source: &Source) -> Result<Thing, Error> {
         let thing = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };

@@ -59,7 +59,7 @@ impl Setup {
     /// Builds the parts of a document.
     ///
     /// # Errors
-    /// [`Error::Setting`] and [`Error::Unknown`] for parts that do not fit together.
+    /// [`Error::Setting`] and [`Error::Setting`] for parts that do not fit together.
     pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
         let scene = Scene::new(&document, source)?;
         let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
@@ -112,7 +112,7 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source
 /// Builds the nest and the field of a document.
 ///
 /// # Errors
-/// [`Error::Unknown`] for an unknown nest, and [`Error::Setting`] for a nest that is no disc and for sensors, terms
+/// [`Error::Setting`] for an unknown nest, and [`Error::Setting`] for a nest that is no disc and for sensors, terms
 /// and endings that need the section `foraging`.
 fn foraging(
     document: &Document,

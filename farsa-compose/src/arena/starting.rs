@@ -79,7 +79,7 @@ impl Starting {
     /// Reads the placements of a document. Robots without one are placed last, anywhere.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown thing, [`Error::Setting`] for one that is placed twice or cannot be placed.
+    /// [`Error::Setting`] for an unknown thing, [`Error::Setting`] for one that is placed twice or cannot be placed.
     pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();
         let robots: Vec<BodyId> = (0..scene.robots.len()).map(|robot| scene.parts(robot).body).collect();

@@ -55,7 +55,7 @@ impl Term {
     /// Reads the term at a path of the document. `sensors` are the channels of a robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
+    /// [`Error::Setting`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
     pub(crate) fn new(
         reward: &Reward,
         number: usize,

@@ -39,7 +39,7 @@ fn named(document: &Document) -> Vec<(String, &str)> {
 ///
 /// # Errors
 /// [`Error::Setting`] for a name outside the folder, for too many files, and for a file without a folder.
-/// [`Error::Unknown`] for a file that is missing from those of the text. [`Error::Io`] and [`Error::Damaged`] for
+/// [`Error::Setting`] for a file that is missing from those of the text. [`Error::Io`] and [`Error::File`] for
 /// unreadable files.
 pub(crate) fn embedded(
     file: &str,

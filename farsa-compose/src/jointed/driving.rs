@@ -69,7 +69,7 @@ pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &So
 /// Builds the motor at a path of the document. Adds the actuators that the robot lacks.
 ///
 /// # Errors
-/// [`Error::Setting`] for a missing actuator, [`Error::Unknown`] for an unknown joint.
+/// [`Error::Setting`] for a missing actuator, [`Error::Setting`] for an unknown joint.
 pub(crate) fn motor(kind: &MotorKind, scene: &mut Scene, path: &str, source: &Source) -> Result<Driving, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
     let joints = joints_of(kind, scene, path, source)?;

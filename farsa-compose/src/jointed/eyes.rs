@@ -34,7 +34,7 @@ fn size(eye: &Eye) -> [usize; 2] {
 /// Builds a sensor of the image.
 ///
 /// # Errors
-/// [`Error::Unknown`] for an unknown body.
+/// [`Error::Setting`] for an unknown body.
 pub(crate) fn image(eye: &Eye, scene: &Scene, path: &str, source: &Source) -> Result<CameraImage, Error> {
     Ok(CameraImage::new(camera(eye, size(eye), scene, path, source)?))
 }
@@ -42,7 +42,7 @@ pub(crate) fn image(eye: &Eye, scene: &Scene, path: &str, source: &Source) -> Re
 /// Builds a sensor of the positions of colors in the image.
 ///
 /// # Errors
-/// [`Error::Unknown`] for an unknown body, [`Error::Setting`] without colors.
+/// [`Error::Setting`] for an unknown body, [`Error::Setting`] without colors.
 pub(crate) fn blobs(
     eye: &Eye,
     colors: &[ColorRange],
@@ -59,7 +59,7 @@ pub(crate) fn blobs(
 /// Builds a sensor of the offset between two things or bodies in the image.
 ///
 /// # Errors
-/// [`Error::Unknown`] for an unknown body or thing, [`Error::Setting`] for a marker.
+/// [`Error::Setting`] for an unknown body or thing, [`Error::Setting`] for a marker.
 pub(crate) fn offset(
     eye: &Eye,
     [of, from]: [&String; 2],

@@ -139,7 +139,7 @@ impl Scene {
     /// first body.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name.
+    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn body(
         &self,
         name: Option<&String>,
@@ -183,7 +183,7 @@ impl Scene {
     /// Returns the center of a thing or of a body of the robot, and the distance of a thing's surface from it [m].
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] for a wall.
+    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] for a wall.
     pub(crate) fn point_named(&self, name: &String, path: &str, source: &Source) -> Result<(NamedPoint, f64), Error> {
         if let Some(thing) = self.things.iter().find(|thing| thing.name == *name) {
             return match thing.what {
@@ -205,7 +205,7 @@ impl Scene {
     /// Returns named joints, or without names all of the robot for which `all` is true.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] without any joint.
+    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] without any joint.
     pub(crate) fn joints(
         &self,
         names: &[String],
@@ -244,7 +244,7 @@ impl Scene {
     /// Returns the contact pairs between bodies of the robot, by default all, and a thing, the floor or everything.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] without any pair.
+    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] without any pair.
     pub(crate) fn pairs(
         &self,
         bodies: &[String],

@@ -57,7 +57,7 @@ impl Starting {
     /// Reads the placements of a document.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown thing or joint, [`Error::Setting`] for one that is placed twice or cannot be
+    /// [`Error::Setting`] for an unknown thing or joint, [`Error::Setting`] for one that is placed twice or cannot be
     /// placed.
     pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();

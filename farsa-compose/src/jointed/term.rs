@@ -52,7 +52,7 @@ impl Term {
     /// Reads a term at a path of the document. `sensors` are the channels of the robot.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown thing, body, joint or sensor, [`Error::Setting`] for a part without the
+    /// [`Error::Setting`] for an unknown thing, body, joint or sensor, [`Error::Setting`] for a part without the
     /// measure.
     pub(crate) fn new(
         kind: &RewardKind,

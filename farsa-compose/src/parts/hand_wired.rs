@@ -27,7 +27,7 @@ impl HandWired {
     /// Builds the wires of a document.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown end, [`Error::Setting`] for another number of biases than of outputs.
+    /// [`Error::Setting`] for an unknown end, [`Error::Setting`] for another number of biases than of outputs.
     pub(crate) fn new(
         wires: &[Wire],
         bias: &[f64],

@@ -41,7 +41,7 @@ impl Ledger {
     /// step.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
+    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
     pub(crate) fn new(document: &Document, of_steps: &[bool], groups: &Groups, source: &Source) -> Result<Self, Error> {
         let rewards = &source.names.terms;
         let tally = |(number, reward)| Tally::new(reward, number, rewards, groups, source);

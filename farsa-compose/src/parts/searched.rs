@@ -35,7 +35,7 @@ impl Searched {
     /// further fixed values.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown parameter, [`Error::Setting`] for duplicates, and for values and ranges that
+    /// [`Error::Setting`] for an unknown parameter, [`Error::Setting`] for duplicates, and for values and ranges that
     /// do not fit together.
     pub(crate) fn new(
         all: Vec<Parameter>,

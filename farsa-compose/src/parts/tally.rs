@@ -37,7 +37,7 @@ impl Tally {
     /// Builds the term at a number of the document. `names` are those of all terms.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
+    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
     pub(crate) fn new(
         reward: &Reward,
         number: usize,

@@ -123,7 +123,7 @@ impl Condition {
     /// Parses an instruction of this condition.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`] with the most similar instruction of this condition if there is no such instruction.
+    /// Returns [`Error::Setting`] with the most similar instruction of this condition if there is no such instruction.
     pub fn parse(self, text: &str) -> Result<Instruction, Error> {
         let instruction = text.parse::<Instruction>().ok();
         instruction.filter(|instruction| self.actions().contains(&instruction.action)).ok_or_else(|| {
@@ -152,7 +152,7 @@ impl FromStr for Instruction {
     /// Parses an instruction. The case of the letters is ignored.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`] with the most similar instruction.
+    /// Returns [`Error::Setting`] with the most similar instruction.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut words = text.split_whitespace();
         let (first, second, rest) = (words.next(), words.next(), words.next());

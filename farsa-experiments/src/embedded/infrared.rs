@@ -42,7 +42,7 @@ pub(crate) fn files(settings: &Settings) -> Result<Vec<PathBuf>, Error> {
 /// Returns the text of an experiment with the measured tables of these settings, if there are any.
 ///
 /// # Errors
-/// The errors of [`files`], [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read.
+/// The errors of [`files`], [`Error::Io`] and [`Error::File`] for a file that cannot be read.
 pub(crate) fn with_tables(text: &str, settings: &Settings) -> Result<Option<String>, Error> {
     let paths = files(settings)?;
     let Some((walls, bodies)) = paths.split_first() else { return Ok(None) };

@@ -413,7 +413,7 @@ impl Config {
     /// Reads a configuration from settings that have been checked.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`] for settings of another experiment, and [`Error::Setting`] for an invalid table top.
+    /// Returns [`Error::Setting`] for settings of another experiment and for an invalid table top.
     pub fn read(labels: bool, settings: &Settings) -> Result<Self, Error> {
         let mut config = Self::for_condition(labels);
         for Entry { key, field, .. } in entries() {

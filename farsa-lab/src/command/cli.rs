@@ -389,9 +389,8 @@ impl<'e> Invocation<'e, '_> {
             found.name() == plan.experiment.name() && found.definition() != plan.experiment.definition()
         };
         if named.as_ref().is_some_and(other) {
-            let (directory, asked) = (directory.path().into(), args.experiment.clone().unwrap_or_default());
-            let run = plan.experiment.name().into();
-            return Err(Error::OtherConfiguration { directory, key: "definition".into(), run, asked });
+            let asked = args.experiment.clone().unwrap_or_default();
+            return Err(Error::other_configuration(directory.path(), "definition", plan.experiment.name(), &asked));
         }
         let experiment = named.map(|found| found.name().to_owned()).or_else(|| args.experiment.clone());
         let experiment = experiment.or_else(|| in_file(file?.experiment.as_ref()));
@@ -403,8 +402,7 @@ impl<'e> Invocation<'e, '_> {
             ("strategy", plan.definition().name(), strategy),
         ] {
             if let Some(asked) = asked.filter(|asked| asked != run) {
-                let directory = directory.path().into();
-                return Err(Error::OtherConfiguration { directory, key: key.into(), run: run.into(), asked });
+                return Err(Error::other_configuration(directory.path(), key, run, &asked));
             }
         }
         Ok(())

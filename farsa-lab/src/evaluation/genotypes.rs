@@ -131,7 +131,7 @@ impl Shape {
     /// The genotypes of a file: one of the original's, or a list of genes.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Damaged`] with the line or the position, or for a file that does not end.
+    /// [`Error::Io`], [`Error::File`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
         self.words(path, &bounded::read_stream_text(path, MOST_BYTES)?)
     }
@@ -198,7 +198,7 @@ fn is_title(line: &str) -> bool {
 /// line and the line `END`.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] with the line if a genotype is truncated, does not have `genes` genes, or has
+/// [`Error::Io`], and [`Error::File`] with the line if a genotype is truncated, does not have `genes` genes, or has
 /// a gene that is not a whole number below 2^`gene_bits`.
 pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<Vec<u16>>, Error> {
     Shape::new(genes, gene_bits).read(path)

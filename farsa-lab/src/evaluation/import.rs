@@ -56,7 +56,7 @@ impl Summary {
 /// is the champion. `asked` is the size of a population that the settings were to have, if any.
 ///
 /// # Errors
-/// [`Error::Damaged`] with the line for a file that is not a genotype file of this experiment, and for an existing
+/// [`Error::File`] with the line for a file that is not a genotype file of this experiment, and for an existing
 /// directory. [`Error::Usage`] for populations without genotypes or with fewer than others. Nothing is written on an
 /// error.
 pub(crate) fn import(

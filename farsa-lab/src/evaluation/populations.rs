@@ -17,7 +17,7 @@ impl Populations<'_> {
     /// Divides `NAME=REST` if there are several populations. Without a name everything is the rest.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest population.
+    /// [`Error::Setting`] with the nearest population.
     pub(crate) fn split<'t>(&self, option: &str, text: &'t str) -> Result<Assigned<&'t str>, Error> {
         let Some((name, rest)) = text.split_once('=').filter(|_| self.names.len() > 1) else {
             return Ok((None, text));

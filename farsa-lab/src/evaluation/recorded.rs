@@ -30,7 +30,7 @@ pub(crate) trait TableRecord: Serialize + DeserializeOwned {
 /// than records, or if its process was killed.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::Damaged`].
+/// [`Error::Io`], [`Error::File`].
 pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option<(String, Option<R>)>, Error> {
     if !table.is_file() {
         return Ok(None);
@@ -56,7 +56,7 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
 /// Writes both files of a test under the lock of the directory. `make` receives the CRC-32 of the table.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Occupied`] while another process writes a test.
+/// [`Error::Io`], and [`Error::File`] while another process writes a test.
 pub(crate) fn write<R: TableRecord>(
     directory: &Path,
     table: (&Path, &[u8]),

@@ -64,7 +64,7 @@ impl<'p> LocatedIndividual<'p> {
     /// Looks for an individual of a run.
     ///
     /// # Errors
-    /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
+    /// [`Error::Usage`] for one that the run does not have, [`Error::File`], [`Error::Usage`] and whatever
     /// keeps the run of another version from being replayed.
     pub(crate) fn new(plan: &'p Plan<'_>, directory: &Directory, which: Selection) -> Result<Self, Error> {
         let (identity, history, path) = history(plan, directory)?;
@@ -115,7 +115,7 @@ impl Replayable {
     /// Finds an individual of a run and rebuilds its genes.
     ///
     /// # Errors
-    /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
+    /// [`Error::Usage`] for one that the run does not have, [`Error::File`], [`Error::Usage`] and whatever
     /// keeps the run of another version from being replayed.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Selection) -> Result<Self, Error> {
         Self::rebuilt(plan, &LocatedIndividual::new(plan, directory, which)?, which.trial)
@@ -227,7 +227,8 @@ impl Replayable {
         let plain = Evaluation::new(&self.parameters, id);
         let evaluation = Evaluation { opponents: &opponents, normalisation, intervention, ..plain };
         let (generation, individual) = (self.generation, self.individual);
-        let panicked = |()| Error::TrialPanicked { generation, individual, trial };
+        let panicked =
+            |()| Error::Other(format!("trial {trial} of individual {individual} of generation {generation} panicked"));
         catch_printed_panic(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
     }
 

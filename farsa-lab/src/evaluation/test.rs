@@ -45,7 +45,7 @@ impl TableRecord for Record {
 /// Reads the test of a directory with its record, see [`recorded::read`].
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::Damaged`].
+/// [`Error::Io`], [`Error::File`].
 pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record>)>, Error> {
     let path = directory.test();
     let Some((text, record)) = recorded::read(&path, &directory.test_record())? else { return Ok(None) };
@@ -172,7 +172,7 @@ impl Subject {
     /// Reads the champions of a run.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for a run without champions or of another experiment, [`Error::Io`].
+    /// [`Error::File`] for a run without champions or of another experiment, [`Error::Io`].
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>) -> Result<Self, Error> {
         let path = directory.champion();
         if !path.is_file() && directory.checkpoint().is_file() {
@@ -197,7 +197,7 @@ impl Subject {
     /// populations.
     ///
     /// # Errors
-    /// As for [`LocatedIndividual::new`], and [`Error::Damaged`].
+    /// As for [`LocatedIndividual::new`], and [`Error::File`].
     fn find(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>, which: Selection) -> Result<Self, Error> {
         let LocatedIndividual { history, path, generation, individual } =
             LocatedIndividual::new(plan, directory, which)?;

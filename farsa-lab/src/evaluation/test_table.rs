@@ -87,7 +87,7 @@ impl Table {
     /// Parses the text of the file at `path`.
     ///
     /// # Errors
-    /// [`Error::Damaged`] when it is not the table of a test.
+    /// [`Error::File`] when it is not the table of a test.
     pub(crate) fn from_text(path: &Path, text: &str) -> Result<Self, Error> {
         Self::parse(text).map_err(|why| Error::damaged(path, why))
     }

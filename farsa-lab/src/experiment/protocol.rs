@@ -148,7 +148,7 @@ impl Protocol {
     /// The number of the protocol of this name among those of an experiment, all of which are looked at.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name that there is, [`Error::Usage`] where there is no protocol at all, and
+    /// [`Error::Setting`] with the nearest name that there is, [`Error::Usage`] where there is no protocol at all, and
     /// [`Error::Other`] for protocols that cannot be run: see [`check`](Self::check).
     pub(crate) fn find(protocols: &[Self], name: &str, experiment: &str) -> Result<usize, Error> {
         Self::check(protocols)?;
@@ -165,7 +165,7 @@ impl Protocol {
     /// The number of the case of this name, or of this number from 0 if none has the name.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name that there is.
+    /// [`Error::Setting`] with the nearest name that there is.
     pub(crate) fn case(&self, name: &str) -> Result<usize, Error> {
         let names: Vec<String> = self.cases.iter().map(Case::name).collect();
         let number = || name.parse().ok().filter(|number| *number < names.len());
@@ -260,8 +260,8 @@ mod tests {
         let two = [Protocol::from_list("noise", "", ["0"]), lesions()];
         assert_eq!(Protocol::find(&two, "lesions", "toy").unwrap(), 1);
         let error = Protocol::find(&two, "lesion", "toy").unwrap_err();
-        assert!(matches!(&error, Error::Unknown { nearest: Some(nearest), .. } if nearest == "lesions"));
         let text = error.to_string();
+        assert!(text.contains("the nearest is `lesions`"), "{text}");
         assert!(text.contains("noise, lesions") && text.contains("`lesion`"), "{text}");
         assert_eq!(two[1].case("neuron 1").unwrap(), 1);
         assert_eq!(two[1].case("1").unwrap(), 1);

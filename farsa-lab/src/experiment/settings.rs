@@ -69,7 +69,7 @@ impl Settings {
     /// Checks that there is a section of this name, or one within it.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest section.
+    /// [`Error::Setting`] with the nearest section.
     pub(crate) fn section(&self, place: &str, name: &str) -> Result<(), Error> {
         let sections = || self.table.iter().filter_map(|setting| Some(setting.key().rsplit_once('.')?.0));
         let within =
@@ -85,7 +85,7 @@ impl Settings {
     /// A value, whatever its type.
     ///
     /// # Errors
-    /// [`Error::Unknown`] when the table has no such key.
+    /// [`Error::Setting`] when the table has no such key.
     pub fn get(&self, key: &str) -> Result<&Value, Error> {
         self.values.get(key).ok_or_else(|| Error::unknown("", "key", key, self.table.iter().map(Setting::key)))
     }
@@ -93,7 +93,7 @@ impl Settings {
     /// A number.
     ///
     /// # Errors
-    /// [`Error::Unknown`] when the table has no such key, [`Error::Setting`] when it holds something else.
+    /// [`Error::Setting`] when the table has no such key, [`Error::Setting`] when it holds something else.
     pub fn number(&self, key: &str) -> Result<f64, Error> {
         match self.get(key)? {
             &Value::Number(x) => Ok(x),

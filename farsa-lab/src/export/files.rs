@@ -179,7 +179,7 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
 /// Returns the champion's genes as a `.gen` file, or real parameters as a list.
 ///
 /// # Errors
-/// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
+/// [`Error::Usage`] or [`Error::Setting`] for the population, [`Error::File`], [`Error::Usage`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let Champion { generation, individual, genes, normalisation, .. } =
@@ -198,8 +198,8 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// Returns the content of a file with the champion's controller.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Unknown`] for the
-/// population, [`Error::Damaged`], [`Error::OtherConfiguration`].
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Setting`] for the
+/// population, [`Error::File`], [`Error::Usage`].
 pub(crate) fn controller(
     plan: &Plan<'_>,
     directory: &Directory,

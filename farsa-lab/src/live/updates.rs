@@ -50,7 +50,7 @@ impl SeenState {
     /// Returns the rows that were added to the log.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Damaged`] for an invalid log.
+    /// [`Error::Io`] and [`Error::File`] for an invalid log.
     pub(crate) fn rows(&mut self, directory: &Directory) -> Result<Vec<Row>, Error> {
         let path = directory.log();
         let bytes = fs::metadata(&path).map_err(Error::io("read", &path))?.len();

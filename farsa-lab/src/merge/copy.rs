@@ -27,7 +27,7 @@ impl<'r, 'e> Copy<'r, 'e> {
     ///
     /// # Errors
     /// [`Error::Usage`] for two runs with one name, and for an existing run with another number of generations.
-    /// [`Error::Occupied`] and [`Error::OtherConfiguration`] for a destination with other content.
+    /// [`Error::File`] and [`Error::Usage`] for a destination with other content.
     pub(crate) fn all(
         runs: impl Iterator<Item = &'r Gathered<'e>>,
         root: &Path,

@@ -64,7 +64,7 @@ impl<'e> Gathering<'e> {
     /// Finds and reads the runs in and below directories.
     ///
     /// # Errors
-    /// [`Error::NoRun`] for a directory without a run, [`Error::Other`] for runs of one experiment with other versions of the
+    /// [`Error::File`] for a directory without a run, [`Error::Other`] for runs of one experiment with other versions of the
     /// values, and for one run with two results. Also the errors of [`Gathered::read`].
     pub(crate) fn new(laboratory: &Laboratory<'e>, roots: &[PathBuf]) -> Result<Self, Error> {
         let mut gathering = Self { runs: Vec::new(), twins: Vec::new() };
@@ -79,10 +79,7 @@ impl<'e> Gathering<'e> {
             let mut found = Vec::new();
             find(root, Path::new(""), 0, &mut found)?;
             if found.is_empty() {
-                return Err(Error::NoRun {
-                    directory: root.into(),
-                    why: "holds no run, nor does a folder in it".into(),
-                });
+                return Err(Error::no_run(root, "holds no run, nor does a folder in it"));
             }
             for (directory, name) in found {
                 gathering.add(Gathered::read(laboratory, directory, name)?, &mut known)?;

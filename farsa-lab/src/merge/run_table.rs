@@ -12,7 +12,7 @@ use crate::strategy::settings::{GENERATIONS, STRATEGY};
 /// Formats a CSV line for each run, with the given place.
 ///
 /// # Errors
-/// The errors of reading a test, and [`Error::Damaged`] if the table cannot be written.
+/// The errors of reading a test, and [`Error::File`] if the table cannot be written.
 pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
     let keys = differing(runs);
     let populations = populations(runs)?;

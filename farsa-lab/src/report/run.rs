@@ -54,7 +54,7 @@ impl<'e> Run<'e> {
     /// Reads a run up to its last checkpoint. It may still be running.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for a damaged file and without a finished generation, [`Error::OtherConfiguration`] for a changed
+    /// [`Error::File`] for a damaged file and without a finished generation, [`Error::Usage`] for a changed
     /// configuration, [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;

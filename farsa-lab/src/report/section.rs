@@ -2,7 +2,7 @@
 
 use std::time::{Duration, UNIX_EPOCH};
 
-use crate::error::Error;
+use crate::error::{Error, FileFault};
 use crate::evaluation::draw::{self, Portrait};
 use crate::evaluation::test_table::Finding;
 use crate::figures::statistics::median;
@@ -47,7 +47,9 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
         match champion(run, place) {
             Ok(picture) => pictures.extend(picture),
             // This program cannot replay that champion, but it can report the rest of the run.
-            Err(error @ Error::OtherVersion { .. }) => others.push(Block::Text(format!("Not drawn: {error}"))),
+            Err(error @ Error::File { fault: FileFault::OtherVersion, .. }) => {
+                others.push(Block::Text(format!("Not drawn: {error}")));
+            }
             Err(error) => return Err(error),
         }
     }

@@ -22,7 +22,7 @@ impl TestedProtocol {
     /// Returns the protocols with results in a directory, and the others.
     ///
     /// # Errors
-    /// [`Error::Damaged`], [`Error::Io`].
+    /// [`Error::File`], [`Error::Io`].
     pub(crate) fn all(directory: &Directory, evaluator: &dyn Evaluator) -> Result<(Vec<Self>, Vec<Protocol>), Error> {
         let (protocols, terms) = (evaluator.info().protocols, evaluator.info().terms);
         Protocol::check(&protocols)?;

@@ -148,7 +148,7 @@ struct Prediction {
 /// Evaluates complete generations, as a run does, for some seconds. A first generation that takes longer is cut.
 ///
 /// # Errors
-/// [`Error::Panicked`], and [`Error::Other`] if no trial was evaluated.
+/// [`Error::Other`], and [`Error::Other`] if no trial was evaluated.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
     let Sample { parameters, seed, generation, run, .. } = sample;
     let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();

@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::Error;
+use crate::error::{Error, FileFault};
 use crate::escaped::{CUT, MAX_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
 use crate::store::bounded;
@@ -53,7 +53,7 @@ impl ConfigFile {
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         // A damaged file named by the user is a usage error.
         let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
-            error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+            error @ Error::File { fault: FileFault::Damaged, .. } => Error::Usage(error.to_string()),
             other => other,
         })?;
         Self::parse(&path.display().to_string(), &text)
@@ -62,7 +62,7 @@ impl ConfigFile {
     /// Reads the configuration of a run.
     ///
     /// # Errors
-    /// As [`read`](Self::read), and [`Error::Damaged`].
+    /// As [`read`](Self::read), and [`Error::File`].
     pub(crate) fn read_regular(path: &Path) -> Result<Self, Error> {
         Self::parse(&path.display().to_string(), &bounded::read_regular_text(path, MAX_BYTES)?)
     }

@@ -62,7 +62,7 @@ impl DiagnosticsTable {
     /// Synchronizes the table with the disk and draws its curves.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the table.
+    /// [`Error::Io`], and [`Error::File`] when another program has removed, replaced or changed the table.
     pub(crate) fn save(&mut self, title: &str) -> Result<(), Error> {
         let Some(table) = &mut self.0 else { return Ok(()) };
         table.file.check()?;

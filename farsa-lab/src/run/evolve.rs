@@ -166,7 +166,7 @@ impl<'d> Run<'d> {
             }
             // Panics of trials are caught in the pool. A panic here is one of the strategy, whose state is then lost.
             let result = catch_panic(|| barrier(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
-            match result.map_err(|why| Error::Panicked { generation, why })? {
+            match result.map_err(|why| Error::strategy_panicked(generation, &why))? {
                 Ok(()) => {}
                 Err(Unfinished::Error(error)) => return Err(error),
                 Err(Unfinished::Stopped) => {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, FileFault};
 use crate::run::config_file::ConfigFile;
 use crate::run::experiment::Experiment;
 use crate::run::imported_file::ImportedFile;
@@ -151,12 +151,12 @@ impl<'e> Laboratory<'e> {
     /// Returns the experiment with a name found at `place`, or of a file.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name, [`Error::Io`], and the errors of a file.
+    /// [`Error::Setting`] with the nearest name, [`Error::Io`], and the errors of a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if name.ends_with(FILE) {
             let path = Path::new(name);
             let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
-                error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+                error @ Error::File { fault: FileFault::Damaged, .. } => Error::Usage(error.to_string()),
                 other => other,
             })?;
             return self.described(name, &text, path.parent());
@@ -169,7 +169,7 @@ impl<'e> Laboratory<'e> {
     /// Returns the strategy with a name found at `place`.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name.
+    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn strategy(&self, name: &str, place: &str) -> Result<&'static dyn StrategyDefinition, Error> {
         known::find(&self.strategies, name, place)
     }

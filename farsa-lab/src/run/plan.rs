@@ -251,7 +251,7 @@ impl<'e> Plan<'e> {
     /// Returns everything that the results depend on, with the content of files.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and the errors of [`Experiment::files`].
+    /// [`Error::Io`] and [`Error::File`] for a file that cannot be read, and the errors of [`Experiment::files`].
     pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
         let mut settings: Vec<(String, Value)> = settings
@@ -277,7 +277,7 @@ impl<'e> Plan<'e> {
     /// Checks that a record, read from a file of `directory`, belongs to the planned run.
     ///
     /// # Errors
-    /// [`Error::OtherConfiguration`], [`Error::OtherFile`], and the errors of [`identity`](Self::identity).
+    /// [`Error::Usage`], [`Error::File`], and the errors of [`identity`](Self::identity).
     pub(crate) fn same_run(&self, record: &Identity, directory: &Path) -> Result<(), Error> {
         let mut asked = self.identity()?;
         // A run that is older than the conditions of its experiment has the first of them.

@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::error::Error;
+use crate::error::{Error, FileFault};
 use crate::escaped::{OneLine, escaped};
 use crate::run::begin;
 use crate::run::evolve;
@@ -158,7 +158,9 @@ fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
     }
     match begin::create(plan, path) {
         // Another process has created it at the same time.
-        Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Ok((Directory::open(path)?, false)),
+        Err(Error::File { fault: FileFault::Occupied, .. }) if path.join("config.toml").is_file() => {
+            Ok((Directory::open(path)?, false))
+        }
         made => Ok((made?, true)),
     }
 }
@@ -166,14 +168,16 @@ fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
 /// Returns the summary of a run with all its generations, and `None` for one to begin or continue.
 ///
 /// # Errors
-/// [`Error::Occupied`] by other files, [`Error::OtherConfiguration`] by another run, [`Error::Usage`] by one with more
+/// [`Error::File`] by other files, [`Error::Usage`] by another run, [`Error::Usage`] by one with more
 /// generations, and any error that prevents the run from being continued.
 pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     let directory = match Directory::open(path) {
         Ok(directory) => directory,
         Err(_) => match vacant(path) {
             // Another process has created it in between.
-            Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Directory::open(path)?,
+            Err(Error::File { fault: FileFault::Occupied, .. }) if path.join("config.toml").is_file() => {
+                Directory::open(path)?
+            }
             vacant => return vacant.map(|()| None),
         },
     };

@@ -57,7 +57,7 @@ impl RunRecord {
     /// cause large allocations.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy.
+    /// As [`Checkpoint::read`], and [`Error::File`] for the record of another strategy.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
         evolved(directory)?;
         Self::from_content(plan, directory, checkpoint, Self::content(plan, directory, checkpoint)?)
@@ -142,7 +142,7 @@ impl RunRecord {
     /// Reads the content of the file up to a checkpoint.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] for content that does not match the checkpoint.
+    /// [`Error::Io`], and [`Error::File`] for content that does not match the checkpoint.
     pub(crate) fn content(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
         append_log::read(&directory.record(), checkpoint.record, plan.limits.record_bytes)
     }
@@ -221,7 +221,7 @@ impl RunRecordWriter {
     /// Synchronizes the file with the disk and returns its mark.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::File`] when another program has removed, replaced or changed the file.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.file.check()?;
         self.file.sync()

@@ -195,8 +195,8 @@ impl Checkpoint {
     /// Reads the checkpoint of a planned run.
     ///
     /// # Errors
-    /// [`Error::Usage`] in a directory of imported genotypes or of an earlier version, [`Error::Damaged`],
-    /// [`Error::OtherConfiguration`] or [`Error::OtherFile`] for the record of another run.
+    /// [`Error::Usage`] in a directory of imported genotypes or of an earlier version, [`Error::File`],
+    /// [`Error::Usage`] or [`Error::File`] for the record of another run.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         evolved(directory)?;
         read(&directory.checkpoint(), plan, directory)
@@ -318,7 +318,7 @@ impl Champions {
     /// Reads the champions of a run with a finished generation, whose trials this program computes in the same way.
     ///
     /// # Errors
-    /// The errors of [`read`](Self::read), [`Error::OtherVersion`] for other values, [`Error::Damaged`] for genomes of another
+    /// The errors of [`read`](Self::read), [`Error::File`] for other values, [`Error::File`] for genomes of another
     /// experiment or before the first generation.
     pub(crate) fn read_checked(
         plan: &Plan<'_>,

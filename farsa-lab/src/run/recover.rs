@@ -38,7 +38,7 @@ pub(crate) struct RunFiles {
 /// Makes all files of a run agree with its checkpoint and opens those that grow.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] for a record from which the champions or the lineage cannot be rebuilt.
+/// [`Error::Io`], and [`Error::File`] for a record from which the champions or the lineage cannot be rebuilt.
 pub(crate) fn recover(
     plan: &Plan<'_>,
     directory: &Directory,

@@ -85,7 +85,7 @@ impl Worker<'_, '_> {
                 Ok(Ok(_)) => {}
                 Ok(Err(Unfinished::Stopped)) => break Status::Stop,
                 Ok(Err(Unfinished::Error(error))) => break Status::failed(&error),
-                Err(why) => break Status::failed(&Error::Panicked { generation, why }),
+                Err(why) => break Status::failed(&Error::strategy_panicked(generation, &why)),
             }
         };
         shut_down(&pool, &status)

@@ -39,7 +39,7 @@ impl Mark {
 /// Reads a file of a run up to a mark, even while another process appends to it.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] for content that does not match the mark.
+/// [`Error::Io`], and [`Error::File`] for content that does not match the mark.
 pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error> {
     let mut content = read_regular(path, limit)?;
     let (found, expected) = (content.len() as u64, mark.bytes);
@@ -105,7 +105,7 @@ impl AppendLog {
     /// Refuses a file that another program has removed, replaced, cut or extended.
     ///
     /// # Errors
-    /// [`Error::Damaged`].
+    /// [`Error::File`].
     pub(crate) fn check(&self) -> Result<(), Error> {
         let changed = |what: &str| {
             let why = format!("was {what} during the run; `run --resume` continues from what was saved");

@@ -12,7 +12,7 @@ use crate::error::Error;
 /// Reads a file named by the user: a regular file, a pipe or a device. It has to end within the limit [bytes].
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] above the limit.
+/// [`Error::Io`], and [`Error::File`] above the limit.
 pub(crate) fn read_stream(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     let file = File::open(path).map_err(Error::io("read", path))?;
     let metadata = file.metadata().map_err(Error::io("read", path))?;
@@ -26,7 +26,7 @@ pub(crate) fn read_stream(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
 /// Reads a file named by the user as text.
 ///
 /// # Errors
-/// As [`read_stream`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
+/// As [`read_stream`], and [`Error::File`] with the line of the first byte that is not UTF-8.
 pub(crate) fn read_stream_text(path: &Path, limit: u64) -> Result<String, Error> {
     to_text(path, read_stream(path, limit)?)
 }
@@ -34,7 +34,7 @@ pub(crate) fn read_stream_text(path: &Path, limit: u64) -> Result<String, Error>
 /// Reads a file of a run directory, which has to be a regular file or a link to one.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] above the limit or for a pipe, a device or a directory.
+/// [`Error::Io`], and [`Error::File`] above the limit or for a pipe, a device or a directory.
 pub(crate) fn read_regular(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     let regular = |metadata: Metadata| {
         if metadata.is_file() { Ok(metadata) } else { Err(Error::damaged(path, "is not a regular file")) }
@@ -60,7 +60,7 @@ pub(crate) fn read_regular_if_present(path: &Path, limit: u64) -> Result<Option<
 /// Reads a file of a run directory as text.
 ///
 /// # Errors
-/// As [`read_regular`], and [`Error::Damaged`] with the line of the first byte that is not UTF-8.
+/// As [`read_regular`], and [`Error::File`] with the line of the first byte that is not UTF-8.
 pub(crate) fn read_regular_text(path: &Path, limit: u64) -> Result<String, Error> {
     to_text(path, read_regular(path, limit)?)
 }
@@ -70,7 +70,7 @@ pub(crate) fn read_regular_text(path: &Path, limit: u64) -> Result<String, Error
 /// The file has to be regular, or a link to a regular file, because each thread and each command on the run reads it again.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] above the limit, for a pipe, a device or a directory, and with the line of the first byte
+/// [`Error::Io`], and [`Error::File`] above the limit, for a pipe, a device or a directory, and with the line of the first byte
 /// that is not UTF-8.
 pub fn read_text_file(path: &Path, limit: u64) -> Result<String, Error> {
     read_regular_text(path, limit)

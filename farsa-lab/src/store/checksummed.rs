@@ -73,7 +73,7 @@ pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
 /// Reads a checksummed file.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] for a changed file.
+/// [`Error::Io`], and [`Error::File`] for a changed file.
 pub(crate) fn read<T: Checksummed>(path: &Path) -> Result<T, Error> {
     let bytes = read_regular(path, T::MAX_BYTES)?;
     open(&bytes).map_err(|why| Error::damaged(path, why))

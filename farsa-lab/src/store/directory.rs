@@ -33,11 +33,11 @@ impl Directory {
     /// The files are written to a temporary directory, which is then renamed. Existing files are never touched.
     ///
     /// # Errors
-    /// [`Error::Occupied`] for an existing file or a directory that is not empty, and [`Error::Io`].
+    /// [`Error::File`] for an existing file or a directory that is not empty, and [`Error::Io`].
     pub(crate) fn create(path: &Path, fill: impl FnOnce(&Self) -> Result<(), Error>) -> Result<Self, Error> {
         vacant(path)?;
         if path.file_name().is_none() {
-            return Err(occupied(path, "cannot be the directory of a run"));
+            return Err(Error::occupied(path, "cannot be the directory of a run"));
         }
         let parent = temporary_file::parent(path);
         fs::create_dir_all(parent).map_err(Error::io("make", parent))?;
@@ -63,7 +63,7 @@ impl Directory {
     /// directories are not moved.
     ///
     /// # Errors
-    /// [`Error::Occupied`] for a run claimed by another process, and [`Error::Io`].
+    /// [`Error::File`] for a run claimed by another process, and [`Error::Io`].
     pub(crate) fn move_aside(path: &Path) -> Result<Option<PathBuf>, Error> {
         let Some(name) = path.file_name().filter(|_| path.join("config.toml").is_file()) else { return Ok(None) };
         let _lock = Lock::of_run(path)?;
@@ -90,7 +90,7 @@ impl Directory {
     /// Opens the directory of an existing run.
     ///
     /// # Errors
-    /// [`Error::NoRun`].
+    /// [`Error::File`].
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         let directory = Self::at(path.into());
         let why = if !path.is_dir() {
@@ -100,7 +100,7 @@ impl Directory {
         } else {
             return Ok(directory);
         };
-        Err(Error::NoRun { directory: path.into(), why: why.into() })
+        Err(Error::no_run(path, why))
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -168,25 +168,21 @@ impl Directory {
     }
 }
 
-fn occupied(path: &Path, why: &str) -> Error {
-    Error::Occupied { directory: path.into(), why: why.into() }
-}
-
 /// Checks that a run can be created: there is no file, or an empty directory.
 ///
 /// # Errors
-/// [`Error::Occupied`], [`Error::Io`].
+/// [`Error::File`], [`Error::Io`].
 pub(crate) fn vacant(path: &Path) -> Result<(), Error> {
     match fs::read_dir(path).map(|mut entries| entries.next().is_none()) {
         Ok(true) => Ok(()),
-        Ok(false) if path.join("config.toml").is_file() => Err(occupied(
+        Ok(false) if path.join("config.toml").is_file() => Err(Error::occupied(
             path,
             "already holds a run: go on with `run --resume`, give another directory with --out, or move \
                  it aside with --force",
         )),
-        Ok(false) => Err(occupied(path, "already holds other files: give another directory with --out")),
+        Ok(false) => Err(Error::occupied(path, "already holds other files: give another directory with --out")),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(occupied(path, "is not a directory")),
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(Error::occupied(path, "is not a directory")),
         Err(source) => Err(Error::Io { doing: "read", path: path.into(), source }),
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
+use crate::error::{Error, FileFault};
 use crate::experiment::settings::Value;
 
 /// The version of the values of this library. It grows whenever a change in the crates below experiments changes trials for the
@@ -48,10 +48,13 @@ impl Identity {
         match differing.next().or_else(|| settings.next()) {
             None => Ok(()),
             Some((key, run, asked)) if key.starts_with(FILE) => {
-                let (path, directory) = (key[FILE.len()..].into(), directory.into());
-                Err(Error::OtherFile { path, directory, run: run.replace('"', ""), found: asked.replace('"', "") })
+                let [run, actual] = [run, asked].map(|checksum| checksum.replace('"', ""));
+                let directory = directory.display();
+                let why =
+                    format!("is another file than the run in {directory} was made with (CRC-32 {actual}, not {run})");
+                Err(Error::damaged(key[FILE.len()..].as_ref(), why))
             }
-            Some((key, run, asked)) => Err(Error::OtherConfiguration { directory: directory.into(), key, run, asked }),
+            Some((key, run, asked)) => Err(Error::other_configuration(directory, &key, &run, &asked)),
         }
     }
 
@@ -68,7 +71,13 @@ impl Identity {
         ];
         match versions.into_iter().find(|(_, file, program)| file != program) {
             None => Ok(()),
-            Some((what, file, program)) => Err(Error::OtherVersion { path: path.into(), what, file, program }),
+            Some((what, file, program)) => {
+                let why = format!(
+                    "made with version {file} of {what}, this program has version {program}: \
+                     the same genes would give other results"
+                );
+                Err(Error::File { path: path.into(), why, fault: FileFault::OtherVersion })
+            }
         }
     }
 }

@@ -58,7 +58,7 @@ impl Lineage {
     /// Synchronizes the file with the disk and returns its mark.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::File`] when another program has removed, replaced or changed the file.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
         self.0.check()?;
         self.0.sync()

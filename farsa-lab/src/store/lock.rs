@@ -26,12 +26,10 @@ impl Lock {
     /// Locks a run.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when another process has locked it, and [`Error::Io`].
+    /// [`Error::File`] when another process has locked it, and [`Error::Io`].
     pub(crate) fn of_run(directory: &Path) -> Result<Self, Error> {
-        Self::of_free_run(directory)?.ok_or_else(|| {
-            let why = "another process is at this run right now".into();
-            Error::Occupied { directory: directory.into(), why }
-        })
+        Self::of_free_run(directory)?
+            .ok_or_else(|| Error::occupied(directory, "another process is at this run right now"))
     }
 
     /// Locks a run, or returns `None` when another process has locked it.
@@ -51,7 +49,7 @@ impl Lock {
     /// Waits for the lock of a run's tests.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when another process holds it for more than ten seconds, and [`Error::Io`].
+    /// [`Error::File`] when another process holds it for more than ten seconds, and [`Error::Io`].
     pub(crate) fn of_tests(directory: &Path) -> Result<Self, Error> {
         let path = directory.join(TEST_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
@@ -62,8 +60,7 @@ impl Lock {
                 Err(TryLockError::Error(source)) => return Err(Error::Io { doing: "lock", path, source }),
             }
         }
-        let why = "another process has been writing a test here for ten seconds".into();
-        Err(Error::Occupied { directory: directory.into(), why })
+        Err(Error::occupied(directory, "another process has been writing a test here for ten seconds"))
     }
 }
 

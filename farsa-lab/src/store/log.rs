@@ -83,7 +83,7 @@ impl Log {
     /// Appends a generation.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] when another program has removed, replaced or changed the file.
+    /// [`Error::Io`], and [`Error::File`] when another program has removed, replaced or changed the file.
     pub(crate) fn append(&mut self, line: &Line) -> Result<(), Error> {
         self.file.check()?;
         self.file.append(line.text(self.generations).as_bytes())?;

@@ -88,7 +88,7 @@ impl Manifest {
     /// Reads the file.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Damaged`] for another format.
+    /// [`Error::Io`], and [`Error::File`] for another format.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         Self::from_text(path, &read_regular_text(path, MAX_BYTES)?)
     }

@@ -98,7 +98,7 @@ impl<'h> History<'h> {
     /// Visits the genomes of finished generations, given in rising order. `visit` receives the index in that order.
     ///
     /// # Errors
-    /// [`Error::Damaged`] for a generation that is not finished, and when the record is not one of this strategy.
+    /// [`Error::File`] for a generation that is not finished, and when the record is not one of this strategy.
     pub(crate) fn visit(
         &self,
         generations: impl IntoIterator<Item = u32>,

@@ -43,7 +43,7 @@ pub fn strategies() -> &'static [&'static dyn StrategyDefinition] {
 /// The strategy of a name.
 ///
 /// # Errors
-/// [`Error::Unknown`] with the nearest name.
+/// [`Error::Setting`] with the nearest name.
 pub(crate) fn find(
     strategies: &[&'static dyn StrategyDefinition],
     name: &str,

@@ -83,7 +83,7 @@ impl<'f, 'e> Points<'f, 'e> {
     pub(crate) fn located(&self, point: usize, error: Error) -> Error {
         let whole = format!("{}: point {} ({})", self.file.base.name, point + 1, self.name(point));
         match error {
-            Error::Setting { place, key, why } if place.is_empty() => {
+            Error::Setting { place, key, why } if place.is_empty() && !key.is_empty() => {
                 let own = self.values(point).find(|(name, _)| name.value == key);
                 let place = own.map_or(whole, |(_, entry)| entry.place.clone());
                 Error::Setting { place, key, why }

@@ -28,7 +28,7 @@ impl GenotypeVariant {
     /// Returns the plan of an experiment under this condition with these settings and tables.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Setting`], and [`Error::Usage`] for tables without a setting of the experiment.
+    /// [`Error::Setting`] and [`Error::Setting`], and [`Error::Usage`] for tables without a setting of the experiment.
     pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
         let mut plan = self.variant.plan(experiment)?;
         if let Some(directory) = &self.ir_tables {

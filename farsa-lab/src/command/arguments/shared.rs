@@ -28,7 +28,7 @@ impl VariantArgs {
     /// Returns the plan of an experiment under this condition with these settings.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Setting`].
+    /// [`Error::Setting`] and [`Error::Setting`].
     pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
         let mut plan = Plan::new(experiment, self.condition.as_deref(), "")?;
         self.apply(&mut plan)?;
@@ -38,7 +38,7 @@ impl VariantArgs {
     /// Changes the settings of a plan.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Setting`].
+    /// [`Error::Setting`] and [`Error::Setting`].
     pub(crate) fn apply(&self, plan: &mut Plan<'_>) -> Result<(), Error> {
         self.set.iter().try_for_each(|(key, value)| plan.settings.set("--set", key, value.clone()))
     }

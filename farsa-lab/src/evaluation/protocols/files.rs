@@ -45,7 +45,7 @@ fn places(directory: &Directory, name: &str) -> [PathBuf; 2] {
 /// Reads the table and record of a protocol, see [`recorded::read`].
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::Damaged`].
+/// [`Error::Io`], [`Error::File`].
 pub(crate) fn read(
     directory: &Directory,
     name: &str,
@@ -64,7 +64,7 @@ pub(crate) fn read(
 /// Makes sure that the folder of the files is there, and is one.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Damaged`] if the name is taken by something else.
+/// [`Error::Io`], and [`Error::File`] if the name is taken by something else.
 pub(crate) fn make_folder(directory: &Directory) -> Result<(), Error> {
     let folder = directory.protocols();
     match fs::create_dir(&folder) {

@@ -122,7 +122,7 @@ impl States {
     /// Reads the states of a protocol with the record of their test.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Damaged`].
+    /// [`Error::Io`], [`Error::File`].
     pub(crate) fn read(directory: &Directory, name: &str) -> Result<Option<(Self, Option<ProtocolRecord>)>, Error> {
         let [table, record] = places(directory, name);
         let Some((text, found)) = recorded::read(&table, &record)? else { return Ok(None) };

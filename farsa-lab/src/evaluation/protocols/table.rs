@@ -32,7 +32,7 @@ impl ProtocolTable {
     /// Parses the text of the file at `path`.
     ///
     /// # Errors
-    /// [`Error::Damaged`] when it is not the table of a protocol.
+    /// [`Error::File`] when it is not the table of a protocol.
     pub(crate) fn from_text(path: &Path, text: &str) -> Result<Self, Error> {
         Self::parse(text).map_err(|why| Error::damaged(path, why))
     }
@@ -80,7 +80,7 @@ impl ProtocolTable {
     /// The content of the file, which is to be written to `path`.
     ///
     /// # Errors
-    /// [`Error::Damaged`], should the writer refuse.
+    /// [`Error::File`], should the writer refuse.
     pub(crate) fn csv(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let written = self.cases.iter().enumerate().try_for_each(|(number, (case, table))| {

@@ -263,11 +263,11 @@ fn damaged_results_are_refused_and_those_without_a_record_are_read() {
     fs::write(&csv, good.replace("7,true", "8,true")).unwrap();
     assert!(files::read(&directory, "words").unwrap().unwrap().1.is_none());
     fs::write(&csv, &good[..good.len() / 2]).unwrap();
-    assert!(matches!(files::read(&directory, "words"), Err(Error::Damaged { .. })));
+    assert!(matches!(files::read(&directory, "words"), Err(Error::File { .. })));
     fs::write(&csv, &good).unwrap();
     for bad in ["{", "{\"protocol\":1}", &said.replace("\"words\"", "\"other\"")] {
         fs::write(&json, bad).unwrap();
-        assert!(matches!(files::read(&directory, "words"), Err(Error::Damaged { .. })), "{bad}");
+        assert!(matches!(files::read(&directory, "words"), Err(Error::File { .. })), "{bad}");
     }
     fs::remove_file(&json).unwrap();
     assert!(files::read(&directory, "words").unwrap().unwrap().1.is_none());
@@ -301,7 +301,7 @@ fn the_states_of_the_first_trials_are_recorded_case_by_case() {
     let table = root.join("protocols/words.states.csv");
     let text = fs::read_to_string(&table).unwrap();
     fs::write(&table, text.replace("0,0,", "zero,0,")).unwrap();
-    assert!(matches!(States::read(&directory, "words"), Err(Error::Damaged { .. })));
+    assert!(matches!(States::read(&directory, "words"), Err(Error::File { .. })));
     fs::remove_dir_all(root).unwrap();
 }
 
