@@ -312,27 +312,27 @@ mod tests {
 
     #[test]
     fn few_names_of_which_none_is_near_are_listed() {
-        let said = |name: &str, valid: &[&str]| Error::unknown("", "key", name, valid.iter().copied()).to_string();
+        let message = |name: &str, valid: &[&str]| Error::unknown("", "key", name, valid.iter().copied()).to_string();
         let keys = ["fixed", "kind", "neurons", "kind"];
-        assert_eq!(said("hidden", &keys), "unknown key `hidden`; there are `fixed`, `kind` and `neurons`");
-        assert_eq!(said("hidden", &["kind"]), "unknown key `hidden`; the only one is `kind`");
-        assert_eq!(said("hidden", &[]), "unknown key `hidden`; there is none");
-        assert_eq!(said("neuron", &keys), "unknown key `neuron`; the nearest is `neurons`");
+        assert_eq!(message("hidden", &keys), "unknown key `hidden`; there are `fixed`, `kind` and `neurons`");
+        assert_eq!(message("hidden", &["kind"]), "unknown key `hidden`; the only one is `kind`");
+        assert_eq!(message("hidden", &[]), "unknown key `hidden`; there is none");
+        assert_eq!(message("neuron", &keys), "unknown key `neuron`; the nearest is `neurons`");
         // A name that contains the other, or is contained, is near.
-        assert_eq!(said("neu", &keys), "unknown key `neu`; the nearest is `neurons`");
-        assert_eq!(said("network.kind", &keys), "unknown key `network.kind`; the nearest is `kind`");
+        assert_eq!(message("neu", &keys), "unknown key `neu`; the nearest is `neurons`");
+        assert_eq!(message("network.kind", &keys), "unknown key `network.kind`; the nearest is `kind`");
         let letters: Vec<String> = ('a'..='z').map(|letter| letter.to_string()).collect();
         let valid: Vec<&str> = letters.iter().map(String::as_str).collect();
-        assert_eq!(said("ö", &valid[..2]), "unknown key `ö`; there are `a` and `b`");
-        assert!(said("ö", &valid[..12]).ends_with(", `k` and `l`"));
-        assert_eq!(said("ö", &valid[..13]), "unknown key `ö`; the nearest is `a`");
+        assert_eq!(message("ö", &valid[..2]), "unknown key `ö`; there are `a` and `b`");
+        assert!(message("ö", &valid[..12]).ends_with(", `k` and `l`"));
+        assert_eq!(message("ö", &valid[..13]), "unknown key `ö`; the nearest is `a`");
     }
 
     #[test]
     fn several_errors_stand_in_their_order() {
-        let one = || Error::setting("a", "is wrong");
-        assert_eq!(Error::several(vec![one()]).to_string(), "`a`: is wrong");
-        let both = Error::several(vec![one(), Error::Other("b".into())]);
+        let wrong = || Error::setting("a", "is wrong");
+        assert_eq!(Error::several(vec![wrong()]).to_string(), "`a`: is wrong");
+        let both = Error::several(vec![wrong(), Error::Other("b".into())]);
         assert_eq!((both.to_string().as_str(), both.exit_code()), ("`a`: is wrong; b", 2));
     }
 

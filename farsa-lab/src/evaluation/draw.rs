@@ -93,12 +93,12 @@ pub(crate) fn draw(
     refuse_existing(path)?;
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
-    let mut kept = MemoryUse::new();
-    let mut recording = kept.recording(replayable.schema());
+    let mut memory = MemoryUse::new();
+    let mut recording = memory.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
     // A trial that does not fit in memory still has moments before its end.
     if wish.frames.is_some() || !has_moment(&recording, wish.time) {
-        kept.add(&recording)?;
+        memory.add(&recording)?;
     }
     let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
     let ticks = match wish.frames {
@@ -118,8 +118,8 @@ pub(crate) fn draw(
     let bytes = match (wish.frames, format) {
         (Some(_), _) => {
             caption = format!("{caption} to {last:.2} s, {frames} pictures");
-            let each = 1000.0 * (last - seconds) / (frames.max(2) - 1) as f64;
-            Picture::animated_png(&pictures, camera, [width, height], each.round().clamp(10.0, 60_000.0) as u16)?
+            let milliseconds = 1000.0 * (last - seconds) / (frames.max(2) - 1) as f64;
+            Picture::animated_png(&pictures, camera, [width, height], milliseconds.round().clamp(10.0, 60_000.0) as u16)?
         }
         (None, Format::Png) => pictures[0].png(camera, [width, height])?,
         (None, Format::Svg) => {

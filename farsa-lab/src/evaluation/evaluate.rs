@@ -66,11 +66,11 @@ struct PopulationResult {
 impl PopulationResult {
     /// Summarizes population number `own` over the finished trials. The success rate is relative to all trials.
     fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize) -> Self {
-        let of = |results: &TrialResult| match own.checked_sub(1) {
+        let result_of = |results: &TrialResult| match own.checked_sub(1) {
             None => Some((results.fitness, results.outcome.success)),
             Some(other) => results.others.get(other).copied(),
         };
-        let earned: Vec<(f64, bool)> = finished.iter().filter_map(|results| of(results)).collect();
+        let earned: Vec<(f64, bool)> = finished.iter().filter_map(|results| result_of(results)).collect();
         let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
         let successes = earned.iter().filter(|(_, success)| *success).count();
         let success_rate = successes as f64 / all.max(1) as f64;
@@ -86,8 +86,8 @@ impl Evaluation {
         let finished: Vec<&TrialResult> = results.iter().filter(finite).collect();
         let broken_down = results.len() - finished.len();
         let mut notes: Vec<(String, f64)> = Vec::new();
-        let known = finished.first().map_or(&[][..], |results| &results.outcome.notes);
-        for (name, _) in known.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
+        let first_notes = finished.first().map_or(&[][..], |results| &results.outcome.notes);
+        for (name, _) in first_notes.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
             let values = finished.iter().filter_map(|results| {
                 let (_, note) = results.outcome.notes.iter().find(|(other, _)| other == name)?;
                 if let Note::Number(x) = note { Some(*x) } else { None }
@@ -100,16 +100,16 @@ impl Evaluation {
         let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
         let mut lines: Vec<(String, String)> = Vec::new();
         let mut add = |name: &str, x: f64| lines.push((name.into(), format!("{x:?}")));
-        for each in &earned {
-            let of = if alone.is_some() { String::new() } else { format!("{}_", word(&each.population)) };
-            add(&format!("{of}mean_fitness"), each.mean_fitness);
-            add(&format!("{of}standard_error"), each.standard_error);
+        for result in &earned {
+            let prefix = if alone.is_some() { String::new() } else { format!("{}_", word(&result.population)) };
+            add(&format!("{prefix}mean_fitness"), result.mean_fitness);
+            add(&format!("{prefix}standard_error"), result.standard_error);
             if alone.is_some() {
                 for (name, x) in &notes {
                     add(name, *x);
                 }
             }
-            add(&format!("{of}success_rate"), each.success_rate);
+            add(&format!("{prefix}success_rate"), result.success_rate);
         }
         if alone.is_none() {
             for (name, x) in &notes {
@@ -198,8 +198,8 @@ fn genes(asked: &GeneArguments, experiment: &str, names: &[String], shape: Shape
     let mut given = Vec::new();
     for list in &asked.lists {
         let (population, list) = populations.split("--genes", list)?;
-        let of = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
-        let genes = shape.genome(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
+        let prefix = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
+        let genes = shape.genome(list).map_err(|error| Error::Usage(format!("--genes: {prefix}{error}")))?;
         given.push((population, genes));
     }
     for (number, path) in asked.files.iter().enumerate() {

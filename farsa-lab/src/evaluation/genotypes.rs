@@ -102,7 +102,7 @@ impl Shape {
 
     /// The genotypes of a `.gen` file of the original: each has lines that name it, then a gene on each line, then `END`.
     pub(crate) fn original(self, text: &str) -> Result<Vec<Vec<u16>>, GenotypeError> {
-        let mut all = Vec::new();
+        let mut genotypes = Vec::new();
         let mut genes: Vec<u16> = Vec::new();
         // First line of the current genotype.
         let mut begun = None;
@@ -115,7 +115,7 @@ impl Shape {
             last = line;
             let first = *begun.get_or_insert(line);
             if text == "END" {
-                all.push(self.count(Some(first), std::mem::take(&mut genes))?);
+                genotypes.push(self.count(Some(first), std::mem::take(&mut genes))?);
                 begun = None;
             } else if !genes.is_empty() || !is_title(text) {
                 genes.push(self.gene(Some(line), genes.len(), text)?);
@@ -123,8 +123,8 @@ impl Shape {
         }
         match begun {
             Some(_) => Err(GenotypeError::Truncated { line: last, genes: genes.len() }),
-            None if all.is_empty() => Err(GenotypeError::Nothing),
-            None => Ok(all),
+            None if genotypes.is_empty() => Err(GenotypeError::Nothing),
+            None => Ok(genotypes),
         }
     }
 

@@ -39,9 +39,9 @@ impl Summary {
         let Self { genotypes, genes, populations, .. } = self;
         let (directory, files) = (OneLine(&self.directory), OneLine(self.files.join(", ")));
         if !populations.is_empty() {
-            let of = populations.join(" and of ");
+            let names = populations.join(" and of ");
             return format!(
-                "{directory}: {genotypes} of {of}, of {genes} genes each, from {files}; the first are the champions"
+                "{directory}: {genotypes} of {names}, of {genes} genes each, from {files}; the first are the champions"
             );
         }
         let (what, champion) = match genotypes {
@@ -116,18 +116,18 @@ pub(crate) fn import(
 fn genomes(paths: &[PathBuf], experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<Vec<u16>>>, Error> {
     let populations = Populations { experiment, names };
     let given = paths.iter().map(|path| populations.file("FILE", path)).collect::<Result<_, _>>()?;
-    let mut all = Vec::new();
+    let mut groups = Vec::new();
     for files in populations.divide("FILE", given)? {
         let mut genomes = Vec::new();
         for path in files {
             genomes.extend(shape.read(&path)?);
         }
-        all.push(genomes);
+        groups.push(genomes);
     }
-    let sizes = || names.iter().zip(&all).map(|(name, genomes)| format!("{} of {name}", genomes.len()));
-    if all.windows(2).any(|pair| pair[0].len() != pair[1].len()) {
+    let sizes = || names.iter().zip(&groups).map(|(name, genomes)| format!("{} of {name}", genomes.len()));
+    if groups.windows(2).any(|pair| pair[0].len() != pair[1].len()) {
         let sizes = sizes().collect::<Vec<_>>().join(" and ");
         return Err(Error::Usage(format!("{experiment}: {sizes}: as many genotypes of each population are wanted")));
     }
-    Ok(all)
+    Ok(groups)
 }

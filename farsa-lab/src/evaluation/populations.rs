@@ -62,7 +62,7 @@ impl Populations<'_> {
         let names = self.names;
         let count = names.len();
         let named = given.iter().filter(|(population, _)| population.is_some()).count();
-        let mut all: Vec<Vec<T>> = names.iter().map(|_| Vec::new()).collect();
+        let mut groups: Vec<Vec<T>> = names.iter().map(|_| Vec::new()).collect();
         if named != 0 && named != given.len() {
             return Err(Error::Usage(format!(
                 "{option}: {}: name it everywhere or nowhere, as in {}",
@@ -71,21 +71,21 @@ impl Populations<'_> {
             )));
         }
         if named == 0 && count > 1 && given.len() != count {
-            let found = given.len();
+            let count = given.len();
             let example = self.example();
             return Err(Error::Usage(format!(
-                "{option}: {found} given: {}; one for each in this order, or {example}",
+                "{option}: {count} given: {}; one for each in this order, or {example}",
                 self.several()
             )));
         }
         for (place, (population, value)) in given.into_iter().enumerate() {
-            all[population.unwrap_or(if count > 1 { place } else { 0 })].push(value);
+            groups[population.unwrap_or(if count > 1 { place } else { 0 })].push(value);
         }
-        if let Some(without) = all.iter().position(Vec::is_empty) {
+        if let Some(without) = groups.iter().position(Vec::is_empty) {
             let name = &names[without];
             return Err(Error::Usage(format!("{option}: none for population `{name}`: {name}=...")));
         }
-        Ok(all)
+        Ok(groups)
     }
 
     /// Each population's name in front of what is given for it.
@@ -123,12 +123,12 @@ mod tests {
     fn who_is_left_without_is_named() {
         let names = names();
         let two = Populations { experiment: "hunt", names: &names };
-        let said = |given: Vec<Assigned<u8>>| two.divide("--genes", given).unwrap_err().to_string();
+        let message = |given: Vec<Assigned<u8>>| two.divide("--genes", given).unwrap_err().to_string();
         let order = "--genes: 1 given: hunt has 2 populations, predator and prey; one for each in this order, or \
                      predator=... prey=...";
-        assert_eq!(said(vec![(None, 1)]), order);
-        assert_eq!(said(vec![(Some(0), 1)]), "--genes: none for population `prey`: prey=...");
-        assert!(said(vec![(Some(0), 1), (None, 1)]).contains("name it everywhere or nowhere"));
-        assert!(said(vec![(None, 1); 3]).starts_with("--genes: 3 given: "));
+        assert_eq!(message(vec![(None, 1)]), order);
+        assert_eq!(message(vec![(Some(0), 1)]), "--genes: none for population `prey`: prey=...");
+        assert!(message(vec![(Some(0), 1), (None, 1)]).contains("name it everywhere or nowhere"));
+        assert!(message(vec![(None, 1); 3]).starts_with("--genes: 3 given: "));
     }
 }

@@ -37,13 +37,13 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
     }
     for attempt in 1..=ATTEMPTS {
         let text = read_regular_text(table, LARGEST[0])?;
-        let found: Option<R> = if record.is_file() {
+        let stored: Option<R> = if record.is_file() {
             let text = read_regular_text(record, LARGEST[1])?;
             Some(serde_json::from_str(&text).map_err(|error| Error::damaged(record, error))?)
         } else {
             None
         };
-        let own = found.filter(|record| record.table_crc() == crc32(text.as_bytes()));
+        let own = stored.filter(|record| record.table_crc() == crc32(text.as_bytes()));
         if own.is_some() || attempt == ATTEMPTS || !record.is_file() {
             return Ok(Some((text, own)));
         }

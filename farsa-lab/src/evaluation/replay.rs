@@ -85,10 +85,10 @@ impl<'p> LocatedIndividual<'p> {
             )));
         };
         let individual = which.individual.unwrap_or(best as u32);
-        let all = history.populations() * history.size();
-        if individual as usize >= all {
+        let individuals = history.populations() * history.size();
+        if individual as usize >= individuals {
             return Err(Error::Usage(format!(
-                "generation {generation}: individual {individual} of a population of {all}"
+                "generation {generation}: individual {individual} of a population of {individuals}"
             )));
         }
         Ok(Self { history, path, generation, individual })
@@ -126,13 +126,13 @@ impl Replayable {
     /// # Errors
     /// As for [`find`](Self::find).
     pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Self>, Error> {
-        let mut found = LocatedIndividual::new(plan, directory, Selection::default())?;
+        let mut located = LocatedIndividual::new(plan, directory, Selection::default())?;
         let populations = 0..found.history.populations();
-        let best = populations.filter_map(|population| found.history.champion(population, found.generation));
+        let best = populations.filter_map(|population| located.history.champion(population, located.generation));
         let best: Vec<usize> = best.collect();
         let rebuilt = |individual: usize| {
-            found.individual = individual as u32;
-            Self::rebuilt(plan, &found, TrialSelector::All)
+            located.individual = individual as u32;
+            Self::rebuilt(plan, &located, TrialSelector::All)
         };
         best.into_iter().map(rebuilt).collect()
     }
@@ -161,7 +161,7 @@ impl Replayable {
         let normalisation = history.normalisation(generation).cloned();
         let seed = plan.seed;
         let intervention = None;
-        let mut found = Self {
+        let mut replayable = Self {
             evaluator,
             parameters,
             opponents,
@@ -173,9 +173,9 @@ impl Replayable {
             trials,
         };
         if trial == TrialSelector::Best {
-            found.keep_best()?;
+            replayable.keep_best()?;
         }
-        Ok(found)
+        Ok(replayable)
     }
 
     /// Keeps the trial that earns most, the first of those that do.
@@ -409,15 +409,15 @@ pub(crate) fn page(
     replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
         let run = run_in_words(plan);
-        let mut kept = MemoryUse::new();
-        let (mut films, outcomes) = films(&mut replayable, &run, &mut kept)?;
+        let mut memory = MemoryUse::new();
+        let (mut films, outcomes) = films(&mut replayable, &run, &mut memory)?;
         films.sort_by(|one, other| other.fitness.total_cmp(&one.fitness));
         let order: Vec<u32> = films.iter().map(|film| film.trial).collect();
         add(page, films);
         let mut summary = replayable.summary(plan, directory, &outcomes);
         if let Some(list) = lesion {
             replayable.change(plan, list)?;
-            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"), &mut kept)?;
+            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"), &mut memory)?;
             // The intact trials.
             changed.sort_by_key(|film| order.iter().position(|trial| *trial == film.trial));
             page.open_beside(page.episodes());

@@ -180,7 +180,7 @@ impl Subject {
         }
         let Champions { identity, generation, best, normalisation } = Champions::read(plan, directory)?;
         let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
-        let parameters = parameters.filter(|all| all.len() == pool.info().populations.len());
+        let parameters = parameters.filter(|rows| rows.len() == pool.info().populations.len());
         let Some(parameters) = parameters else {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         };
@@ -206,16 +206,16 @@ impl Subject {
             if population == own { Some(individual as usize) } else { history.champion(population, generation) }
         };
         let others = || Error::damaged(&path, "its genomes are not those of the experiment");
-        let all: Vec<usize> = (0..history.populations()).map(best).collect::<Option<_>>().ok_or_else(others)?;
-        let wanted: Vec<(u32, usize)> = all.iter().map(|&individual| (generation, individual)).collect();
+        let best: Vec<usize> = (0..history.populations()).map(best).collect::<Option<_>>().ok_or_else(others)?;
+        let wanted: Vec<(u32, usize)> = best.iter().map(|&individual| (generation, individual)).collect();
         let genomes = history.genomes(&wanted)?;
         let parameters: Option<Vec<_>> = genomes.iter().map(|genes| genes.decode(pool.genotype())).collect();
-        let parameters = parameters.filter(|all| all.len() == pool.info().populations.len());
-        let several = all.len() > 1;
+        let parameters = parameters.filter(|rows| rows.len() == pool.info().populations.len());
+        let several = best.len() > 1;
         Ok(Self {
             generation,
-            individual: all.first().map_or(individual, |&first| first as u32),
-            individuals: if several { all.iter().map(|&individual| individual as u32).collect() } else { Vec::new() },
+            individual: best.first().map_or(individual, |&first| first as u32),
+            individuals: if several { best.iter().map(|&individual| individual as u32).collect() } else { Vec::new() },
             warning: None,
             parameters: parameters.ok_or_else(others)?,
             size: if several { size } else { 0 },
@@ -293,13 +293,13 @@ pub(crate) fn run_trials(
             progress.advance();
         }
     };
-    let all = trials.count * trials.cases.len();
-    let outcomes = pool.evaluate(all * count, &AtomicBool::new(false), task, done)?;
+    let evaluations = trials.count * trials.cases.len();
+    let outcomes = pool.evaluate(evaluations * count, &AtomicBool::new(false), task, done)?;
     let fitness = |outcome: &Outcome| {
         let alone = std::slice::from_ref(outcome);
         if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
     };
-    let mut results: Vec<TrialResult> = Vec::with_capacity(all);
+    let mut results: Vec<TrialResult> = Vec::with_capacity(evaluations);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
         let earned = fitness(&outcome);
         if let Some(first) = results.last_mut().filter(|_| !number.is_multiple_of(count)) {

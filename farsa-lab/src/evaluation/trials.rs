@@ -40,10 +40,10 @@ pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String
         };
         ((*name).to_owned(), value)
     });
-    let all = [
+    let summary = [
         ("fitness of the trial alone".to_owned(), readable(fitness)),
         ("success".to_owned(), if outcome.success { "yes" } else { "no" }.to_owned()),
         ("steps".to_owned(), outcome.steps.to_string()),
     ];
-    all.into_iter().chain(terms).chain(notes).collect()
+    summary.into_iter().chain(terms).chain(notes).collect()
 }

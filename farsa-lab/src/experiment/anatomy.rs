@@ -97,8 +97,8 @@ impl Anatomy {
     #[must_use]
     pub fn with_parameter_order(self, count: usize, in_schema_order: impl Fn(&[f32]) -> Vec<f32>) -> Self {
         // Numbers of parameters are exact in single precision: networks are far smaller than 2^24.
-        let own: Vec<f32> = (0..count).map(|number| number as f32).collect();
-        let order = in_schema_order(&own).into_iter().map(|number| number as usize).collect();
+        let numbers: Vec<f32> = (0..count).map(|number| number as f32).collect();
+        let order = in_schema_order(&numbers).into_iter().map(|number| number as usize).collect();
         Self { order: Some(order), ..self }
     }
 
@@ -113,11 +113,11 @@ impl Anatomy {
             PartNames { kind: "output".into(), names: self.outputs.clone() },
             PartNames { kind: "link".into(), names: links },
         ];
-        let own = self.node_parameters.iter().map(|NodeParameters { name, nodes: [first, end], .. }| {
+        let rows = self.node_parameters.iter().map(|NodeParameters { name, nodes: [first, end], .. }| {
             let nodes = self.sensors.iter().chain(&self.neurons).chain(&self.outputs).skip(*first);
             PartNames { kind: name.clone(), names: nodes.take(end.saturating_sub(*first)).cloned().collect() }
         });
-        lists.into_iter().chain(own).filter(|part| !part.names.is_empty()).collect()
+        lists.into_iter().chain(rows).filter(|part| !part.names.is_empty()).collect()
     }
 
     /// Parses a list of changes.
@@ -129,11 +129,11 @@ impl Anatomy {
         if list.len() > LONGEST {
             return Err(Error::Usage(format!("--lesion: a list of {} bytes, at most {LONGEST}", list.len())));
         }
-        let mut all = Intervention::default();
+        let mut sum = Intervention::default();
         for change in list.split(',') {
-            self.add(change.trim(), &mut all)?;
+            self.add(change.trim(), &mut sum)?;
         }
-        Ok(all)
+        Ok(sum)
     }
 
     fn add(&self, change: &str, all: &mut Intervention) -> Result<(), Error> {
@@ -194,9 +194,9 @@ impl Anatomy {
     /// The nodes of a name, numbered through sensors, neurons and outputs: a neuron before others of its name.
     fn nodes(&self, name: &str) -> Option<Range<usize>> {
         let [sensors, neurons] = [self.sensors.len(), self.neurons.len()];
-        let one = |node: usize| node..node + 1;
-        let neuron = || place("neuron", name, &self.neurons).map(|neuron| one(sensors + neuron));
-        let output = || place("output", name, &self.outputs).map(|output| one(sensors + neurons + output));
+        let span = |node: usize| node..node + 1;
+        let neuron = || place("neuron", name, &self.neurons).map(|neuron| span(sensors + neuron));
+        let output = || place("output", name, &self.outputs).map(|output| span(sensors + neurons + output));
         neuron().or_else(|| self.inputs(name).ok()).or_else(output)
     }
 
@@ -204,8 +204,8 @@ impl Anatomy {
     fn links_between(&self, name: &str) -> Result<Vec<usize>, Error> {
         let hyphens = name.match_indices('-').map(|(at, _)| (name[..at].trim(), name[at + 1..].trim()));
         // Names may have hyphens themselves.
-        let mut known = hyphens.clone().filter_map(|(from, to)| Some((self.nodes(from)?, self.nodes(to)?)));
-        let Some((from, to)) = known.next() else {
+        let mut nodes = hyphens.clone().filter_map(|(from, to)| Some((self.nodes(from)?, self.nodes(to)?)));
+        let Some((from, to)) = nodes.next() else {
             let Some((from, to)) = hyphens.clone().next() else {
                 return Err(Error::Usage(format!("--lesion: link:{name} is not of the form link:FROM-TO")));
             };
@@ -223,18 +223,18 @@ impl Anatomy {
     /// The parameter of this kind of a node.
     fn node_parameter(&self, kind: &str, name: &str) -> Result<usize, Error> {
         let kinds = ["neuron", "output", "sensor", "link", "noise"].into_iter();
-        let own = self.node_parameters.iter().map(|parameters| parameters.name.as_str());
+        let names = self.node_parameters.iter().map(|parameters| parameters.name.as_str());
         let mut of_kind = self.node_parameters.iter().filter(|parameters| parameters.name == kind).peekable();
         if of_kind.peek().is_none() {
-            return Err(Error::unknown("--lesion", "kind of change", kind, kinds.chain(own)));
+            return Err(Error::unknown("--lesion", "kind of change", kind, kinds.chain(names)));
         }
         let Some(node) = self.nodes(name) else {
             return Err(Error::unknown("--lesion", "node", name, self.all_nodes()));
         };
         let has = |parameters: &&NodeParameters| (parameters.nodes[0]..parameters.nodes[1]).contains(&node.start);
-        let found = of_kind.find(has).filter(|_| node.len() == 1);
-        let found = found.map(|parameters| parameters.first + node.start - parameters.nodes[0]);
-        found.ok_or_else(|| Error::Usage(format!("--lesion: {} has no {kind}", Quoted(name))))
+        let parameter = of_kind.find(has).filter(|_| node.len() == 1);
+        let parameter = parameter.map(|parameters| parameters.first + node.start - parameters.nodes[0]);
+        parameter.ok_or_else(|| Error::Usage(format!("--lesion: {} has no {kind}", Quoted(name))))
     }
 
     fn all_nodes(&self) -> impl Iterator<Item = &str> {
@@ -255,7 +255,7 @@ fn weights(links: &Links, from: &Range<usize>, to: &Range<usize>) -> Vec<usize> 
 
 /// Where a name is, with or without the word for its kind before it.
 fn place(kind: &str, name: &str, names: &[String]) -> Option<usize> {
-    let at = |name: &str| names.iter().position(|known| known == name);
+    let at = |name: &str| names.iter().position(|other| other == name);
     at(name).or_else(|| at(name.strip_prefix(kind)?.strip_prefix(' ')?))
 }
 
@@ -299,8 +299,8 @@ mod tests {
         assert_eq!(parameters("link: 2 - output 3 "), [(weight(LeakyParameter::OutputWeight, 3), 0.0)]);
         assert_eq!(parameters("link:low-left-2"), [(weight(LeakyParameter::SensorWeight, 7), 0.0)]);
         // All links of a group.
-        let all = [1, 4].map(|at| (weight(LeakyParameter::SensorWeight, at), 0.0));
-        assert_eq!(parameters("link:eyes-2"), all);
+        let weights = [1, 4].map(|at| (weight(LeakyParameter::SensorWeight, at), 0.0));
+        assert_eq!(parameters("link:eyes-2"), weights);
         let [bias, leak] = [LeakyParameter::Bias, LeakyParameter::Leak].map(|kind| weight(kind, 2));
         assert_eq!(parameters("bias:3=-1,leak:neuron 3=1"), [(bias, -1.0), (leak, 1.0)]);
 

@@ -182,8 +182,8 @@ mod tests {
         run_episode(&mut episode, &mut world, EpisodeId::default(), None);
         let forces = [0.0, 0.0, 0.5, 0.5, 0.25, -0.25, 0.0, 0.0, 0.0, 0.0];
         let speed: f64 = forces.iter().map(|force| force / m * h).sum();
-        let found = f64::from(world.velocity(BodyId(0)).linear[0]);
-        assert!((found - speed).abs() < 1e-6 * speed, "{found} and {speed}");
+        let measured = f64::from(world.velocity(BodyId(0)).linear[0]);
+        assert!((measured - speed).abs() < 1e-6 * speed, "{measured} and {speed}");
         let places = &episode.episode.0;
         assert!(places[..3].iter().all(|place| *place == [0.0; 3]) && places[3][0] > 0.0, "{places:?}");
     }

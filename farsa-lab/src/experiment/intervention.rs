@@ -65,13 +65,13 @@ impl Intervention {
         if self.parameters.is_empty() {
             return Cow::Borrowed(parameters);
         }
-        let mut own = parameters.to_vec();
+        let mut edited = parameters.to_vec();
         for (number, value) in &self.parameters {
-            if let Some(parameter) = own.get_mut(*number) {
+            if let Some(parameter) = edited.get_mut(*number) {
                 *parameter = *value;
             }
         }
-        Cow::Owned(own)
+        Cow::Owned(edited)
     }
 }
 

@@ -24,9 +24,9 @@ impl Lanes {
     /// # Errors
     /// [`Error::Usage`] for another number.
     pub fn new(count: usize, instructions: Instructions) -> Result<Self, Error> {
-        let known = [1, LANES[0], LANES[1]];
-        if !known.contains(&count) {
-            let nearest = known.into_iter().min_by_key(|known| known.abs_diff(count)).unwrap_or(1);
+        let counts = [1, LANES[0], LANES[1]];
+        if !counts.contains(&count) {
+            let nearest = counts.into_iter().min_by_key(|candidate| candidate.abs_diff(count)).unwrap_or(1);
             return Err(Error::Usage(format!("{count} lanes; the nearest number is {nearest}")));
         }
         Ok(Self { count, instructions })
@@ -106,12 +106,12 @@ impl LaneRequest {
     /// [`Error::Usage`] for instructions that it lacks.
     pub(crate) fn on_this_machine(self) -> Result<Lanes, Error> {
         let available: Vec<Instructions> = Batch::instructions().collect();
-        let found = match self.simd {
+        let selected = match self.simd {
             None => available.last(),
-            Some(wanted) => available.iter().find(|one| name(**one) == wanted),
+            Some(wanted) => available.iter().find(|instructions| name(**instructions) == wanted),
         };
-        let Some(&instructions) = found else {
-            let names: Vec<&str> = available.iter().map(|one| name(*one)).collect();
+        let Some(&instructions) = selected else {
+            let names: Vec<&str> = available.iter().map(|instructions| name(*instructions)).collect();
             let wanted = self.simd.unwrap_or_default();
             return Err(Error::Usage(format!("--simd {wanted}: this processor has {} only", names.join(", "))));
         };

@@ -132,8 +132,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     pub fn anatomy(&self) -> Anatomy {
         let sensors = groups(&self.schema).into_iter().map(|(group, inputs)| {
             // One that is in no group has its own name.
-            let own = &self.schema.sensors[inputs.start].name;
-            let name = if group.strip_prefix("sensor ") == Some(own) { own } else { &group };
+            let sensor = &self.schema.sensors[inputs.start].name;
+            let name = if group.strip_prefix("sensor ") == Some(sensor) { sensor } else { &group };
             ChannelGroup::new(name, inputs.len(), "")
         });
         Anatomy::new(&self.schema, &Description { sensors: sensors.collect(), ..Description::default() })

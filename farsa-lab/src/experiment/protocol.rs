@@ -158,8 +158,8 @@ impl Protocol {
         }
         let names = || protocols.iter().map(|protocol| protocol.name.as_str());
         let place = format!("experiment `{experiment}`, which has {}", names().collect::<Vec<_>>().join(", "));
-        let found = protocols.iter().position(|protocol| protocol.name == name);
-        found.ok_or_else(|| Error::unknown(&place, "test protocol", name, names()))
+        let number = protocols.iter().position(|protocol| protocol.name == name);
+        number.ok_or_else(|| Error::unknown(&place, "test protocol", name, names()))
     }
 
     /// The number of the case of this name, or of this number from 0 if none has the name.
@@ -171,8 +171,8 @@ impl Protocol {
         let number = || name.parse().ok().filter(|number| *number < names.len());
         let place =
             format!("protocol `{}`, whose cases are numbered 0 to {}", self.name, names.len().saturating_sub(1));
-        let found = names.iter().position(|other| other == name).or_else(number);
-        found.ok_or_else(|| Error::unknown(&place, "case", name, names.iter().map(String::as_str)))
+        let position = names.iter().position(|other| other == name).or_else(number);
+        position.ok_or_else(|| Error::unknown(&place, "case", name, names.iter().map(String::as_str)))
     }
 
     /// Checks the names, cases and trials of all protocols.

@@ -169,8 +169,8 @@ impl Settings {
     /// # Errors
     /// As [`number`](Self::number), and [`Error::Setting`] for another count.
     pub fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], Error> {
-        let found = self.numbers(key)?;
-        found.try_into().map_err(|_| Error::setting(key, format!("{} numbers, not {N}", found.len())))
+        let list = self.numbers(key)?;
+        list.try_into().map_err(|_| Error::setting(key, format!("{} numbers, not {N}", list.len())))
     }
 
     fn other_kind(key: &str, value: &Value, wanted: &str) -> Error {
@@ -278,12 +278,12 @@ mod tests {
             ("evolution.seed", "`--seed`"),
             ("condition", "`--condition`"),
         ] {
-            let said = wrong(key, Value::Whole(1));
-            assert!(said.starts_with(&format!("--set: `{key}`: is no setting")) && said.contains(option), "{said}");
+            let message = wrong(key, Value::Whole(1));
+            assert!(message.starts_with(&format!("--set: `{key}`: is no setting")) && message.contains(option), "{message}");
         }
         assert_eq!(s, settings());
-        let mut own = Settings::new(vec![Setting::whole("world.seed", 1, 1..=9)]).unwrap();
-        own.set("--set", "world.seed", Value::Whole(2)).unwrap();
+        let mut settings = Settings::new(vec![Setting::whole("world.seed", 1, 1..=9)]).unwrap();
+        settings.set("--set", "world.seed", Value::Whole(2)).unwrap();
     }
 
     #[test]

@@ -142,14 +142,14 @@ impl<'h> History<'h> {
         let mut generations: Vec<u32> = wanted.iter().map(|(generation, _)| *generation).collect();
         generations.sort_unstable();
         generations.dedup();
-        let mut found: Vec<Genome> = vec![Genome::Words(Vec::new()); wanted.len()];
+        let mut genomes: Vec<Genome> = vec![Genome::Words(Vec::new()); wanted.len()];
         self.visit(generations, |generation, population| {
-            for (found, (_, individual)) in found.iter_mut().zip(wanted).filter(|(_, (own, _))| *own == generation) {
-                *found = population.get(*individual).ok_or_else(|| self.missing(generation))?;
+            for (genome, (_, individual)) in genomes.iter_mut().zip(wanted).filter(|(_, (own, _))| *own == generation) {
+                *genome = population.get(*individual).ok_or_else(|| self.missing(generation))?;
             }
             Ok(())
         })?;
-        Ok(found)
+        Ok(genomes)
     }
 
     /// The genomes that an individual of a finished generation met in each of some trials, where the strategy chose them.

@@ -49,8 +49,8 @@ pub(crate) fn find(
     name: &str,
     place: &str,
 ) -> Result<&'static dyn StrategyDefinition, Error> {
-    let found = strategies.iter().copied().find(|strategy| strategy.name() == name);
-    found.ok_or_else(|| Error::unknown(place, "strategy", name, strategies.iter().map(|strategy| strategy.name())))
+    let strategy = strategies.iter().copied().find(|strategy| strategy.name() == name);
+    strategy.ok_or_else(|| Error::unknown(place, "strategy", name, strategies.iter().map(|strategy| strategy.name())))
 }
 
 #[cfg(test)]

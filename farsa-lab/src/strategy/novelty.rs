@@ -33,8 +33,8 @@ pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
             archive: ArchiveRule::Random { rate: start.settings.number(RATE)? },
             ..NoveltyConfig::new(ranges.len())
         };
-        let own = config(start.settings, start.genes, start.gene_bits)?;
-        let search = |seed| NoveltySearch::new(novelty, TruncationGa::new(own, seed)?, seed)?.with_units::<u16>(&units);
+        let truncation = config(start.settings, start.genes, start.gene_bits)?;
+        let search = |seed| NoveltySearch::new(novelty, TruncationGa::new(truncation, seed)?, seed)?.with_units::<u16>(&units);
         start.words(search)
     },
     diagnostics: Some(Diagnostics {

@@ -82,22 +82,22 @@ pub(crate) fn opponents_of(
             });
         }
     }
-    let each = (meeting.populations - 1).max(1);
-    Ok(history.genomes(&places)?.chunks(each).map(<[_]>::to_vec).collect())
+    let others = (meeting.populations - 1).max(1);
+    Ok(history.genomes(&places)?.chunks(others).map(<[_]>::to_vec).collect())
 }
 
 /// Returns the parameters of the opponents that a strategy chose, trial after trial, individual after individual.
 /// Returns none if it chooses none, or for genomes of another experiment.
 pub(crate) fn chosen(search: &AnyStrategy, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
-    let mut all = Vec::new();
+    let mut parameters = Vec::new();
     for trial in 0..u32::try_from(trials).ok()? {
         for individual in 0..search.individuals() {
             for genome in search.opponents_of(individual, trial)? {
-                all.push(genome.decode(genotype)?);
+                parameters.push(genome.decode(genotype)?);
             }
         }
     }
-    Some(all)
+    Some(parameters)
 }
 
 /// The champions of every generation. Empty for a single population.
@@ -114,11 +114,11 @@ impl HallOfFame {
         let mut hall = Self::default();
         if populations > 1 {
             history.visit(0..history.finished(), |generation, genomes| {
-                let all = (0..populations).map(|population| {
+                let champions = (0..populations).map(|population| {
                     let best = history.champion(population, generation)?;
                     genomes.get(best)?.decode(genotype)
                 });
-                hall.add(all.collect::<Option<_>>().ok_or_else(|| history.missing(generation))?);
+                hall.add(champions.collect::<Option<_>>().ok_or_else(|| history.missing(generation))?);
                 Ok(())
             })?;
         }
@@ -145,11 +145,11 @@ impl HallOfFame {
     /// Returns the parameters of all opponents, trial after trial, individual after individual. Returns none if an
     /// opponent is missing.
     pub(crate) fn opponents<'g>(&'g self, meeting: Pairing, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
-        let mut all = Vec::new();
+        let mut parameters = Vec::new();
         for trial in 0..u32::try_from(meeting.trials).ok()? {
             for individual in 0..peers.len() {
                 for opponent in meeting.opponents(individual, trial) {
-                    all.push(match opponent {
+                    parameters.push(match opponent {
                         Opponent::Champion { population, generation } => {
                             self.champions.get(generation as usize)?.get(population)?.as_slice()
                         }
@@ -158,7 +158,7 @@ impl HallOfFame {
                 }
             }
         }
-        Some(all)
+        Some(parameters)
     }
 }
 
@@ -202,8 +202,8 @@ mod tests {
         const TRIALS: usize = 3;
         let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
         let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
-        let mut all = Populations::truncation(&[config; 3], 4).unwrap();
-        let mut record = Record::new(&mut all).unwrap();
+        let mut strategy = Coevolution::new(&[config; 3], 4).unwrap();
+        let mut record = Record::new(&mut strategy).unwrap();
         let mut hall = HallOfFame::default();
         let history = |record: &Record| {
             let fresh = move || Ok(AnyStrategy::from_words(Populations::truncation(&[config; 3], 4).unwrap()));
@@ -211,7 +211,7 @@ mod tests {
         };
         for generation in 0..7 {
             let meeting = Pairing { generation, populations: 3, size: 6, trials: TRIALS };
-            let peers = genotype.decode_all(all.ask()).unwrap();
+            let peers = genotype.decode_all(strategy.ask()).unwrap();
             let opponents = hall.opponents(meeting, &peers).unwrap();
             let resumed = HallOfFame::before(&history(&record), &genotype).unwrap();
             assert_eq!(resumed.opponents(meeting, &peers).unwrap(), opponents);
@@ -219,8 +219,8 @@ mod tests {
             let opponents: Vec<Vec<f32>> = opponents.into_iter().map(<[f32]>::to_vec).collect();
             let fitness: Vec<_> =
                 (0..18_u32).map(|i| Fitness::nan_as_failed(f64::from((i * 5 + generation) % 7))).collect();
-            let best = all.champions(&fitness).iter().map(|&best| peers[best].clone()).collect();
-            record.tell(&mut all, &fitness).unwrap();
+            let best = strategy.champions(&fitness).iter().map(|&best| peers[best].clone()).collect();
+            record.tell(&mut strategy, &fitness).unwrap();
             hall.add(best);
             let history = history(&record);
             for individual in 0..18 {

@@ -24,10 +24,10 @@ pub(super) fn next_line(input: &mut impl BufRead, limit: usize) -> io::Result<Op
             Err(error) => return Err(error),
         };
         let end = chunk.iter().position(|byte| *byte == b'\n');
-        let own = &chunk[..end.unwrap_or(chunk.len())];
-        too_long |= line.len() + own.len() > limit;
+        let part = &chunk[..end.unwrap_or(chunk.len())];
+        too_long |= line.len() + part.len() > limit;
         if !too_long {
-            line.extend_from_slice(own);
+            line.extend_from_slice(part);
         }
         let used = end.map_or(chunk.len(), |end| end + 1);
         read |= used > 0;

@@ -53,18 +53,18 @@ impl<'de> Deserialize<'de> for ParameterVectors {
                 vectors(seq).map(ParameterVectors::Unnamed)
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ParameterVectors, A::Error> {
-                let mut all: Vec<(String, Vectors)> = Vec::new();
+                let mut populations: Vec<(String, Vectors)> = Vec::new();
                 while let Some((name, vectors)) = map.next_entry::<String, Vectors>()? {
-                    if all.iter().any(|(other, _)| *other == name) {
+                    if populations.iter().any(|(other, _)| *other == name) {
                         let name = Quoted(&name);
                         return Err(A::Error::custom(format_args!("the population {name} stands twice")));
                     }
-                    if all.len() == MOST_NAMES {
+                    if populations.len() == MOST_NAMES {
                         return Err(A::Error::custom(format_args!("more than {MOST_NAMES} populations")));
                     }
-                    all.push((name, vectors));
+                    populations.push((name, vectors));
                 }
-                Ok(ParameterVectors::Named(all))
+                Ok(ParameterVectors::Named(populations))
             }
         }
         deserializer.deserialize_any(Whole)

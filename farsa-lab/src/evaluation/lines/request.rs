@@ -91,17 +91,17 @@ impl Request {
             return Err(format!("individual: {individual} is above {LARGEST_INDIVIDUAL}"));
         }
         let evaluated = wanted.evaluated(evaluate.as_deref())?;
-        let mut all = Vec::new();
+        let mut rows = Vec::new();
         for (name, vectors) in wanted.populations.iter().zip(wanted.divided(what, given)?) {
-            let of = if wanted.populations.len() > 1 { format!("{what} of {}", Quoted(name)) } else { what.into() };
-            wanted.counted(vectors.len(), individual).map_err(|why| format!("{of}: {why}"))?;
+            let label = if wanted.populations.len() > 1 { format!("{what} of {}", Quoted(name)) } else { what.into() };
+            wanted.counted(vectors.len(), individual).map_err(|why| format!("{label}: {why}"))?;
             let decode = |(number, row): (usize, &[f64])| {
                 let decoded = if what == "genes" { wanted.read_genes(row) } else { wanted.read_parameters(row) };
-                decoded.map_err(|why| format!("{of}: vector {number}: {why}"))
+                decoded.map_err(|why| format!("{label}: vector {number}: {why}"))
             };
-            all.push(vectors.iter().enumerate().map(decode).collect::<Result<_, _>>()?);
+            rows.push(vectors.iter().enumerate().map(decode).collect::<Result<_, _>>()?);
         }
-        Ok(Self { id, seed, generation: generation.unwrap_or(0), individual, parameters: all, evaluated })
+        Ok(Self { id, seed, generation: generation.unwrap_or(0), individual, parameters: rows, evaluated })
     }
 }
 

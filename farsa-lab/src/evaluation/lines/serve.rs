@@ -88,24 +88,24 @@ fn answer<'w>(
         behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
     let shape = ScoreShape::new(1 + objectives, descriptors);
     let trials = pool.info().trials;
-    let mut all: Vec<(&str, Vec<IndividualResult>)> = Vec::new();
+    let mut results: Vec<(&str, Vec<IndividualResult>)> = Vec::new();
     for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {
         let met = opponents(&parameters, own, trials);
         let opponents = Opponents { parameters: &met, each: parameters.len() - 1, told_apart: None };
         let individual = (own * wanted.size) as u32 + individual;
         let id = EpisodeId { seed, generation, individual, trial: 0 };
-        let of = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
-        let found = individuals(&mut pool.until(&AtomicBool::new(false)), of, shape, |_| {})?;
+        let batch = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
+        let judged = individuals(&mut pool.until(&AtomicBool::new(false)), batch, shape, |_| {})?;
         let evaluator = pool.evaluator();
-        all.push((name, found.into_iter().map(|found| IndividualResult::new(found, evaluator)).collect()));
+        results.push((name, judged.into_iter().map(|judged| IndividualResult::new(judged, evaluator)).collect()));
     }
-    let fitness = |judged: &[IndividualResult]| judged.iter().map(|one| one.fitness).collect::<Vec<_>>();
-    let fitness: Vec<_> = all.iter().map(|(name, judged)| (*name, fitness(judged))).collect();
+    let fitness = |judged: &[IndividualResult]| judged.iter().map(|result| result.fitness).collect::<Vec<_>>();
+    let fitness: Vec<_> = results.iter().map(|(name, judged)| (*name, fitness(judged))).collect();
     Ok(Answer {
         line,
         id,
         fitness: by_population(fitness, wanted.populations.len()),
-        individuals: by_population(all, wanted.populations.len()),
+        individuals: by_population(results, wanted.populations.len()),
     })
 }
 

@@ -70,8 +70,8 @@ pub(crate) fn make_folder(directory: &Directory) -> Result<(), Error> {
     match fs::create_dir(&folder) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             // A link would lead to another place.
-            let own = fs::symlink_metadata(&folder).map_err(Error::io("read", &folder))?.is_dir();
-            if own { Ok(()) } else { Err(Error::damaged(&folder, "is not a directory")) }
+            let is_folder = fs::symlink_metadata(&folder).map_err(Error::io("read", &folder))?.is_dir();
+            if is_folder { Ok(()) } else { Err(Error::damaged(&folder, "is not a directory")) }
         }
         made => made.map_err(Error::io("make", &folder)),
     }

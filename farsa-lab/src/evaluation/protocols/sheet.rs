@@ -111,10 +111,10 @@ pub(crate) fn draw(
 fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
     for number in trials.cases.clone() {
-        let mut kept = MemoryUse::new();
-        let mut recording = kept.recording(trials.schema());
+        let mut memory = MemoryUse::new();
+        let mut recording = memory.recording(trials.schema());
         let outcome = trials.run(number, &mut recording)?;
-        kept.add(&recording)?;
+        memory.add(&recording)?;
         let last = recording.times().len().checked_sub(1);
         let picture = last
             .and_then(|tick| recording.picture(tick))
@@ -135,7 +135,7 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
     let rows = cases.len().div_ceil(columns) as u32;
     let beside = columns.min(cases.len()) as u32;
     let wide = (beside * (width + GAP) - GAP).max(TITLE_LETTER * title.chars().count() as u32);
-    let all = [2 * margin + wide, HEAD + rows * (height + LABEL + GAP) + 8];
+    let size = [2 * margin + wide, HEAD + rows * (height + LABEL + GAP) + 8];
     let draw = |number: usize, case: &DrawnCase| -> Markup {
         let [x, y] = [(number % columns) as u32, (number / columns) as u32];
         let [x, y] = [margin + x * (width + GAP), HEAD + LABEL + y * (height + LABEL + GAP)];
@@ -155,8 +155,8 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
         }
     };
     let picture = html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", all[0], all[1])) width=(all[0]) height=(all[1])
-            font-family=(FONT) font-size="16" {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", size[0], size[1])) width=(size[0]) height=(size[1])
+            font-family=(FONT.0) font-size="16" {
             rect width="100%" height="100%" fill=(PAPER) {}
             text x=(margin) y="28" font-size="18" fill=(INK) { (title) }
             @for (number, case) in cases.iter().enumerate() { (draw(number, case)) }

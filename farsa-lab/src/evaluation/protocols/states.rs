@@ -96,7 +96,7 @@ impl States {
             return Err(Error::Other(format!("{why} of {}", schema.neurons.len())));
         };
         let neurons = neurons.iter().map(|neuron| neuron.name.clone()).collect();
-        let mut all = Vec::new();
+        let mut recordings = Vec::new();
         for case in 0..protocol.cases.len().min(MOST_CASES) {
             for trial in 0..trials.min(TRIALS) {
                 let (first, count) = (span.start, span.len());
@@ -105,13 +105,13 @@ impl States {
                 let of_case = CaseTrial { case: CaseId { protocol: number, case }, trial, seed };
                 match of_case.run(evaluator.as_mut(), tested, &mut recorder) {
                     Ok(outcome) => {
-                        all.push(StateTrial { case, trial, success: outcome.success, steps: recorder.kept });
+                        recordings.push(StateTrial { case, trial, success: outcome.success, steps: recorder.kept });
                     }
                     Err(()) => evaluator = plan.evaluator()?,
                 }
             }
         }
-        Ok(Self { neurons, trials: all })
+        Ok(Self { neurons, trials: recordings })
     }
 
     /// The points of all trials.

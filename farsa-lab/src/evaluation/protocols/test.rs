@@ -198,7 +198,7 @@ fn run(
     let (terms, names) = (&pool.info().terms, &pool.info().populations);
     let others = names.get(1..subject.count()).unwrap_or(&[]);
     let table = ProtocolTable::new(&protocol.cases, trials, terms, others, &results);
-    let found = ProtocolRun {
+    let run = ProtocolRun {
         directory: directory.path().display().to_string(),
         generation: subject.generation,
         individual: subject.individual,
@@ -210,5 +210,5 @@ fn run(
         failure: failure(&results, terms),
         protocol,
     };
-    Ok((found, table))
+    Ok((run, table))
 }

@@ -111,8 +111,8 @@ fn over<C: Cells + Clone + 'static>(
     cells: &C,
 ) -> Result<AnyStrategy, Error> {
     // A run is not to find out when most cells have an elite.
-    let one = MapElites::new(config.clone(), cells.clone(), start.seed);
-    let full = one.map_or(0, |search| search.largest_state()).saturating_mul(start.populations);
+    let search = MapElites::new(config.clone(), cells.clone(), start.seed);
+    let full = search.map_or(0, |search| search.largest_state()).saturating_mul(start.populations);
     if full as u64 > MAX_STATE_BYTES {
         let (cells, genes) = (cells.cells(), start.genes);
         return Err(Error::setting(
