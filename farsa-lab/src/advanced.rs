@@ -13,6 +13,7 @@ pub use crate::experiment::{
     OwnedNetwork, PartNames, PlanarWorld, Protocol, Push, Rescored, Rollout, Source, Value, input_ranges, mean_of_note,
     mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
+pub use crate::limits::Limits;
 pub use crate::live::LiveSession;
 pub use crate::ranks::{Alone, Ranks};
 pub use crate::run::{ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, LeftOut, ReadExperiment, Template};

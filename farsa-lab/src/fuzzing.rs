@@ -156,6 +156,7 @@ impl Default for RequestReader {
             genotype: Genotype::new(&parameters, 16),
             size,
             seed: 1,
+            limits: crate::limits::Limits::DEFAULT,
         };
         Self([of(&["only"], 0), of(&["prey", "hunter"], 100)])
     }

@@ -19,7 +19,7 @@ const SIZE_OF_FRAMES: (u32, u32) = (480, 320);
 /// The same for a picture in a report.
 const REPORT_SIZE: [u32; 2] = [600, 400];
 /// Largest width and height.
-const LARGEST: u32 = 8192;
+const MAX_SIDE: u32 = 8192;
 
 /// Format of a picture file.
 #[derive(Clone, Copy)]
@@ -84,8 +84,8 @@ pub(crate) fn draw(
     let format = Format::from_path(path)?;
     let camera = wish.camera.map(Camera::named).transpose()?;
     let (width, height) = wish.size.unwrap_or(if wish.frames.is_some() { SIZE_OF_FRAMES } else { SIZE });
-    if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
-        return Err(Error::Usage(format!("a picture of {width}x{height}: each side is 16 to {LARGEST} pixels")));
+    if !(16..=MAX_SIDE).contains(&width) || !(16..=MAX_SIDE).contains(&height) {
+        return Err(Error::Usage(format!("a picture of {width}x{height}: each side is 16 to {MAX_SIDE} pixels")));
     }
     if wish.frames.is_some() && matches!(format, Format::Svg) {
         return Err(Error::Usage(format!("{}: with --frames its name ends in .png", path.display())));
@@ -93,7 +93,7 @@ pub(crate) fn draw(
     refuse_existing(path)?;
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
-    let mut memory = MemoryUse::new();
+    let mut memory = MemoryUse::new(plan.limits);
     let mut recording = memory.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
     // A trial that does not fit in memory still has moments before its end.
@@ -119,7 +119,12 @@ pub(crate) fn draw(
         (Some(_), _) => {
             caption = format!("{caption} to {last:.2} s, {frames} pictures");
             let milliseconds = 1000.0 * (last - seconds) / (frames.max(2) - 1) as f64;
-            Picture::animated_png(&pictures, camera, [width, height], milliseconds.round().clamp(10.0, 60_000.0) as u16)?
+            Picture::animated_png(
+                &pictures,
+                camera,
+                [width, height],
+                milliseconds.round().clamp(10.0, 60_000.0) as u16,
+            )?
         }
         (None, Format::Png) => pictures[0].png(camera, [width, height])?,
         (None, Format::Svg) => {
@@ -161,7 +166,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let mut replayable = Replayable::find(plan, directory, Selection::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in replayable.trials.clone() {
-        let mut recording = MemoryUse::new().recording(replayable.schema());
+        let mut recording = MemoryUse::new(plan.limits).recording(replayable.schema());
         let outcome = replayable.run(trial, &mut recording)?;
         let fitness = replayable.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {

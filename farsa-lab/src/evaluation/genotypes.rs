@@ -10,7 +10,7 @@ use crate::store::bounded;
 use crate::strategy::any_strategy::Genome;
 
 /// The most bytes that are read of a file of genotypes.
-const MOST_BYTES: u64 = 256_000_000;
+const MAX_BYTES: u64 = 256_000_000;
 
 /// Number and range of the genes of a genotype.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,7 +133,7 @@ impl Shape {
     /// # Errors
     /// [`Error::Io`], [`Error::File`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
-        self.words(path, &bounded::read_stream_text(path, MOST_BYTES)?)
+        self.words(path, &bounded::read_stream_text(path, MAX_BYTES)?)
     }
 
     /// The same where genes may also be reals, as [`written_reals`] writes them.
@@ -141,7 +141,7 @@ impl Shape {
     /// # Errors
     /// As [`read`](Self::read).
     pub(crate) fn read_genomes(self, path: &Path) -> Result<Vec<Genome>, Error> {
-        self.genomes(path, &bounded::read_stream_text(path, MOST_BYTES)?)
+        self.genomes(path, &bounded::read_stream_text(path, MAX_BYTES)?)
     }
 
     /// The genomes in the text of a file.

@@ -3,20 +3,19 @@
 use farsa_view::{Recording, Schema};
 
 use crate::error::Error;
-
-/// The most bytes of all of them, of which a page has nearly as many: no browser reads one of 512 MB.
-const MOST_BYTES: usize = 1 << 28;
+use crate::limits::Limits;
 
 /// Room for recordings.
 pub(crate) struct MemoryUse {
     left: usize,
+    total: usize,
     recordings: usize,
 }
 
 impl MemoryUse {
     /// All of it.
-    pub(crate) const fn new() -> Self {
-        Self { left: MOST_BYTES, recordings: 0 }
+    pub(crate) const fn new(limits: Limits) -> Self {
+        Self { left: limits.recording_bytes, total: limits.recording_bytes, recordings: 0 }
     }
 
     /// A recording of nothing yet, which ends where no room is left.
@@ -30,7 +29,7 @@ impl MemoryUse {
     /// [`Error::Usage`] where the trial did not fit.
     pub(crate) fn add(&mut self, recording: &Recording) -> Result<(), Error> {
         if recording.is_cut() {
-            let (steps, most) = (recording.times().len(), MOST_BYTES >> 20);
+            let (steps, most) = (recording.times().len(), self.total >> 20);
             let until = recording.times().last().copied().unwrap_or(0.0);
             let which = match self.recordings {
                 0 => "the trial".into(),
@@ -54,7 +53,7 @@ mod tests {
 
     #[test]
     fn all_recordings_share_the_room() {
-        let mut kept = MemoryUse { left: 10_000, recordings: 0 };
+        let mut kept = MemoryUse { left: 10_000, ..MemoryUse::new(Limits::DEFAULT) };
         let record = |kept: &MemoryUse, ticks: u32| {
             let mut recording = kept.recording(Schema::from_scalars(["x", "y"]));
             for tick in 0..ticks {
@@ -69,7 +68,7 @@ mod tests {
         let said = kept.add(&record(&kept, 10_000)).unwrap_err().to_string();
         assert!(said.starts_with("trial number 2 of these has more steps than fit into 256 MiB"), "{said}");
         let long = record(&kept, 10_000);
-        let said = MemoryUse { left: 10_000, recordings: 0 }.add(&long).unwrap_err().to_string();
+        let said = MemoryUse { left: 10_000, ..MemoryUse::new(Limits::DEFAULT) }.add(&long).unwrap_err().to_string();
         let steps = long.times().len();
         assert!(said.starts_with("the trial has more steps"), "{said}");
         assert!(said.contains(&format!("; {steps} do, until {}.00 s: ", steps - 1)), "{said}");

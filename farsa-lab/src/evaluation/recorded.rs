@@ -15,7 +15,7 @@ use crate::store::replace::replace;
 use crate::store::temporary_file;
 
 /// Bytes of the largest table and of the largest record that are read.
-const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
+const MAX_BYTES: [u64; 2] = [1 << 30, 1 << 20];
 /// Number of attempts and the pause between them, while another process writes the two files.
 const ATTEMPTS: usize = 20;
 const PAUSE: Duration = Duration::from_millis(25);
@@ -36,9 +36,9 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
         return Ok(None);
     }
     for attempt in 1..=ATTEMPTS {
-        let text = read_regular_text(table, LARGEST[0])?;
+        let text = read_regular_text(table, MAX_BYTES[0])?;
         let stored: Option<R> = if record.is_file() {
-            let text = read_regular_text(record, LARGEST[1])?;
+            let text = read_regular_text(record, MAX_BYTES[1])?;
             Some(serde_json::from_str(&text).map_err(|error| Error::damaged(record, error))?)
         } else {
             None

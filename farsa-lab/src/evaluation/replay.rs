@@ -127,7 +127,7 @@ impl Replayable {
     /// As for [`find`](Self::find).
     pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Self>, Error> {
         let mut located = LocatedIndividual::new(plan, directory, Selection::default())?;
-        let populations = 0..found.history.populations();
+        let populations = 0..located.history.populations();
         let best = populations.filter_map(|population| located.history.champion(population, located.generation));
         let best: Vec<usize> = best.collect();
         let rebuilt = |individual: usize| {
@@ -409,7 +409,7 @@ pub(crate) fn page(
     replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
         let run = run_in_words(plan);
-        let mut memory = MemoryUse::new();
+        let mut memory = MemoryUse::new(plan.limits);
         let (mut films, outcomes) = films(&mut replayable, &run, &mut memory)?;
         films.sort_by(|one, other| other.fitness.total_cmp(&one.fitness));
         let order: Vec<u32> = films.iter().map(|film| film.trial).collect();

@@ -11,7 +11,7 @@ use crate::experiment::intervention::{Intervention, input_ranges};
 use crate::experiment::outcome::Description;
 
 /// Most bytes of a list of changes.
-const LONGEST: usize = 10_000;
+const MAX_LIST_BYTES: usize = 10_000;
 
 /// The parts of a controller that a test can change, by name: what `farsa test --lesion` understands.
 ///
@@ -126,8 +126,8 @@ impl Anatomy {
     /// [`Error::Setting`] with the nearest name, [`Error::Usage`] for an invalid change and a missing or invalid
     /// number.
     pub fn intervention(&self, list: &str) -> Result<Intervention, Error> {
-        if list.len() > LONGEST {
-            return Err(Error::Usage(format!("--lesion: a list of {} bytes, at most {LONGEST}", list.len())));
+        if list.len() > MAX_LIST_BYTES {
+            return Err(Error::Usage(format!("--lesion: a list of {} bytes, at most {MAX_LIST_BYTES}", list.len())));
         }
         let mut sum = Intervention::default();
         for change in list.split(',') {

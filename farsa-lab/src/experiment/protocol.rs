@@ -7,11 +7,11 @@ use crate::error::Error;
 use crate::escaped::{OneLine, Quoted};
 
 /// Most cases of a protocol.
-const MOST_CASES: usize = 10_000;
+const MAX_CASES: usize = 10_000;
 /// Most neurons whose states are recorded.
-const MOST_STATES: usize = 256;
+const MAX_STATES: usize = 256;
 /// Most bytes of a protocol's name, and of a row's or a column's.
-const LONGEST: [usize; 2] = [64, 120];
+const MAX_NAME_BYTES: [usize; 2] = [64, 120];
 
 /// A test of an individual: a table of cases, each of which is run on the same starts.
 ///
@@ -196,7 +196,7 @@ impl Protocol {
     /// Checks this protocol by itself.
     fn wrong(&self) -> Option<String> {
         let word = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
-        let [name, place] = LONGEST;
+        let [name, place] = MAX_NAME_BYTES;
         if !self.name.bytes().all(word) || !self.name.starts_with(|first: char| first.is_ascii_alphanumeric()) {
             return Some("has no name of small letters, digits and hyphens".into());
         }
@@ -206,11 +206,11 @@ impl Protocol {
         if self.trials == 0 {
             return Some("has 0 trials a case".into());
         }
-        if !(1..=MOST_CASES).contains(&self.cases.len()) {
-            return Some(format!("has {} cases, not 1 to {MOST_CASES}", self.cases.len()));
+        if !(1..=MAX_CASES).contains(&self.cases.len()) {
+            return Some(format!("has {} cases, not 1 to {MAX_CASES}", self.cases.len()));
         }
-        if self.states.len() > MOST_STATES {
-            return Some(format!("records the states of {} neurons, at most {MOST_STATES}", self.states.len()));
+        if self.states.len() > MAX_STATES {
+            return Some(format!("records the states of {} neurons, at most {MAX_STATES}", self.states.len()));
         }
         let mut cells = BTreeSet::new();
         for (number, Case { row, column, .. }) in self.cases.iter().enumerate() {

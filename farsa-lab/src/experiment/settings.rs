@@ -279,7 +279,10 @@ mod tests {
             ("condition", "`--condition`"),
         ] {
             let message = wrong(key, Value::Whole(1));
-            assert!(message.starts_with(&format!("--set: `{key}`: is no setting")) && message.contains(option), "{message}");
+            assert!(
+                message.starts_with(&format!("--set: `{key}`: is no setting")) && message.contains(option),
+                "{message}"
+            );
         }
         assert_eq!(s, settings());
         let mut settings = Settings::new(vec![Setting::whole("world.seed", 1, 1..=9)]).unwrap();

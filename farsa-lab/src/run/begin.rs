@@ -17,7 +17,7 @@ use crate::store::lineage::HEADER;
 use crate::store::log;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
-use crate::strategy::any_strategy::{AnyStrategy, MAX_STATE_BYTES};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::history::History;
 use crate::strategy::opponents::HallOfFame;
 
@@ -29,11 +29,12 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
     let state = strategy.snapshot().map(|strategy| strategy.save());
     let bytes = state.as_ref().map_or(0, Vec::len);
-    if bytes as u64 > MAX_STATE_BYTES {
+    let limit = plan.limits.state_bytes;
+    if bytes as u64 > limit {
         let (name, individuals, genes) = (plan.definition().name(), strategy.individuals(), strategy.genes());
         return Err(Error::Usage(format!(
             "`{name}`: a state of {individuals} individuals of {genes} genes has {bytes} bytes; a checkpoint keeps at most \
-             {MAX_STATE_BYTES}"
+             {limit}"
         )));
     }
     if text.len() as u64 > config_file::MAX_BYTES {

@@ -170,9 +170,19 @@ impl<'e> Plan<'e> {
         if populations == 0 {
             return Err(Error::Other(format!("{}: no population", self.experiment.name())));
         }
-        let descriptors = ranges.as_slice();
-        let start =
-            StrategyStart { populations, trials, genes, gene_bits, objectives, descriptors, settings, seed, evaluator };
+        let (descriptors, limits) = (ranges.as_slice(), self.limits);
+        let start = StrategyStart {
+            populations,
+            trials,
+            genes,
+            gene_bits,
+            objectives,
+            descriptors,
+            settings,
+            seed,
+            evaluator,
+            limits,
+        };
         let strategy = self.definition().start(&start).map_err(|error| match error {
             Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
             Error::Usage(why) => Error::Usage(format!("{}: {why}", self.definition().name())),

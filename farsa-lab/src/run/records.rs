@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
+use crate::limits::Limits;
 use crate::run::plan::Plan;
 use crate::store::append_log::Mark;
 use crate::store::checksummed;
 use crate::store::checksummed::Checksummed;
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
-use crate::strategy::any_strategy::{Genome, MAX_STATE_BYTES};
+use crate::strategy::any_strategy::Genome;
 
 /// `checkpoint.bin`: the state from which a run continues. It does not grow.
 #[derive(Debug, Serialize, Deserialize)]
@@ -142,8 +143,8 @@ macro_rules! sealed {
 }
 
 sealed! {
-    Checkpoint: b"farsackp", "checkpoint", MAX_STATE_BYTES + (1 << 20);
-    RecordHead: b"farsatld", "run record", 1 << 20;
+    Checkpoint: b"farsackp", "checkpoint", Limits::DEFAULT.state_bytes + (1 << 20);
+    RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
     ChampionsOfReals: b"farsacmr", "set of champions with real genes", 256 << 20;

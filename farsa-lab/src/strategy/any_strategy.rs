@@ -9,9 +9,6 @@ use farsa_evo::{
 
 use crate::experiment::genotype::Genotype;
 
-/// Bytes of the largest state of a search that a checkpoint keeps. Tests have one that is soon full.
-pub(crate) const MAX_STATE_BYTES: u64 = if cfg!(test) { 1 << 18 } else { 256 << 20 };
-
 /// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::strategy::StrategyDefinition::start) makes it.
 ///
 /// A [`Genotype`] decodes both. An integer gene is linear over the range of its parameter. A real gene maps -1 to the

@@ -6,6 +6,7 @@ use farsa_evo::{EvoError, Snapshot, Strategy};
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::{Setting, Settings};
+use crate::limits::Limits;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::settings::NORMALISE;
 
@@ -101,6 +102,8 @@ pub struct StrategyStart<'s> {
     pub seed: u64,
     /// Builds an evaluator of the run, for a strategy that evaluates something itself.
     pub evaluator: &'s dyn Fn() -> Result<Box<dyn Evaluator>, Error>,
+    /// Limits of the run.
+    pub limits: Limits,
 }
 
 impl StrategyStart<'_> {

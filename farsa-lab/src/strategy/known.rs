@@ -58,6 +58,7 @@ mod tests {
     use super::*;
     use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::Settings;
+    use crate::limits::Limits;
     use crate::strategy::definition::StrategyStart;
 
     #[test]
@@ -88,6 +89,7 @@ mod tests {
                     descriptors: &[[0.0, 1.0], [-3.0, 5.0]],
                     settings: &settings,
                     seed: 3,
+                    limits: Limits::DEFAULT,
                     evaluator,
                 };
                 let made = strategy.start(&start);

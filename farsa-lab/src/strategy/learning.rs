@@ -212,6 +212,7 @@ mod tests {
             settings: &settings,
             seed,
             evaluator: &evaluator,
+            limits: crate::limits::Limits::DEFAULT,
         };
         match Learning.start(&start).unwrap() {
             AnyStrategy::Words(strategy) => strategy,

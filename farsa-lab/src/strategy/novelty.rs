@@ -34,7 +34,8 @@ pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
             ..NoveltyConfig::new(ranges.len())
         };
         let truncation = config(start.settings, start.genes, start.gene_bits)?;
-        let search = |seed| NoveltySearch::new(novelty, TruncationGa::new(truncation, seed)?, seed)?.with_units::<u16>(&units);
+        let search =
+            |seed| NoveltySearch::new(novelty, TruncationGa::new(truncation, seed)?, seed)?.with_units::<u16>(&units);
         start.words(search)
     },
     diagnostics: Some(Diagnostics {

@@ -202,7 +202,7 @@ mod tests {
         const TRIALS: usize = 3;
         let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
         let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
-        let mut strategy = Coevolution::new(&[config; 3], 4).unwrap();
+        let mut strategy = Populations::truncation(&[config; 3], 4).unwrap();
         let mut record = Record::new(&mut strategy).unwrap();
         let mut hall = HallOfFame::default();
         let history = |record: &Record| {

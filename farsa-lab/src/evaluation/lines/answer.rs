@@ -145,9 +145,10 @@ impl IndividualResult {
                 return Self { fitness: None, objectives, behaviour, failed, failed_trial, trials };
             }
         };
-        let described = evaluator.behaviour();
-        let objectives = described.map(Behaviour::objectives).unwrap_or_default();
-        let behaviour = described.map(Behaviour::descriptors).unwrap_or_default().into_iter().map(|measure| measure.name);
+        let described = evaluator.behavior();
+        let objectives = described.map(Behavior::objectives).unwrap_or_default();
+        let behaviour =
+            described.map(Behavior::descriptors).unwrap_or_default().into_iter().map(|measure| measure.name);
         let mut row = row.into_iter();
         let fitness = row.next();
         let objectives = Named(objectives.into_iter().zip(row.by_ref()).collect());

@@ -8,7 +8,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use crate::escaped::Quoted;
 
 /// Maximum number of populations in an object, above that of any experiment.
-const MOST_NAMES: usize = 1000;
+const MAX_NAMES: usize = 1000;
 
 /// Vectors of numbers: `[..]` is one, `[[..], [..]]` are several, and an object has those of populations by their names.
 #[derive(Debug, PartialEq)]
@@ -59,8 +59,8 @@ impl<'de> Deserialize<'de> for ParameterVectors {
                         let name = Quoted(&name);
                         return Err(A::Error::custom(format_args!("the population {name} stands twice")));
                     }
-                    if populations.len() == MOST_NAMES {
-                        return Err(A::Error::custom(format_args!("more than {MOST_NAMES} populations")));
+                    if populations.len() == MAX_NAMES {
+                        return Err(A::Error::custom(format_args!("more than {MAX_NAMES} populations")));
                     }
                     populations.push((name, vectors));
                 }
@@ -188,7 +188,7 @@ mod tests {
             let names: Vec<String> = (0..count).map(|name| format!("\"{name}\": []")).collect();
             serde_json::from_str::<ParameterVectors>(&format!("{{{}}}", names.join(",")))
         };
-        assert!(matches!(named(MOST_NAMES), Ok(ParameterVectors::Named(all)) if all.len() == MOST_NAMES));
-        assert!(named(MOST_NAMES + 1).unwrap_err().to_string().starts_with("more than 1000 populations"));
+        assert!(matches!(named(MAX_NAMES), Ok(ParameterVectors::Named(all)) if all.len() == MAX_NAMES));
+        assert!(named(MAX_NAMES + 1).unwrap_err().to_string().starts_with("more than 1000 populations"));
     }
 }

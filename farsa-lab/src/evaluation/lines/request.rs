@@ -8,14 +8,11 @@ use crate::escaped::{OneLine, Quoted, shortened};
 use crate::evaluation::lines::parameter_vectors::{ParameterVectors, Vectors};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::parameter::Parameter;
+use crate::limits::Limits;
 use crate::run::plan::MAX_SEED;
 
-/// The most vectors of a population in one line.
-const MOST_VECTORS: usize = 65_536;
 /// The largest number of an individual.
-const LARGEST_INDIVIDUAL: u32 = 1_000_000_000;
-/// The most bytes of what an answer repeats.
-const LONGEST_ID: usize = 4096;
+const MAX_INDIVIDUAL: u32 = 1_000_000_000;
 
 /// The shape of valid requests.
 pub(crate) struct RequestSchema {
@@ -28,6 +25,7 @@ pub(crate) struct RequestSchema {
     pub(crate) size: usize,
     /// Seed of lines without one.
     pub(crate) seed: u64,
+    pub(crate) limits: Limits,
 }
 
 /// A line before validation.
@@ -87,8 +85,8 @@ impl Request {
             return Err(format!("seed: {seed} is above {MAX_SEED}"));
         }
         let individual = individual.unwrap_or(0);
-        if individual > LARGEST_INDIVIDUAL {
-            return Err(format!("individual: {individual} is above {LARGEST_INDIVIDUAL}"));
+        if individual > MAX_INDIVIDUAL {
+            return Err(format!("individual: {individual} is above {MAX_INDIVIDUAL}"));
         }
         let evaluated = wanted.evaluated(evaluate.as_deref())?;
         let mut rows = Vec::new();
@@ -108,9 +106,6 @@ impl Request {
 /// Id that the answer repeats.
 fn read_id(text: &RawValue) -> Result<serde_json::Value, String> {
     let text = text.get();
-    if text.len() > LONGEST_ID {
-        return Err(format!("id: has {} bytes, more than {LONGEST_ID}", text.len()));
-    }
     serde_json::from_str(text).map_err(|error| format!("id: {error}"))
 }
 
@@ -172,7 +167,9 @@ impl RequestSchema {
     fn counted(&self, count: usize, first: u32) -> Result<(), String> {
         match count {
             0 => Err("there is no vector".into()),
-            count if count > MOST_VECTORS => Err(format!("{count} vectors, more than {MOST_VECTORS} in a line")),
+            count if count > self.limits.vectors => {
+                Err(format!("{count} vectors, more than {} in a line", self.limits.vectors))
+            }
             count if self.size > 0 && first as usize + count > self.size => Err(format!(
                 "individuals {first} to {} of {}; evolution.population says how many there may be",
                 first as usize + count - 1,
@@ -217,7 +214,7 @@ mod tests {
         let parameters = vec![Parameter::new("gain", [-5.0, 5.0]), Parameter::new("bias", [1.0, 0.0])];
         let genotype = Genotype::new(&parameters, 16);
         let populations = populations.iter().map(|&name| name.into()).collect();
-        RequestSchema { experiment: "toy", populations, parameters, genotype, size, seed: 4 }
+        RequestSchema { experiment: "toy", populations, parameters, genotype, size, seed: 4, limits: Limits::DEFAULT }
     }
 
     fn read(text: &str, wanted: &RequestSchema) -> Result<Request, String> {
@@ -278,9 +275,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said() {
         let one = wanted(&["0"], 0);
-        let many = format!(r#"{{"genes": [{}[0]]}}"#, "[0],".repeat(MOST_VECTORS));
-        let [deep, long] = [["[", "]"].map(|end| end.repeat(200)).concat(), format!("{:?}", "x".repeat(LONGEST_ID))]
-            .map(|id| format!(r#"{{"id": {id}, "genes": [0, 0]}}"#));
+        let many = format!(r#"{{"genes": [{}[0]]}}"#, "[0],".repeat(Limits::DEFAULT.vectors));
+        let deep = ["[", "]"].map(|end| end.repeat(200)).concat();
+        let deep = format!(r#"{{"id": {deep}, "genes": [0, 0]}}"#);
         for (line, why) in [
             ("", "is empty"),
             ("  ", "is empty"),
@@ -309,7 +306,6 @@ mod tests {
             (many.as_str(), "genes: 65537 vectors, more than 65536 in a line"),
             (r#"{"id": nul, "genes": [0, 0]}"#, "column 11: expected"),
             (deep.as_str(), "id: recursion limit exceeded"),
-            (long.as_str(), "id: has 4098 bytes, more than 4096"),
         ] {
             let found = read(line, &one).unwrap_err();
             assert!(found.starts_with(why), "{line:.200}: {found}");

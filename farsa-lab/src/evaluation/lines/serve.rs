@@ -15,9 +15,6 @@ use crate::run::fitness::{Generation, Opponents, individuals};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
-/// The most bytes of a line: a thousand vectors of 792 numbers of double precision.
-const LONGEST_LINE: usize = 16 << 20;
-
 /// Writes a line that describes the experiment, and then one for each line that is read: what its parameters come to, in trials
 /// as those of a run. Each is written out before the next is read.
 ///
@@ -42,16 +39,18 @@ pub(crate) fn serve(
         parameters: pool.info().parameters.clone(),
         genotype: pool.genotype().clone(),
         seed: plan.seed,
+        limits: plan.limits,
     };
-    write(output, &Introduction::new(&plan.condition, &wanted, pool.evaluator(), LONGEST_LINE))?;
+    let line_bytes = plan.limits.line_bytes;
+    write(output, &Introduction::new(&plan.condition, &wanted, pool.evaluator(), line_bytes))?;
     let mut first_refused: Option<(u64, String)> = None;
     let (mut line, mut refused) = (0, 0_u64);
     let reading = |error| Error::io("read", "the input".as_ref())(error);
-    while let Some(found) = next_line(input, LONGEST_LINE).map_err(reading)? {
+    while let Some(found) = next_line(input, line_bytes).map_err(reading)? {
         line += 1;
         let request = match found {
             BoundedLine::Whole(bytes) => Request::from_line(&bytes, &wanted),
-            BoundedLine::TooLong => Err(format!("has more than {LONGEST_LINE} bytes, the most of a line")),
+            BoundedLine::TooLong => Err(format!("has more than {line_bytes} bytes, the most of a line")),
         };
         match request {
             Ok(request) => write(output, &answer(line, request, &wanted, &mut pool)?)?,

@@ -137,7 +137,7 @@ pub(crate) fn page(
     let what = format!(", {}", choice.protocol);
     replayed::page((plan, directory), compare, &what, path, |page, plan, directory| {
         let mut trials = CaseTrials::find(plan, directory, choice)?;
-        let (mut outcomes, mut kept) = (Vec::new(), MemoryUse::new());
+        let (mut outcomes, mut kept) = (Vec::new(), MemoryUse::new(plan.limits));
         for case in trials.cases.clone() {
             let mut recording = kept.recording(trials.schema());
             let outcome = trials.run(case, &mut recording)?;

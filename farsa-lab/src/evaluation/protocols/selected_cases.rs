@@ -14,9 +14,6 @@ use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::store::directory::Directory;
 
-/// Most cases that are shown together.
-const MOST_CASES: usize = 60;
-
 /// Which trials of a test by a protocol.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CaseSelection<'c> {
@@ -56,9 +53,9 @@ impl CaseTrials {
         if cases.is_empty() {
             cases = (0..protocol.cases.len()).collect();
         }
-        if cases.len() > MOST_CASES {
-            let (name, count) = (&protocol.name, cases.len());
-            let why = format!("protocol `{name}` has {count} cases; {MOST_CASES} are shown: name them with --case");
+        if cases.len() > plan.limits.cases {
+            let (name, count, limit) = (&protocol.name, cases.len(), plan.limits.cases);
+            let why = format!("protocol `{name}` has {count} cases; {limit} are shown: name them with --case");
             return Err(Error::Usage(why));
         }
         let subject = Subject::read(plan, directory, &pool)?;

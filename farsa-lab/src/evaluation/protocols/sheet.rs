@@ -18,7 +18,7 @@ use crate::store::replace::{create_results, refuse_existing};
 
 /// Width and height of each picture where none are asked for, and the largest.
 const SIZE: (u32, u32) = (320, 260);
-const LARGEST: u32 = 2048;
+const MAX_SIDE: u32 = 2048;
 /// Maximum number of pictures in a row.
 const COLUMNS: usize = 8;
 /// Heights of the title and of a picture's label, and what lies between pictures.
@@ -78,8 +78,8 @@ pub(crate) fn draw(
     }
     let camera = wish.camera.map(Camera::named).transpose()?;
     let (width, height) = wish.size.unwrap_or(SIZE);
-    if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
-        return Err(Error::Usage(format!("pictures of {width}x{height}: each side is 16 to {LARGEST} pixels")));
+    if !(16..=MAX_SIDE).contains(&width) || !(16..=MAX_SIDE).contains(&height) {
+        return Err(Error::Usage(format!("pictures of {width}x{height}: each side is 16 to {MAX_SIDE} pixels")));
     }
     refuse_existing(path)?;
     let mut trials = CaseTrials::find(plan, directory, wish.choice)?;
@@ -111,7 +111,7 @@ pub(crate) fn draw(
 fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
     for number in trials.cases.clone() {
-        let mut memory = MemoryUse::new();
+        let mut memory = MemoryUse::new(plan.limits);
         let mut recording = memory.recording(trials.schema());
         let outcome = trials.run(number, &mut recording)?;
         memory.add(&recording)?;
@@ -156,7 +156,7 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
     };
     let picture = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", size[0], size[1])) width=(size[0]) height=(size[1])
-            font-family=(FONT.0) font-size="16" {
+            font-family=(FONT) font-size="16" {
             rect width="100%" height="100%" fill=(PAPER) {}
             text x=(margin) y="28" font-size="18" fill=(INK) { (title) }
             @for (number, case) in cases.iter().enumerate() { (draw(number, case)) }

@@ -17,9 +17,9 @@ use crate::store::directory::Directory;
 /// The first trials of each case that are recorded.
 const TRIALS: usize = 6;
 /// Maximum number of recorded cases.
-const MOST_CASES: usize = 60;
+const MAX_CASES: usize = 60;
 /// Most steps that are kept of a trial: of a longer one every second is, or every fourth, and so on.
-const MOST_STEPS: usize = 1000;
+const MAX_STEPS: usize = 1000;
 /// The columns before those of the neurons.
 const HEAD: [&str; 4] = ["case", "trial", "success", "step"];
 
@@ -60,7 +60,7 @@ impl Recorder for StateRecorder {
 
     fn tick(&mut self, _: f64) {
         if self.step.is_multiple_of(self.stride) {
-            if self.kept.len() == MOST_STEPS {
+            if self.kept.len() == MAX_STEPS {
                 self.stride *= 2;
                 self.kept.retain(|(step, _)| step.is_multiple_of(self.stride));
             }
@@ -97,7 +97,7 @@ impl States {
         };
         let neurons = neurons.iter().map(|neuron| neuron.name.clone()).collect();
         let mut recordings = Vec::new();
-        for case in 0..protocol.cases.len().min(MOST_CASES) {
+        for case in 0..protocol.cases.len().min(MAX_CASES) {
             for trial in 0..trials.min(TRIALS) {
                 let (first, count) = (span.start, span.len());
                 let mut recorder =

@@ -20,9 +20,6 @@ use crate::run::progress::Progress;
 use crate::store::directory::Directory;
 use crate::store::lock::Lock;
 
-/// Most trials of all cases together.
-const MOST_TRIALS: usize = 100_000_000;
-
 /// The result of a test by a protocol.
 #[derive(Debug, Serialize)]
 pub(crate) struct ProtocolRun {
@@ -96,13 +93,13 @@ pub(crate) fn test(
 ) -> Result<ProtocolRun, Error> {
     let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
     let (number, protocol) = protocol(plan, &pool, name)?;
-    let trials = trials_of(&protocol, effort)?;
+    let trials = trials_of(plan, &protocol, effort)?;
     let subject = Subject::read(plan, directory, &pool)?;
     // An occupied directory is reported before the computation.
     files::make_folder(directory)?;
     drop(Lock::of_tests(directory.path())?);
     let asked = cases(number, None, protocol.cases.len());
-    let (found, table) = run(&mut pool, directory, &subject, (protocol, asked), effort)?;
+    let (found, table) = run(plan, &mut pool, directory, &subject, (protocol, asked), effort)?;
     let (protocol, seed) = (&found.protocol, effort.seed);
     let states = if protocol.states.is_empty() {
         None
@@ -156,7 +153,7 @@ pub(crate) fn lesions(
         }
     };
     let subject = Subject::read(plan, directory, &pool)?;
-    Ok(run(&mut pool, directory, &subject, (protocol, asked), effort)?.0)
+    Ok(run(plan, &mut pool, directory, &subject, (protocol, asked), effort)?.0)
 }
 
 /// The experiment's protocol of this name, with its number.
@@ -172,10 +169,11 @@ fn cases(protocol: usize, intervention: Option<&Intervention>, count: usize) -> 
 }
 
 /// Trials of each case.
-fn trials_of(protocol: &Protocol, effort: TestOptions) -> Result<usize, Error> {
+fn trials_of(plan: &Plan<'_>, protocol: &Protocol, effort: TestOptions) -> Result<usize, Error> {
     let (trials, count) = (effort.trials.unwrap_or(protocol.trials as usize), protocol.cases.len());
-    if trials.checked_mul(count).is_none_or(|all| all > MOST_TRIALS) {
-        let why = format!("{trials} trials of each of {count} cases are more than {MOST_TRIALS} trials");
+    if trials.checked_mul(count).is_none_or(|all| all > plan.limits.trials) {
+        let limit = plan.limits.trials;
+        let why = format!("{trials} trials of each of {count} cases are more than {limit} trials");
         return Err(Error::Usage(why));
     }
     Ok(trials)
@@ -183,13 +181,14 @@ fn trials_of(protocol: &Protocol, effort: TestOptions) -> Result<usize, Error> {
 
 /// Runs fresh trials of each of a protocol's cases, in which this is asked.
 fn run(
+    plan: &Plan<'_>,
     pool: &mut Pool<'_>,
     directory: &Directory,
     subject: &Subject,
     (protocol, asked): (Protocol, Vec<TrialCondition<'_>>),
     effort: TestOptions,
 ) -> Result<(ProtocolRun, ProtocolTable), Error> {
-    let (trials, seed) = (trials_of(&protocol, effort)?, effort.seed);
+    let (trials, seed) = (trials_of(plan, &protocol, effort)?, effort.seed);
     let progress = Progress::new(0, (trials * asked.len()) as u64, effort.quiet);
     let fresh = Trials { count: trials, seed, cases: &asked };
     let results = run_trials(pool, subject.tested(), fresh, &progress);

@@ -76,6 +76,7 @@ fn a_search_whose_state_would_not_be_read_is_not_begun() {
     ] {
         let numbers = numbers(name);
         let mut plan = plan(&numbers, 20);
+        plan.limits.state_bytes = 1 << 18;
         plan.settings.set("", key, Value::Whole(value)).unwrap();
         let error = create(&plan, &root).map(|_| ()).unwrap_err();
         assert_eq!((error.to_string().as_str(), error.exit_code()), (why, 2));

@@ -5,7 +5,7 @@ use farsa_evo::archives::{Cells, CvtCells, Emitter, GridCells, MapElites, MapEli
 use super::{SIGMA, bounds, sizes};
 use crate::error::Error;
 use crate::experiment::settings::Setting;
-use crate::strategy::any_strategy::{AnyStrategy, MAX_STATE_BYTES};
+use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyStart};
 use crate::strategy::settings::POPULATION;
 use crate::strategy::simple::SimpleStrategy;
@@ -113,13 +113,12 @@ fn over<C: Cells + Clone + 'static>(
     // A run is not to find out when most cells have an elite.
     let search = MapElites::new(config.clone(), cells.clone(), start.seed);
     let full = search.map_or(0, |search| search.largest_state()).saturating_mul(start.populations);
-    if full as u64 > MAX_STATE_BYTES {
+    let limit = start.limits.state_bytes;
+    if full as u64 > limit {
         let (cells, genes) = (cells.cells(), start.genes);
         return Err(Error::setting(
             CELLS,
-            format!(
-                "{cells} cells of {genes} genes, when full, are {full} bytes; a checkpoint keeps at most {MAX_STATE_BYTES}"
-            ),
+            format!("{cells} cells of {genes} genes, when full, are {full} bytes; a checkpoint keeps at most {limit}"),
         ));
     }
     start.reals(|seed| MapElites::new(config.clone(), cells.clone(), seed))
