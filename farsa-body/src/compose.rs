@@ -11,16 +11,16 @@ use crate::ports::{Channels, Motor, Sensor};
 /// Reads one part and returns what its channels leave of the slice.
 #[inline]
 fn read_part<'a, W: ?Sized, T: Sensor<W> + ?Sized>(part: &mut T, world: &W, out: &'a mut [f32]) -> &'a mut [f32] {
-    let (own, rest) = out.split_at_mut(part.channels().min(out.len()));
-    part.read(world, own);
+    let (part_out, rest) = out.split_at_mut(part.channels().min(out.len()));
+    part.read(world, part_out);
     rest
 }
 
 /// Drives one part and returns what its channels leave of the slice.
 #[inline]
 fn drive_part<'a, W: ?Sized, T: Motor<W> + ?Sized>(part: &mut T, y: &'a [f32], world: &mut W) -> &'a [f32] {
-    let (own, rest) = y.split_at(part.channels().min(y.len()));
-    part.drive(own, world);
+    let (part_in, rest) = y.split_at(part.channels().min(y.len()));
+    part.drive(part_in, world);
     rest
 }
 

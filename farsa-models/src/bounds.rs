@@ -51,9 +51,9 @@ mod tests {
     #[test]
     fn ranges_are_read_as_they_were_written() {
         let (none, ends) = (f64::INFINITY, [-3e10, -2e9, -1e9, -1.0, 0.0, 2.0, 1e9, 5e9, 1e300]);
-        let all = ends.into_iter().flat_map(|a| ends.map(|b| [a, b])).filter(|[low, high]| low <= high);
-        let all = all.map(range_from_file).chain([[-none, none], [-none, 0.0], [0.0, none]]);
-        for range in all {
+        let ranges = ends.into_iter().flat_map(|a| ends.map(|b| [a, b])).filter(|[low, high]| low <= high);
+        let ranges = ranges.map(range_from_file).chain([[-none, none], [-none, 0.0], [0.0, none]]);
+        for range in ranges {
             let [low, high] = range_in_file(range);
             assert!(low <= high && low.is_finite() && high.is_finite(), "{range:?}: {low} to {high}");
             assert_eq!(range_from_file([low, high]), range);

@@ -100,8 +100,8 @@ impl ModelFiles {
                 return Err("names a package, and no folder with packages was given");
             }
             let mut candidates = self.packages.iter().map(|root| (root, root.join(within)));
-            let found = candidates.find(|(_, path)| path.exists());
-            let (root, path) = found.ok_or("is in none of the folders with packages")?;
+            let candidate = candidates.find(|(_, path)| path.exists());
+            let (root, path) = candidate.ok_or("is in none of the folders with packages")?;
             return inside(root, &path, within);
         }
         if name.contains("://") {

@@ -332,10 +332,10 @@ mod tests {
     fn two_links_follow_the_law_of_cosines() {
         let tree = planar([-3.0, 3.0]);
         for (x, y) in [(0.3, 0.2), (-0.2, 0.35), (0.1, 0.1), (0.05, -0.4)] {
-            let found = InverseKinematics::default().solve(&tree, &tip([x, y, 0.0]), &[0.1, 0.1]).expect("in reach");
+            let solution = InverseKinematics::default().solve(&tree, &tip([x, y, 0.0]), &[0.1, 0.1]).expect("in reach");
             let cos_elbow: f64 = (x * x + y * y - 0.3 * 0.3 - 0.2 * 0.2) / (2.0 * 0.3 * 0.2);
-            let (_, cos) = farsa_num::sin_cos(found.joints[1]);
-            assert!((cos - cos_elbow).abs() < 1e-5, "elbow at {}", found.joints[1]);
+            let (_, cos) = farsa_num::sin_cos(solution.joints[1]);
+            assert!((cos - cos_elbow).abs() < 1e-5, "elbow at {}", solution.joints[1]);
         }
     }
 
@@ -361,8 +361,10 @@ mod tests {
     fn at_the_first_attempt(tree: &KinematicTree, goals: &[[f64; 2]]) {
         let solver = InverseKinematics { attempts: 1, iterations: 25, ..InverseKinematics::default() };
         for [x, y] in goals {
-            let found = solver.solve(tree, &tip([*x, *y, 0.0]), &[0.1, 0.1]).unwrap_or_else(|e| panic!("{x} {y}: {e}"));
-            let [shoulder, both] = [found.joints[0], found.joints[0] + found.joints[1]].map(farsa_num::sin_cos);
+            let solution =
+                solver.solve(tree, &tip([*x, *y, 0.0]), &[0.1, 0.1]).unwrap_or_else(|e| panic!("{x} {y}: {e}"));
+            let [shoulder, both] =
+                [solution.joints[0], solution.joints[0] + solution.joints[1]].map(farsa_num::sin_cos);
             let at = [0.3 * shoulder.1 + 0.2 * both.1, 0.3 * shoulder.0 + 0.2 * both.0];
             assert!((at[0] - x).abs() < 1e-6 && (at[1] - y).abs() < 1e-6, "{at:?} for {x} {y}");
         }
@@ -436,10 +438,10 @@ mod tests {
                 Orientation::Full(pose.rotation.map(|x| -x)),
             ] {
                 let goal = Goal { body, point, position: pose.transform(point), orientation };
-                let found =
+                let solution =
                     solver.solve(&tree, &goal, &tree.zero()).unwrap_or_else(|e| panic!("{k} {orientation:?}: {e}"));
                 // Judged by the poses alone.
-                let reached = tree.poses(&found.joints)[7];
+                let reached = tree.poses(&solution.joints)[7];
                 assert!(norm(&sub(reached.transform(point), goal.position)) < 1e-6);
                 match orientation {
                     Orientation::Free => {}
@@ -452,12 +454,12 @@ mod tests {
                         }
                     }
                 }
-                for (q, [low, high]) in found.joints.iter().zip(tree.ranges()) {
+                for (q, [low, high]) in solution.joints.iter().zip(tree.ranges()) {
                     assert!(low <= q && q <= high, "{q} outside [{low}, {high}]");
                 }
                 // The segment's path is 0, 1, 2, 5, 6, 7: joint 4 had nothing to do with it.
-                assert_eq!(found.joints[3], tree.zero()[3]);
-                assert_eq!(solver.solve(&tree, &goal, &tree.zero()).as_ref(), Ok(&found), "the same bits again");
+                assert_eq!(solution.joints[3], tree.zero()[3]);
+                assert_eq!(solver.solve(&tree, &goal, &tree.zero()).as_ref(), Ok(&solution), "the same bits again");
             }
         }
     }

@@ -260,7 +260,7 @@ pub(crate) mod tests {
         assert_eq!(tree.coordinate(JointId(3)), None);
         assert_eq!(tree.zero(), [0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0]);
         let poses = tree.poses(&Q);
-        let mut all: Vec<Isometry3<f64>> = Vec::new();
+        let mut frames: Vec<Isometry3<f64>> = Vec::new();
         for (i, segment) in robot.segments.iter().enumerate() {
             let [x, y, z] = segment.joint.placement.position;
             let [a, b, c, w] = segment.joint.placement.rotation;
@@ -275,10 +275,10 @@ pub(crate) mod tests {
                 JointKind::Prismatic => Isometry3::translation(axis.x * q, axis.y * q, axis.z * q),
                 _ => Isometry3::identity(),
             };
-            let parent = segment.parent.map_or(Isometry3::identity(), |p| all[p.index()]);
-            all.push(parent * placed * moved);
+            let parent = segment.parent.map_or(Isometry3::identity(), |p| frames[p.index()]);
+            frames.push(parent * placed * moved);
             let point = [0.3, -0.2, 0.1];
-            let expected = all[i] * nalgebra::Point3::from(point);
+            let expected = frames[i] * nalgebra::Point3::from(point);
             let got = poses[i].transform(point);
             assert!((0..3).all(|k| (got[k] - expected[k]).abs() < 1e-14), "segment {i}: {got:?} {expected}");
         }

@@ -47,8 +47,8 @@ impl MobileRobot {
     /// have no body.
     pub fn description(&self) -> Robot {
         let mut robot = Robot::new(&self.name);
-        let own = (1.0 - Self::WHEEL_SHARE) * self.mass();
-        let centred = MassProperties::cylinder(own, self.radius, 0.5 * self.height);
+        let hull_mass = (1.0 - Self::WHEEL_SHARE) * self.mass();
+        let centred = MassProperties::cylinder(hull_mass, self.radius, 0.5 * self.height);
         let hull = centred.placed(&Pose::at([0.0, 0.0, self.wheel_radius]));
         let hull = robot.add_segment(Segment::new("hull", None, Joint::floating(Pose::identity()), hull));
         let ground = robot.add_collider(Collider::new("ground", None, Shape::Plane, Pose::identity()));

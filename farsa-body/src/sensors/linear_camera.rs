@@ -142,14 +142,15 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B: Copy + PartialEq> LinearCamera<
     /// Reads the camera's channels from a given pose of its body. `out` [sectors x colors].
     pub fn read_from<W: Sight<Body = B> + ?Sized>(&self, world: &W, pose: &Pose, out: &mut [f32]) {
         let (stance, bands) = (Stance::from_pose(pose), self.bands.as_ref());
-        let (own, wedge, range) = (self.body, &self.wedge, self.range);
-        let shows = |near: &NearbySurface<B>| near.body != Some(own) && bands.iter().any(|band| band.shows(near.color));
+        let (body, wedge, range) = (self.body, &self.wedge, self.range);
+        let shows =
+            |near: &NearbySurface<B>| near.body != Some(body) && bands.iter().any(|band| band.shows(near.color));
         let shown = Shown::from_world(world, &stance, wedge, range, shows);
         for (values, sector) in out.chunks_mut(bands.len()).zip(self.rays.as_ref().chunks_exact(self.per_sector)) {
             values.fill(0.0);
             for ray in sector.iter().filter(|ray| shown.may_meet(ray)) {
                 let (from, direction) = (stance.place(ray.from), stance.turn(ray.direction));
-                if let Some(sight) = world.cast_planar(from, direction, range, Some(own)) {
+                if let Some(sight) = world.cast_planar(from, direction, range, Some(body)) {
                     for (o, band) in values.iter_mut().zip(bands) {
                         *o += if band.shows(sight.color) { 1.0 } else { 0.0 };
                     }

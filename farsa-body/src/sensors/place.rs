@@ -72,11 +72,11 @@ impl<B> Channels for TargetPosition<B> {
 impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for TargetPosition<B> {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let target = self.target.position(world);
-        let own = world.pose(self.from.body);
-        let from = own.transform(self.from.at);
+        let base = world.pose(self.from.body);
+        let from = base.transform(self.from.at);
         let way = [target[0] - from[0], target[1] - from[1], target[2] - from[2]];
         let way = match self.axes {
-            Axes::Body => own.rotate_back(way),
+            Axes::Body => base.rotate_back(way),
             Axes::World => way,
         };
         write(out, way.map(|x| x * self.scale));
@@ -167,8 +167,8 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for BodyVelocity<B> {
         let (linear, angular) = match self.axes {
             Axes::World => (twist.linear, twist.angular),
             Axes::Body => {
-                let own = world.pose(self.body);
-                (own.rotate_back(twist.linear), own.rotate_back(twist.angular))
+                let pose = world.pose(self.body);
+                (pose.rotate_back(twist.linear), pose.rotate_back(twist.angular))
             }
         };
         let ([x, y, z], [wx, wy, wz]) = (linear, angular);

@@ -378,10 +378,10 @@ impl Planar for PlaneWorld {
         }
     }
     fn attached(&self, robot: BodyId) -> Option<BodyId> {
-        let own = self.bodies.get(robot.index())?;
-        let driven = self.robot_of(own)?;
+        let pose = self.bodies.get(robot.index())?;
+        let driven = self.robot_of(pose)?;
         let reach = driven.reach.filter(|_| driven.holds)?;
-        let gap = |round: &Round| length(sub(round.centre, own.centre)) - round.radius - own.radius;
+        let gap = |round: &Round| length(sub(round.centre, pose.centre)) - round.radius - pose.radius;
         let others = self.ids().filter(|&(body, round)| body != robot && gap(round) <= reach);
         others.min_by(|a, b| gap(a.1).total_cmp(&gap(b.1))).map(|(body, _)| body)
     }

@@ -132,9 +132,9 @@ impl Mesh {
             let mean = self.points.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p[k] / n));
             spread = self.points.iter().fold([0.0; 6], |sum, point| add(sum, squares(sub(*point, mean)), 1.0 / n));
         }
-        let own = self.fitted_along(Pose::identity());
+        let aligned = self.fitted_along(Pose::identity());
         let turned = self.fitted_along(Pose { position: [0.0; 3], rotation: principal_axes(spread).1 });
-        let (_, shape, place) = if turned.0 < own.0 * (1.0 - 1e-9) { turned } else { own };
+        let (_, shape, place) = if turned.0 < aligned.0 * (1.0 - 1e-9) { turned } else { aligned };
         (shape, place)
     }
 
@@ -159,17 +159,17 @@ impl Mesh {
 
     /// The smallest shape along the axes of a frame, and its volume.
     fn fitted_along(&self, frame: Pose<f64>) -> (f64, Shape, Pose<f64>) {
-        let own: Vec<[f64; 3]> = self.points.iter().map(|point| frame.transform_back(*point)).collect();
-        let (low, high) = own.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
+        let points: Vec<[f64; 3]> = self.points.iter().map(|point| frame.transform_back(*point)).collect();
+        let (low, high) = points.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
             ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
         });
         let middle = [0, 1, 2].map(|k| f64::midpoint(low[k], high[k]));
         let half = [0, 1, 2].map(|k| ((high[k] - low[k]) / 2.0).max(THINNEST));
-        let own: Vec<[f64; 3]> = own.iter().map(|point| sub(*point, middle)).collect();
+        let points: Vec<[f64; 3]> = points.iter().map(|point| sub(*point, middle)).collect();
         let centred = frame.compose(&Pose::at(middle));
 
         let mut best = (8.0 * half[0] * half[1] * half[2], Shape::Box { half }, centred);
-        let radius = own.iter().map(|point| norm(point)).fold(THINNEST, f64::max);
+        let radius = points.iter().map(|point| norm(point)).fold(THINNEST, f64::max);
         let third = 4.0 / 3.0 * std::f64::consts::PI;
         let volume = third * radius * radius * radius;
         if volume < best.0 {
@@ -177,10 +177,10 @@ impl Mesh {
         }
         let long = (0..3).fold(0, |long, k| if half[k] > half[long] { k } else { long });
         let across = |p: &[f64; 3]| p[(long + 1) % 3] * p[(long + 1) % 3] + p[(long + 2) % 3] * p[(long + 2) % 3];
-        let square = own.iter().map(across).fold(THINNEST * THINNEST, f64::max);
+        let square = points.iter().map(across).fold(THINNEST * THINNEST, f64::max);
         let reach = |p: &[f64; 3]| Scalar::sqrt(square - across(p));
-        let top = own.iter().map(|p| p[long] - reach(p)).fold(f64::NEG_INFINITY, f64::max);
-        let bottom = own.iter().map(|p| p[long] + reach(p)).fold(f64::INFINITY, f64::min);
+        let top = points.iter().map(|p| p[long] - reach(p)).fold(f64::NEG_INFINITY, f64::max);
+        let bottom = points.iter().map(|p| p[long] + reach(p)).fold(f64::INFINITY, f64::min);
         let (radius, half_length) = (Scalar::sqrt(square), ((top - bottom) / 2.0).max(0.0));
         let volume = std::f64::consts::PI * square * 2.0 * half_length + third * square * radius;
         // A capsule of no length is a ball.

@@ -71,18 +71,18 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
             let r = step(i, parent);
             mapped(&yields[parent.index()], |(turn, slide)| (turn, add(slide, cross(turn, r))))
         });
-        let mut own = carried.unwrap_or_default();
+        let mut matrix = carried.unwrap_or_default();
         for Freedom { axis, force, effort } in freedoms[i].iter().rev() {
-            own = mapped(&own, |motion| {
+            matrix = mapped(&matrix, |motion| {
                 let by = -product(motion, *force) / effort;
                 (add(motion.0, axis.0.map(|x| x * by)), add(motion.1, axis.1.map(|x| x * by)))
             });
-            add_square(&mut own, *axis, 1.0 / effort);
+            add_square(&mut matrix, *axis, 1.0 / effort);
         }
-        yields.push(own);
+        yields.push(matrix);
     }
     // A segment below the smallest number has no weight either, because `max` drops NaN.
-    let mean = |own: &Matrix| ((own[3].1[0] + own[4].1[1] + own[5].1[2]) / 3.0).max(0.0);
+    let mean = |matrix: &Matrix| ((matrix[3].1[0] + matrix[4].1[1] + matrix[5].1[2]) / 3.0).max(0.0);
     Ok(yields.iter().map(mean).collect())
 }
 
@@ -151,8 +151,8 @@ fn mapped(matrix: &Matrix, map: impl Fn(Spatial) -> Spatial) -> Matrix {
 
 /// Adds `by` v v' to a matrix.
 fn add_square(matrix: &mut Matrix, v: Spatial, by: f64) {
-    let all = [v.0[0], v.0[1], v.0[2], v.1[0], v.1[1], v.1[2]];
-    for (row, x) in matrix.iter_mut().zip(all) {
+    let components = [v.0[0], v.0[1], v.0[2], v.1[0], v.1[1], v.1[2]];
+    for (row, x) in matrix.iter_mut().zip(components) {
         let x = x * by;
         *row = (add(row.0, v.0.map(|y| x * y)), add(row.1, v.1.map(|y| x * y)));
     }
@@ -175,11 +175,11 @@ mod tests {
         robot.add_segment(Segment::new("cart", Some(BodyId(1)), slide, ball));
         let hinge = Joint::revolute("hinge", [0.0, 0.0, 1.0], Pose::identity(), [-1.0, 1.0]);
         robot.add_segment(Segment::new("rod", None, hinge, ball.placed(&Pose::at([0.5, 0.0, 0.0]))));
-        let found = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot");
         // Free: 1/m. Fixed: 0. Sliding: one direction of three. Turning: r2 / I in one direction of three.
         let about = 0.4 * 2.0 * 0.01 + 2.0 * 0.25;
-        for (found, expected) in found.iter().zip([0.5, 0.0, 1.0 / 9.0, 0.25 / about / 3.0]) {
-            assert!((found - expected).abs() < 1e-14, "{found} instead of {expected}");
+        for (weights, expected) in weights.iter().zip([0.5, 0.0, 1.0 / 9.0, 0.25 / about / 3.0]) {
+            assert!((weights - expected).abs() < 1e-14, "{weights} instead of {expected}");
         }
     }
 
@@ -301,8 +301,8 @@ mod tests {
 
     /// The largest difference from the definition, relative to the weight itself.
     fn difference(robot: &Robot) -> f64 {
-        let found = inverse_weights(robot).expect("a valid robot");
-        let pairs = found.iter().zip(dense(robot));
+        let weights = inverse_weights(robot).expect("a valid robot");
+        let pairs = weights.iter().zip(dense(robot));
         pairs.map(|(a, b)| if *a == b { 0.0 } else { (a - b).abs() / b.abs().max(1e-300) }).fold(0.0, f64::max)
     }
 
@@ -329,10 +329,10 @@ mod tests {
             let body = MassProperties::cuboid(1.0, [0.05, 0.04, 0.1]).placed(&Pose::at([0.0, 0.0, 0.1]));
             robot.add_segment(Segment::new(&format!("s{i}"), i.checked_sub(1).map(BodyId), joint, body));
         }
-        let found = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot");
         let exact = [0.1299419849484253, 0.1961330474749258, 0.19851258709911557, 0.27848049008710474];
         for (i, exact) in [0, 1, 150, 299].into_iter().zip(exact) {
-            assert!((found[i] / exact - 1.0).abs() < 1e-14, "{} instead of {exact}", found[i]);
+            assert!((weights[i] / exact - 1.0).abs() < 1e-14, "{} instead of {exact}", weights[i]);
         }
     }
 

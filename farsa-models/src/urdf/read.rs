@@ -92,9 +92,9 @@ impl<'t> Links<'t> {
         }
         let mut joints: Vec<Option<Element<'t>>> = vec![None; links.len()];
         let mut parents = vec![None; links.len()];
-        let mut known: BTreeMap<&str, Element<'t>> = BTreeMap::new();
+        let mut links_by_name: BTreeMap<&str, Element<'t>> = BTreeMap::new();
         for joint in root.all("joint") {
-            if let Some(first) = known.insert(joint.needed("name")?, joint) {
+            if let Some(first) = links_by_name.insert(joint.needed("name")?, joint) {
                 return Err(twice("joint", &joint, &first));
             }
             let [parent, child] = ["parent", "child"].map(|end| -> Result<usize, ReadError> {
@@ -109,15 +109,15 @@ impl<'t> Links<'t> {
             parents[child] = Some(parent);
         }
         let roots: Vec<usize> = (0..links.len()).filter(|link| parents[*link].is_none()).collect();
-        let all = Self { names, elements: links, joints, parents };
+        let tree = Self { names, elements: links, joints, parents };
         match roots.as_slice() {
-            [] => Err(all.cycle(0)),
-            [_] => Ok(all),
+            [] => Err(tree.cycle(0)),
+            [_] => Ok(tree),
             [_, second, ..] => {
-                let names: Vec<_> = roots.iter().map(|root| all.name(*root)).collect();
+                let names: Vec<_> = roots.iter().map(|root| tree.name(*root)).collect();
                 let why =
                     format!("{} links hang on nothing ({}); a robot has one root", names.len(), first_names(&names));
-                Err(ReadError::Malformed { place: all.elements[*second].place(), why })
+                Err(ReadError::Malformed { place: tree.elements[*second].place(), why })
             }
         }
     }

@@ -161,9 +161,9 @@ impl<'t> Element<'t> {
 
     /// The child with this tag, of which there may be one.
     pub(crate) fn one(&self, tag: &'t str) -> Result<Option<Self>, ReadError> {
-        let mut found = self.all(tag);
-        let first = found.next();
-        match (first, found.next()) {
+        let mut elements = self.all(tag);
+        let first = elements.next();
+        match (first, elements.next()) {
             (Some(first), Some(second)) => {
                 Err(repeated(second.place(), &format!("{tag} of"), &self.label(), first.node().line))
             }
@@ -172,7 +172,7 @@ impl<'t> Element<'t> {
     }
 
     pub(crate) fn attribute(&self, name: &str) -> Option<&'t str> {
-        self.node().attributes.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+        self.node().attributes.iter().find(|(attribute, _)| attribute == name).map(|(_, value)| value.as_str())
     }
 
     /// The value of an attribute that must be there.

@@ -96,8 +96,8 @@ pub(crate) fn unused(wanted: &str, names: &BTreeSet<&str>) -> String {
 
 /// The segments' names, changed where one is `reserved` by the format.
 pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
-    let all: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.name.as_str()).collect();
-    let name = |own: &str| if own == reserved { unused(own, &all) } else { own.to_owned() };
+    let taken: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.name.as_str()).collect();
+    let name = |own: &str| if own == reserved { unused(own, &taken) } else { own.to_owned() };
     robot.segments.iter().map(|segment| name(&segment.name)).collect()
 }
 
@@ -108,20 +108,20 @@ pub(crate) fn has_inertial(segment: &Segment) -> bool {
 
 /// The colliders of the world, then those of each segment of a valid robot, in their order.
 pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
-    let mut all = vec![Vec::new(); robot.segments.len() + 1];
+    let mut children = vec![Vec::new(); robot.segments.len() + 1];
     for collider in &robot.colliders {
-        all[collider.body.map_or(0, |body| body.index() + 1)].push(collider);
+        children[collider.body.map_or(0, |body| body.index() + 1)].push(collider);
     }
-    all
+    children
 }
 
 /// The visuals of the world, then those of each segment of a valid robot, in their order.
 pub(crate) fn visuals_by_body(robot: &Robot) -> Vec<Vec<&Visual>> {
-    let mut all = vec![Vec::new(); robot.segments.len() + 1];
+    let mut indices = vec![Vec::new(); robot.segments.len() + 1];
     for visual in &robot.visuals {
-        all[visual.body.map_or(0, |body| body.index() + 1)].push(visual);
+        indices[visual.body.map_or(0, |body| body.index() + 1)].push(visual);
     }
-    all
+    indices
 }
 
 /// Builds an orange ball that slides and turns on the ground, next to a gray one fixed to the world.

@@ -67,7 +67,7 @@ impl Batch {
     /// The fault of the description, or [`ArenaError::Lanes`] for another number of worlds.
     pub fn new(arena: &Arena, lanes: usize, instructions: Instructions) -> Result<Self, ArenaError> {
         if !LANES.contains(&lanes) {
-            let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
+            let nearest = LANES.into_iter().min_by_key(|count| count.abs_diff(lanes)).unwrap_or(LANES[0]);
             return Err(ArenaError::Lanes { lanes, nearest });
         }
         let alone = World::new(arena)?;
@@ -144,15 +144,15 @@ impl Batch {
             self.load(lane);
             self.alone.finish_placement();
             self.alone.step();
-            let own = self.words.iter_mut().skip(lane).step_by(self.lanes);
-            own.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
+            let words = self.words.iter_mut().skip(lane).step_by(self.lanes);
+            words.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
         }
     }
 
     /// Brings the words of one lane into the world alone.
     fn load(&mut self, lane: usize) {
-        let own = self.words.iter().skip(lane).step_by(self.lanes);
-        self.alone.words_mut().iter_mut().zip(own).for_each(|(x, from)| *x = *from);
+        let words = self.words.iter().skip(lane).step_by(self.lanes);
+        self.alone.words_mut().iter_mut().zip(words).for_each(|(x, from)| *x = *from);
     }
 }
 

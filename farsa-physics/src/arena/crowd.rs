@@ -86,7 +86,7 @@ impl Crowd {
         robot: usize,
         mut push: Option<&mut [f32; 2]>,
     ) -> Option<Met<f32>> {
-        let own = at(words, robot);
+        let center = at(words, robot);
         let radius = model.kind(robot).radius;
         let left = radius * LEFT;
         let mut met: Option<Met<f32>> = None;
@@ -100,13 +100,13 @@ impl Crowd {
             }
         };
         for slab in &model.slabs {
-            if wall_squared(slab, own) < radius * radius {
-                take(meets_wall(slab, own, radius), NOTHING, 1.0, &mut push);
+            if wall_squared(slab, center) < radius * radius {
+                take(meets_wall(slab, center, radius), NOTHING, 1.0, &mut push);
             }
         }
         for solid in &model.solids {
-            if beside(solid, own, radius) && overlaps_solid(solid, own, radius) {
-                take(meets_solid(solid, own, radius), NOTHING, 1.0, &mut push);
+            if beside(solid, center, radius) && overlaps_solid(solid, center, radius) {
+                take(meets_solid(solid, center, radius), NOTHING, 1.0, &mut push);
             }
         }
         // A grid names bodies cell by cell. They are sorted, because sums of pushes have other bits in another order.
@@ -114,9 +114,9 @@ impl Crowd {
         let mut count = 0;
         let touched = |body: usize| {
             let sum = radius + model.radius(body);
-            body != robot && square(own, at(words, body)) < sum * sum
+            body != robot && square(center, at(words, body)) < sum * sum
         };
-        self.around(model, own, radius, |body| {
+        self.around(model, center, radius, |body| {
             if touched(body) {
                 if count < others.len() {
                     others[count] = body as u16;
@@ -124,8 +124,8 @@ impl Crowd {
                 count += 1;
             }
         });
-        let mut each = |body: usize| {
-            let meeting = meets_disc(own, at(words, body), radius, model.radius(body));
+        let mut visit = |body: usize| {
+            let meeting = meets_disc(center, at(words, body), radius, model.radius(body));
             // Two robots give way by half each. Cylinders do not give way.
             take(meeting, body as f32, if body < model.robots.len() { 0.5 } else { 1.0 }, &mut push);
         };
@@ -133,11 +133,11 @@ impl Crowd {
             Some(others) => {
                 others.sort_unstable();
                 for body in others {
-                    each(usize::from(*body));
+                    visit(usize::from(*body));
                 }
             }
             // More than there is room for: all bodies are looked at, which are in order.
-            None => (0..model.round_bodies()).filter(|body| touched(*body)).for_each(each),
+            None => (0..model.round_bodies()).filter(|body| touched(*body)).for_each(visit),
         }
         met
     }
@@ -207,14 +207,15 @@ impl Crowd {
 
     /// The robot whose hull is ahead within reach [m] of a robot's center, as a word.
     fn ahead(&self, model: &Model, words: &[f32], robot: usize, reach: f32) -> f32 {
-        let own = at(words, robot);
+        let center = at(words, robot);
         let way = [words[POSE_WORDS * robot + 3], words[POSE_WORDS * robot + 4]];
         let mut met: Option<(f32, usize)> = None;
-        self.around(model, own, reach, |body| {
+        self.around(model, center, reach, |body| {
             let other = at(words, body);
             if body != robot
                 && body < model.robots.len()
-                && let Some(distance) = ray_to_disc([own[0] - other[0], own[1] - other[1]], way, model.radius(body))
+                && let Some(distance) =
+                    ray_to_disc([center[0] - other[0], center[1] - other[1]], way, model.radius(body))
                 && distance <= reach
                 && met.is_none_or(|met| (distance, body) < met)
             {
@@ -370,28 +371,28 @@ impl Crowd {
             // A robot that did not overlap before can only overlap one that was set back just now.
             self.now = core::mem::take(&mut self.last);
             self.now.clear();
-            let mut found = core::mem::take(&mut self.now);
+            let mut overlaps = core::mem::take(&mut self.now);
             for robot in &now {
                 let robot = usize::from(*robot);
-                let (own, radius) = (at(words, robot), model.kind(robot).radius);
-                self.around(model, own, radius, |other| {
+                let (center, radius) = (at(words, robot), model.kind(robot).radius);
+                self.around(model, center, radius, |other| {
                     if other < robots && !self.back[other] {
                         let sum = radius + model.kind(other).radius;
-                        if square(own, at(words, other)) < sum * sum {
-                            found.push(other as u16);
+                        if square(center, at(words, other)) < sum * sum {
+                            overlaps.push(other as u16);
                         }
                     }
                 });
             }
-            found.sort_unstable();
-            found.dedup();
-            for robot in &found {
+            overlaps.sort_unstable();
+            overlaps.dedup();
+            for robot in &overlaps {
                 if let Some(met) = self.find_overlap(model, words, usize::from(*robot), None) {
                     Self::record_contact(model, words, usize::from(*robot), &met);
                 }
             }
             self.last = now;
-            self.now = found;
+            self.now = overlaps;
         }
     }
 }

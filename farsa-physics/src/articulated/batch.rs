@@ -51,7 +51,7 @@ impl Batch {
     /// [`ModelError::Lanes`] for another number of worlds.
     pub fn new(model: Model<f32>, lanes: usize, instructions: Instructions) -> Result<Self, ModelError> {
         if !LANES.contains(&lanes) {
-            let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
+            let nearest = LANES.into_iter().min_by_key(|count| count.abs_diff(lanes)).unwrap_or(LANES[0]);
             return Err(ModelError::Lanes { lanes, nearest });
         }
         let words = Words::new(&model, lanes);

@@ -166,12 +166,12 @@ pub(crate) fn segment_box<S: Scalar>(
         low = S::select(rising, low, t);
     }
     let t = (low + high) * one_half;
-    let mut found = ball_box(add(centre, scale(axis, t)), radius, place, half);
-    found.gap = S::select(between, found.gap, first.min(last) - radius);
+    let mut point = ball_box(add(centre, scale(axis, t)), radius, place, half);
+    point.gap = S::select(between, point.gap, first.min(last) - radius);
     // Deeper than the ends by more than the search's own error, or it is one of them.
     let error = half_length * half_length.constant(1e-3);
-    found.valid = between & (found.gap + radius + error).lt(first.min(last));
-    found
+    point.valid = between & (point.gap + radius + error).lt(first.min(last));
+    point
 }
 
 /// A ball about `p` against the half space below a plane.

@@ -189,12 +189,12 @@ fn block() -> impl Strategy<Value = Shape> {
 }
 fn any_pair() -> impl Strategy<Value = [Shape; 2]> {
     let round = || prop_oneof![ball(), capsule()];
-    let all = || prop_oneof![ball(), capsule(), block()];
+    let shapes = || prop_oneof![ball(), capsule(), block()];
     prop_oneof![
-        8 => (round(), all()).prop_map(|(a, b)| [a, b]),
-        4 => (all(), Just(Shape::Plane)).prop_map(|(a, b)| [a, b]),
+        8 => (round(), shapes()).prop_map(|(a, b)| [a, b]),
+        4 => (shapes(), Just(Shape::Plane)).prop_map(|(a, b)| [a, b]),
         2 => (block(), block()).prop_map(|(a, b)| [a, b]),
-        2 => (all(), round()).prop_map(|(a, b)| [a, b]),
+        2 => (shapes(), round()).prop_map(|(a, b)| [a, b]),
     ]
 }
 
@@ -223,8 +223,8 @@ proptest! {
     #[test]
     fn the_smallest_gap_is_that_of_brute_force(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
         prop_assume!(!boxes(shapes));
-        let found = points((shapes[0], pa), (shapes[1], pb));
-        let (g, truth) = (gap(&found), brute((shapes[0], pa), (shapes[1], pb)));
+        let contact = points((shapes[0], pa), (shapes[1], pb));
+        let (g, truth) = (gap(&contact), brute((shapes[0], pa), (shapes[1], pb)));
         prop_assert!((g - truth).abs() <= slack(shapes), "{g} instead of {truth}");
     }
 
@@ -354,12 +354,12 @@ fn moving_boxes_find_corners_of_both_and_edges_of_the_second() {
             Nearest::Edges
         };
         let k = kind as usize;
-        let found = points((a, pa), (b, pb));
-        let off = gap(&found) - truth;
+        let contact = points((a, pa), (b, pb));
+        let off = gap(&contact) - truth;
         counts[k] += 1;
         misses[k] += usize::from(off > slack([a, b]));
         // All that a pair with a still box has.
-        without[k] += usize::from(gap(&found[..20]) - truth > slack([a, b]));
+        without[k] += usize::from(gap(&contact[..20]) - truth > slack([a, b]));
         if off.is_finite() {
             worst[k] = worst[k].max(off);
         }
@@ -394,20 +394,20 @@ fn a_capsule_across_an_edge_touches_with_its_middle() {
                 Shape::Capsule { radius, half_length: 0.03 },
                 Pose { position: add(middle, direction, 0.004), rotation: [0.0, s, 0.0, c] },
             );
-            let found = points(capsule, table);
-            assert!(found[2].valid, "{degrees} deg");
-            assert!((found[2].gap - gap_wanted).abs() < 3e-5, "{} for {gap_wanted}", found[2].gap);
-            assert!(found[0].gap > 0.005 && found[1].gap > 0.005);
+            let contact = points(capsule, table);
+            assert!(contact[2].valid, "{degrees} deg");
+            assert!((contact[2].gap - gap_wanted).abs() < 3e-5, "{} for {gap_wanted}", contact[2].gap);
+            assert!(contact[0].gap > 0.005 && contact[1].gap > 0.005);
             if gap_wanted > 0.0 {
-                assert!(norm(sub(found[2].normal, n)) < 0.01, "{:?} for {n:?}", found[2].normal);
+                assert!(norm(sub(contact[2].normal, n)) < 0.01, "{:?} for {n:?}", contact[2].normal);
             }
         }
     }
     // Lying flat on the top, it touches with its ends and the middle does not count.
     let flat = Pose { position: [0.0, 0.0, 0.005], rotation: [0.0, 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()] };
-    let found = points((Shape::Capsule { radius: 0.006, half_length: 0.03 }, flat), table);
-    assert!(found[0].valid && found[1].valid && !found[2].valid);
-    assert!(found[..2].iter().all(|p| (p.gap + 0.001).abs() < 1e-12 && norm(sub(p.normal, [0.0, 0.0, 1.0])) < 1e-12));
+    let contact = points((Shape::Capsule { radius: 0.006, half_length: 0.03 }, flat), table);
+    assert!(contact[0].valid && contact[1].valid && !contact[2].valid);
+    assert!(contact[..2].iter().all(|p| (p.gap + 0.001).abs() < 1e-12 && norm(sub(p.normal, [0.0, 0.0, 1.0])) < 1e-12));
 }
 
 #[test]

@@ -105,8 +105,8 @@ fn set_up<S: Scalar>(
         // The row of a unit effort at a joint, as for a stop: 1 / sqrt(D) for itself, and -U / D climbs on to the root.
         let [first, second] = [&work[usize::from(ground.sliders[0])], &work[usize::from(ground.sliders[1])]];
         let minus = -one;
-        let own = inverse_sqrt_inertia[one_at];
-        let on_first = |p: Spatial<S>| first.subspace.dot(p) * own;
+        let diagonal = inverse_sqrt_inertia[one_at];
+        let on_first = |p: Spatial<S>| first.subspace.dot(p) * diagonal;
         let climbing = second.column.scale(minus * second.reciprocal);
         let row = [inverse_sqrt_inertia[other_at], on_first(climbing)];
         if let Some(turn) = ground.turn {
@@ -118,8 +118,8 @@ fn set_up<S: Scalar>(
             let [a, b, c] = rubbing.turn;
             rubbing.turning = one / (a * a + b * b + c * c);
         }
-        let (a1, a2, a12) = (own * own, row[0] * row[0] + row[1] * row[1], own * row[1]);
-        rubbing.first = own;
+        let (a1, a2, a12) = (diagonal * diagonal, row[0] * row[0] + row[1] * row[1], diagonal * row[1]);
+        rubbing.first = diagonal;
         rubbing.second = row;
         rubbing.response = [a1, a2, a12, one / (a1 * a2 - a12 * a12)];
         rubbing.slide = one / (a1.max(a2) + a12.abs());

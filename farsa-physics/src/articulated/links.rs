@@ -149,8 +149,8 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
         };
         // The link is turned so that its joint moves along or about its z axis. The segment is mounted on it the other
         // way round.
-        let own = if motion == Motion::Floating { IDENTITY } else { axis_frame(joint.axis) };
-        let mount = Mount { link: links.len() as u16, rotation: transpose(&own), position: [0.0; 3] };
+        let turn = if motion == Motion::Floating { IDENTITY } else { axis_frame(joint.axis) };
+        let mount = Mount { link: links.len() as u16, rotation: transpose(&turn), position: [0.0; 3] };
         let (nq, nv) = if motion == Motion::Floating { (7, 6) } else { (1, 1) };
         let mut link = Link {
             parent: at.link,
@@ -159,7 +159,7 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
             dof,
             reference: 0,
             root: roots,
-            rotation: product(&at.rotation, &own),
+            rotation: product(&at.rotation, &turn),
             offset: at.position,
             mass: 0.0,
             centre: [0.0; 3],

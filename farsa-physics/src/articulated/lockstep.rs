@@ -68,10 +68,10 @@ impl<S: Scalar<Real = f32>> Share<S> {
     fn run(&mut self, simd: S::Simd, model: &Model<f32>, words: &mut Words, lane: usize) {
         let lanes = words.lanes;
         // One word of these worlds.
-        let own = lane..lane + S::LANES;
+        let range = lane..lane + S::LANES;
         if words.arranged {
             for (x, from) in self.state.iter_mut().zip(words.state.chunks_exact(lanes)) {
-                *x = S::load(simd, &from[own.clone()]);
+                *x = S::load(simd, &from[range.clone()]);
             }
             // Untouched lanes come to the bits that they have.
             self.scratch.forward_kinematics(simd, model, &self.state);
@@ -79,7 +79,7 @@ impl<S: Scalar<Real = f32>> Share<S> {
             let commands = model.first_command()..model.first_point();
             let from = words.state.chunks_exact(lanes).skip(commands.start);
             for (x, from) in self.state[commands].iter_mut().zip(from) {
-                *x = S::load(simd, &from[own.clone()]);
+                *x = S::load(simd, &from[range.clone()]);
             }
         }
         step(simd, model, &mut self.state, &mut self.scratch);
@@ -89,7 +89,7 @@ impl<S: Scalar<Real = f32>> Share<S> {
             let velocity = [w.velocity.angular, w.velocity.linear];
             let all = [rotation, &w.position, &w.reference, velocity.as_flattened()];
             for (x, to) in all.into_iter().flatten().zip(to.chunks_exact_mut(lanes)) {
-                x.store(&mut to[own.clone()]);
+                x.store(&mut to[range.clone()]);
             }
         }
     }

@@ -127,7 +127,7 @@ struct Pairs<R> {
 }
 
 fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -> Result<Pairs<R>, ModelError> {
-    let mut all = Pairs {
+    let mut pairs = Pairs {
         list: Vec::with_capacity(robot.pairs.len()),
         points: 0,
         rolling: 0,
@@ -150,14 +150,14 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         let reach = reach_of(links, colliders[a].0.link, colliders[b].0.link);
         let rolls = p.surface.rolling_friction > 0.0;
         let entries = reach.dofs.len() * count;
-        all.list.push(Pair {
+        pairs.list.push(Pair {
             colliders: [a, b],
             flipped,
-            point: all.points,
+            point: pairs.points,
             points: count,
-            row: all.row_entries,
-            rolling_row: all.rolling_entries,
-            rolling: rolls.then_some(all.rolling),
+            row: pairs.row_entries,
+            rolling_row: pairs.rolling_entries,
+            rolling: rolls.then_some(pairs.rolling),
             friction: R::from_f64(p.surface.friction),
             rolling_friction: R::from_f64(p.surface.rolling_friction),
             stiffness: R::from_f64(p.surface.stiffness),
@@ -166,14 +166,14 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
             at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
             reach,
         });
-        all.points += count;
-        all.row_entries += entries;
+        pairs.points += count;
+        pairs.row_entries += entries;
         if rolls {
-            all.rolling += count;
-            all.rolling_entries += entries;
+            pairs.rolling += count;
+            pairs.rolling_entries += entries;
         }
     }
-    Ok(all)
+    Ok(pairs)
 }
 
 /// The positions at the start, and as many zeros as there are velocities.

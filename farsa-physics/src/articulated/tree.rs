@@ -52,22 +52,22 @@ fn place<S: Scalar, const SLIDING: bool>(
     // First pass: rotations and origins. A joint's frame turns about or slides along its own z axis.
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.q);
-        if let Some(own) = link.sliding.as_ref().filter(|_| SLIDING) {
+        if let Some(joint_frame) = link.sliding.as_ref().filter(|_| SLIDING) {
             let parent = (link.parent != WORLD).then(|| work[usize::from(link.parent)].position);
             let w = &mut work[i];
-            (w.rotation, w.position, w.centre) = own.place(simd, parent, q[at]);
+            (w.rotation, w.position, w.centre) = joint_frame.place(simd, parent, q[at]);
             continue;
         }
         let (rotation, position) = if link.motion == Motion::Floating {
             (matrix_of([q[at + 3], q[at + 4], q[at + 5], q[at + 6]]), [q[at], q[at + 1], q[at + 2]])
         } else {
-            let own = splat_matrix(simd, link.rotation);
+            let joint_frame = splat_matrix(simd, link.rotation);
             let offset = splat::<S>(simd, link.offset);
             let (frame, origin) = if link.parent == WORLD {
-                (own, offset)
+                (joint_frame, offset)
             } else {
                 let parent = &work[usize::from(link.parent)];
-                (product(&parent.rotation, &own), add(parent.position, rotate(&parent.rotation, offset)))
+                (product(&parent.rotation, &joint_frame), add(parent.position, rotate(&parent.rotation, offset)))
             };
             if link.motion == Motion::Revolute {
                 let (s, c) = sin_cos(q[at]);

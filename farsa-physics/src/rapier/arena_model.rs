@@ -149,8 +149,8 @@ fn add_vehicle(physics: &mut PhysicsWorld, robot: &MobileRobot, chassis: &Chassi
     let (axle, radius) = (robot.wheel_radius, robot.radius);
     let at = standing(pose, axle as f32);
     let rigid = || RigidBodyBuilder::dynamic().can_sleep(false);
-    let own = (1.0 - chassis.wheel_share) * chassis.mass;
-    let body = rigid().pose(at).additional_mass_properties(hull_mass(own, radius, robot.height));
+    let hull_share = (1.0 - chassis.wheel_share) * chassis.mass;
+    let body = rigid().pose(at).additional_mass_properties(hull_mass(hull_share, radius, robot.height));
     let body = physics.insert_body(body);
     // The hull begins at the height of a skid's middle, so that it does not rest on its rim.
     let bottom = (0.5 * axle).min(0.5 * robot.height);

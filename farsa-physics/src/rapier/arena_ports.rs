@@ -74,8 +74,8 @@ impl Contacts for ArenaWorld {
     fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
         let robots = self.plan.vehicles.len();
         let body = |pair: usize| if pair < robots { pair } else { self.model.bodies() + pair - robots };
-        let found = self.met.get(pair.index());
-        found.map_or([None; 2], |(other, _)| [Some(BodyId(body(pair.index()) as u16)), *other])
+        let contact = self.met.get(pair.index());
+        contact.map_or([None; 2], |(other, _)| [Some(BodyId(body(pair.index()) as u16)), *other])
     }
     fn pair_contact(&self, pair: PairId) -> PairContact {
         self.met.get(pair.index()).map_or_else(PairContact::default, |(_, contact)| *contact)
@@ -178,8 +178,8 @@ impl Snapshot for ArenaWorld {
     fn restore(&mut self, from: &[f32]) {
         self.pushes.clear();
         let (words, pairs) = (self.words.len(), PAIR_WORDS * self.met.len());
-        let kept = from.get(words + pairs..).and_then(unpack).filter(|kept| self.fits(&kept.physics));
-        if let Some(Kept { physics, lost, moved, .. }) = kept {
+        let snapshot = from.get(words + pairs..).and_then(unpack).filter(|snapshot| self.fits(&snapshot.physics));
+        if let Some(Kept { physics, lost, moved, .. }) = snapshot {
             (self.physics, self.lost, self.moved) = (physics, lost, moved);
             self.words.copy_from_slice(&from[..words]);
             for (met, words) in self.met.iter_mut().zip(from[words..].chunks_exact(PAIR_WORDS)) {

@@ -242,8 +242,8 @@ impl ArenaWorld {
     fn feel(&mut self) {
         let Self { plan, physics, met, model, .. } = self;
         let hulls = plan.vehicles.iter().map(|vehicle| (vehicle.hull, true));
-        let own = hulls.chain(plan.parcels.iter().map(|parcel| (parcel.collider, false)));
-        for ((collider, of_links), met) in own.zip(met) {
+        let colliders = hulls.chain(plan.parcels.iter().map(|parcel| (parcel.collider, false)));
+        for ((collider, of_links), met) in colliders.zip(met) {
             for pair in physics.narrow_phase.contact_pairs_with(collider) {
                 let other = if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
                 if other == plan.ground {
@@ -293,11 +293,11 @@ impl ArenaWorld {
                 let Some(link) = multibody.link_mut(link) else { continue };
                 let position = link.joint.coords()[AXLE as usize];
                 self.words[first + 2 + side] = (position - self.words[first + side]) / self.model.time_step;
-                let kept = turned(position, 0.0, 0.0);
-                self.words[first + side] = kept;
-                if kept != position {
+                let wrapped = turned(position, 0.0, 0.0);
+                self.words[first + side] = wrapped;
+                if wrapped != position {
                     link.joint = MultibodyJoint::new(link.joint.data, false);
-                    link.joint.apply_displacement(&[kept]);
+                    link.joint.apply_displacement(&[wrapped]);
                 }
             }
         }

@@ -323,8 +323,8 @@ fn drives_of(robot: &Robot, mounts: &[Mount<f64>]) -> (Vec<Drive>, Vec<(Law<f32>
     let (mut drives, mut laws) = (Vec::new(), Vec::new());
     for (segment, mount) in mounts.iter().enumerate() {
         let first = laws.len();
-        let own = robot.actuators.iter().enumerate().filter(|(_, a)| a.joint.index() == segment);
-        laws.extend(own.map(|(number, actuator)| (actuator.law.cast(), number)));
+        let actuators = robot.actuators.iter().enumerate().filter(|(_, a)| a.joint.index() == segment);
+        laws.extend(actuators.map(|(number, actuator)| (actuator.law.cast(), number)));
         if laws.len() > first {
             drives.push(Drive { carrier: usize::from(mount.link), first, count: laws.len() - first });
         }

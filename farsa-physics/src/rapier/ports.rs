@@ -142,7 +142,7 @@ impl Snapshot for World {
     /// Words that are damaged, or were saved by a world of another description, break the world down.
     fn restore(&mut self, from: &[f32]) {
         self.pushes.clear();
-        match unpack(from).filter(|kept| self.fits(kept)) {
+        match unpack(from).filter(|snapshot| self.fits(snapshot)) {
             Some(Kept { physics, commands, lost, moved }) => {
                 (self.physics, self.commands, self.lost, self.moved) = (physics, commands, lost, moved);
             }

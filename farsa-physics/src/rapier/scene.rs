@@ -124,15 +124,15 @@ impl Scene {
             object.or_else(|| self.robot.collider(name).map(Side::Collider))
         };
         let (a, b) = (side(a)?, side(b)?);
-        let found = self.sides().position(|pair| pair == [a, b] || pair == [b, a]);
-        found.map(|number| PairId(number as u16))
+        let position = self.sides().position(|pair| pair == [a, b] || pair == [b, a]);
+        position.map(|number| PairId(number as u16))
     }
 
     /// Both sides of every pair, the robot's own first.
     pub(crate) fn sides(&self) -> impl Iterator<Item = [Side; 2]> {
         let robot = &self.robot;
         let rides = |collider: usize| robot.colliders.get(collider).is_some_and(|c| robot_moves(robot, c.body));
-        let own = robot.pairs.iter().map(|pair| pair.colliders.map(Side::Collider));
+        let pairs = robot.pairs.iter().map(|pair| pair.colliders.map(Side::Collider));
         let others = self.objects.iter().enumerate().flat_map(move |(number, object)| {
             let moves = object.mass.is_some();
             let colliders = (0..robot.colliders.len()).filter(move |c| moves || rides(*c)).map(Side::Collider);
@@ -140,7 +140,7 @@ impl Scene {
                 (0..number).filter(move |other| moves || self.objects[*other].mass.is_some()).map(Side::SceneObject);
             colliders.chain(objects).map(move |other| [Side::SceneObject(number), other])
         });
-        own.chain(others)
+        pairs.chain(others)
     }
 
     /// Looks whether objects can be built. The robot is looked at in other places.

@@ -77,8 +77,8 @@ fn finger_pairs() -> Vec<Vec<[usize; 2]>> {
     let with = |fingers: core::ops::Range<usize>, parts: [usize; 3]| {
         TRUNK.into_iter().chain(parts).map(move |part| fingers.clone().map(|finger| [finger, part]).collect())
     };
-    let each = left.clone().flat_map(|a| right.clone().map(move |b| [a, b])).collect();
-    with(left, right_arm).chain(with(right, left_arm)).chain([each]).collect()
+    let pairs = left.clone().flat_map(|a| right.clone().map(move |b| [a, b])).collect();
+    with(left, right_arm).chain(with(right, left_arm)).chain([pairs]).collect()
 }
 
 /// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves, none for the world.

@@ -264,8 +264,8 @@ impl Icub {
             ("armature", self.armature),
         ];
         let wrong = |(_, value): &(&str, f64)| !value.is_finite() || *value < 0.0;
-        let found = positive.into_iter().find(|field| wrong(field) || field.1 == 0.0);
-        match found.or_else(|| others.into_iter().find(wrong)) {
+        let fault = positive.into_iter().find(|field| wrong(field) || field.1 == 0.0);
+        match fault.or_else(|| others.into_iter().find(wrong)) {
             Some((field, value)) => Err(IcubError::Value { field, value }),
             None => Ok(()),
         }

@@ -107,8 +107,10 @@ fn arm(side: Side) -> Vec<Parts> {
 /// Palms and fingers are drawn as their colliders, in colors: fingertips are dark.
 fn hands(robot: &Robot) -> Vec<Visual> {
     let of_hand = |collider: &&Collider| {
-        let own = collider.body.map_or(0, BodyId::index);
-        Side::ALL.into_iter().any(|side| own + 1 == side.arm().bodies().end || side.hand().bodies().contains(&own))
+        let segment = collider.body.map_or(0, BodyId::index);
+        Side::ALL
+            .into_iter()
+            .any(|side| segment + 1 == side.arm().bodies().end || side.hand().bodies().contains(&segment))
     };
     let colored = |collider: &Collider| {
         let tip = collider.name.ends_with("_distal");

@@ -60,8 +60,8 @@ impl<B: Copy, W: Kinematics<Body = B> + Vision + ?Sized> Sensor<W> for ColorBlob
         }
         let [columns, rows] = self.camera.size().map(|count| count as f32);
         for (values, [left, up, count]) in out.chunks_mut(3).zip(&self.sums) {
-            let found = if *count > 0.0 { [left / count, up / count, count / (columns * rows)] } else { [0.0; 3] };
-            values.iter_mut().zip(found).for_each(|(value, x)| *value = x);
+            let blob = if *count > 0.0 { [left / count, up / count, count / (columns * rows)] } else { [0.0; 3] };
+            values.iter_mut().zip(blob).for_each(|(value, x)| *value = x);
         }
     }
 }

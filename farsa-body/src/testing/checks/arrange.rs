@@ -115,16 +115,16 @@ where
     for (index, &body) in probe.floating.iter().enumerate() {
         let (pose, twist) = body_place(index);
         let (told, moving) = (world.pose(body), world.velocity(body));
-        let kept = near(&pose.position, &told.position)
+        let holds = near(&pose.position, &told.position)
             && same_turn(&pose, &told)
             && near(&twist.linear, &moving.linear)
             && near(&twist.angular, &moving.angular);
-        ensure(kept, Promise::BodyPlaced, || format!("floating body {index}: {told:?}, {moving:?}"))?;
+        ensure(holds, Promise::BodyPlaced, || format!("floating body {index}: {told:?}, {moving:?}"))?;
     }
     for (index, &body) in probe.planar.iter().enumerate() {
         let (pose, told, moving) = (planar_place(index), world.pose(body), world.velocity(body));
-        let kept = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
-        ensure(kept, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
+        let holds = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
+        ensure(holds, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
     }
     let before = Instant::from_world(world, probe);
     let placed = |body| probe.floating.contains(body) || probe.planar.contains(body);

@@ -38,8 +38,8 @@ where
         })?;
     }
     for channel in 0..channels {
-        let kept = a[channel] == backgrounds[0].to_bits() && b[channel] == backgrounds[1].to_bits();
-        ensure(!kept, Promise::SensorFills, || format!("channel {channel} of {channels} is not written"))?;
+        let unchanged = a[channel] == backgrounds[0].to_bits() && b[channel] == backgrounds[1].to_bits();
+        ensure(!unchanged, Promise::SensorFills, || format!("channel {channel} of {channels} is not written"))?;
         let [x, y] = [&a, &b].map(|values| f32::from_bits(values[channel]));
         ensure(x.is_finite(), Promise::SensorFinite, || format!("channel {channel} reads {x}"))?;
         ensure(x.to_bits() == y.to_bits(), Promise::Repeats, || format!("channel {channel} reads {x:e}, then {y:e}"))?;

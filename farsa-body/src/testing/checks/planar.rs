@@ -59,11 +59,11 @@ where
     let mut lamps: Vec<Lamp<W::Body>> = Vec::new();
     world.lamps(&mut |lamp| lamps.push(lamp));
     for (index, lamp) in lamps.iter().enumerate() {
-        let kept = bodies.contains(&lamp.body)
+        let holds = bodies.contains(&lamp.body)
             && lamp.position.iter().all(|x| x.is_finite())
             && lamp.intensity.is_finite()
             && lamp.intensity >= 0.0;
-        ensure(kept, Promise::Shown, || {
+        ensure(holds, Promise::Shown, || {
             format!("lamp {index} at {:?}, intensity {}, or of no body", lamp.position, lamp.intensity)
         })?;
     }
@@ -71,14 +71,14 @@ where
 }
 
 fn told<W: Sight>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
-    let mut all = Vec::new();
-    world.query_near(from, range, &mut |near| all.push(near));
-    all
+    let mut surfaces = Vec::new();
+    world.query_near(from, range, &mut |near| surfaces.push(near));
+    surfaces
 }
 
 fn shown(values: &[f32], what: impl Fn() -> String) -> Result<(), ConformanceError> {
-    let kept = values.iter().all(|x| (0.0..=1.0).contains(x));
-    ensure(kept, Promise::Shown, || format!("{} shows {values:?}", what()))
+    let holds = values.iter().all(|x| (0.0..=1.0).contains(x));
+    ensure(holds, Promise::Shown, || format!("{} shows {values:?}", what()))
 }
 
 fn check_near<W>(
@@ -106,11 +106,11 @@ where
         ensure(near.radius.is_finite() && near.radius >= 0.0, Promise::Near, || {
             broken(&format!("a radius of {}", near.radius))
         })?;
-        let kept = match &near.body {
+        let holds = match &near.body {
             Some(body) => bodies.contains(body) && distance >= -near.radius - CLOSE,
             None => near.radius == 0.0 && near.signal.is_none() && distance >= 0.0,
         };
-        ensure(kept, Promise::Near, || broken("a wall with a radius or a signal, or no body of the world"))?;
+        ensure(holds, Promise::Near, || broken("a wall with a radius or a signal, or no body of the world"))?;
         shown(&near.color, what)?;
         shown(near.signal.as_slice(), what)?;
         ensure(farther.contains(near), Promise::Near, || broken("not told within twice the range"))?;
@@ -143,8 +143,8 @@ where
     let what = || format!("look from {from:?} along {direction:?}");
     let (distance, body) = (sight.distance, sight.body);
     ensure((0.0..=range).contains(&distance), Promise::Look, || format!("{}: {distance} of {range}", what()))?;
-    let known = body.as_ref().is_none_or(|body| bodies.contains(body));
-    ensure(known, Promise::Look, || format!("{}: a body that does not exist", what()))?;
+    let listed = body.as_ref().is_none_or(|body| bodies.contains(body));
+    ensure(listed, Promise::Look, || format!("{}: a body that does not exist", what()))?;
     shown(&sight.color, what)?;
     let same = |range| look(range).is_some_and(|s| s.distance == distance && s.body == body);
     ensure(same(range) && same(2.0 * range), Promise::Look, || format!("{}: not seen again", what()))?;
@@ -152,10 +152,10 @@ where
     ensure(short < 1e-3 || look(short).is_none(), Promise::Look, || {
         format!("{}: seen at {distance} and within {short}", what())
     })?;
-    let told = |near: &NearbySurface<W::Body>| {
+    let same_surface = |near: &NearbySurface<W::Body>| {
         near.body == body && near.distance <= distance + CLOSE && near.color == sight.color
     };
-    ensure(near.iter().any(told), Promise::Near, || format!("{}: seen at {distance}, but not told", what()))?;
+    ensure(near.iter().any(same_surface), Promise::Near, || format!("{}: seen at {distance}, but not told", what()))?;
     if body.is_some() {
         let behind = world.cast_planar(from, direction, range, body);
         let other = behind.is_none_or(|behind| behind.body != body && behind.distance >= distance);

@@ -32,8 +32,8 @@ where
             hits += 1;
             let (distance, normal) = (hit.distance, hit.normal);
             ensure((0.0..=range).contains(&distance), Promise::Ray, || format!("{}: {distance} of {range}", ray()))?;
-            let known = hit.body.as_ref().is_none_or(|body| bodies.contains(body));
-            ensure(known, Promise::Ray, || format!("{}: a body that does not exist", ray()))?;
+            let listed = hit.body.as_ref().is_none_or(|body| bodies.contains(body));
+            ensure(listed, Promise::Ray, || format!("{}: a body that does not exist", ray()))?;
             let length = normal.iter().fold(0.0, |sum, x| sum + x * x);
             let against = (0..3).fold(0.0, |sum, i| sum + normal[i] * direction[i]);
             ensure((length - 1.0).abs() < 1e-3 && against < 1e-3, Promise::Ray, || {

@@ -66,8 +66,8 @@ where
     let Some(seen) = seen else { return Ok(false) };
     let distance = seen.distance;
     ensure((0.0..=range).contains(&distance), Promise::Vision, || format!("{}: {distance} of {range}", ray()))?;
-    let known = seen.body.as_ref().is_none_or(|body| bodies.contains(body));
-    ensure(known, Promise::Vision, || format!("{}: a body that does not exist", ray()))?;
+    let listed = seen.body.as_ref().is_none_or(|body| bodies.contains(body));
+    ensure(listed, Promise::Vision, || format!("{}: a body that does not exist", ray()))?;
     let shades = seen.color.unwrap_or_default();
     ensure(shades.iter().all(|shade| (0.0..=1.0).contains(shade)), Promise::Vision, || {
         format!("{}: colour {shades:?}", ray())

@@ -179,8 +179,8 @@ where
 {
     for pair in pairs(world) {
         let [a, b] = world.pair_bodies(pair);
-        let known = [&a, &b].into_iter().flatten().all(|body| probe.bodies.contains(body));
-        ensure((a.is_some() || b.is_some()) && known, Promise::PairBodies, || {
+        let listed = [&a, &b].into_iter().flatten().all(|body| probe.bodies.contains(body));
+        ensure((a.is_some() || b.is_some()) && listed, Promise::PairBodies, || {
             let which = [&a, &b].map(|body| body.as_ref().map(|body| probe.bodies.iter().position(|b| b == body)));
             format!("pair {}: bodies {which:?}", pair.0)
         })?;
@@ -232,13 +232,13 @@ where
             && contact.normal_force.is_finite()
             && contact.depth < f32::INFINITY;
         ensure(told, Promise::Finite, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
-        let kept = if contact.points == 0 {
+        let holds = if contact.points == 0 {
             contact.normal_force == 0.0 && contact.force == [0.0; 3] && contact.point == [0.0; 3]
         } else {
             contact.normal_force > 0.0
         };
-        let kept = kept && world.touches(pair) == (contact.points > 0);
-        ensure(kept, Promise::Contact, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
+        let holds = holds && world.touches(pair) == (contact.points > 0);
+        ensure(holds, Promise::Contact, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
     }
     Ok(())
 }
