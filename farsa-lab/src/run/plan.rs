@@ -7,7 +7,7 @@ use farsa_evo::{ObservationStatistics, ScoreShape};
 use farsa_num::crc32;
 
 use crate::error::Error;
-use crate::experiment::evaluator::Evaluator;
+use crate::experiment::evaluator::{Evaluator, TaskInfo};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Paragraph, Settings, Value};
 use crate::limits::Limits;
@@ -92,10 +92,8 @@ impl<'e> Plan<'e> {
                 None => self.settings.section(place, key)?,
             }
         }
-        match &file.beyond {
-            Some(place) => Err(Error::Usage(format!("{place}: more keys than a configuration has"))),
-            None => Ok(()),
-        }
+        let too_many = |place| Err(Error::Usage(format!("{place}: more keys than a configuration has")));
+        file.beyond.as_ref().map_or(Ok(()), too_many)
     }
 
     /// Plans the run of a complete configuration file.
@@ -158,47 +156,42 @@ impl<'e> Plan<'e> {
     pub(crate) fn strategy(&self) -> Result<AnyStrategy, Error> {
         self.no_observations()?;
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
-        let (populations, genes, trials) =
-            (task.info().populations.len(), task.info().parameters.len(), task.info().trials);
+        let TaskInfo { populations, parameters, trials, .. } = task.info();
+        let (populations, genes) = (populations.len(), parameters.len());
         let (objectives, ranges) = task.behavior().map_or((1, Vec::new()), |behaviour| {
             let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
             (1 + behaviour.objectives().len(), ranges)
         });
         drop(task);
-        let (gene_bits, settings, seed) = (self.experiment.gene_bits(), &self.settings, self.seed);
-        let evaluator: &dyn Fn() -> Result<Box<dyn Evaluator>, Error> = &|| self.evaluator();
+        let (name, experiment) = (self.definition().name(), self.experiment.name());
         if populations == 0 {
-            return Err(Error::Other(format!("{}: no population", self.experiment.name())));
+            return Err(Error::Other(format!("{experiment}: no population")));
         }
-        let (descriptors, limits) = (ranges.as_slice(), self.limits);
         let start = StrategyStart {
             populations,
             trials,
             genes,
-            gene_bits,
+            gene_bits: self.experiment.gene_bits(),
             objectives,
-            descriptors,
-            settings,
-            seed,
-            evaluator,
-            limits,
+            descriptors: &ranges,
+            settings: &self.settings,
+            seed: self.seed,
+            evaluator: &|| self.evaluator(),
+            limits: self.limits,
         };
         let strategy = self.definition().start(&start).map_err(|error| match error {
-            Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
-            Error::Usage(why) => Error::Usage(format!("{}: {why}", self.definition().name())),
+            Error::Other(why) => Error::Other(format!("{experiment}: {why}")),
+            Error::Usage(why) => Error::Usage(format!("{name}: {why}")),
             other => other,
         })?;
-        let found = (strategy.populations(), strategy.genes());
-        if found != (populations, genes) {
-            let (name, experiment) = (self.definition().name(), self.experiment.name());
+        let (groups, length) = (strategy.populations(), strategy.genes());
+        if (groups, length) != (populations, genes) {
             return Err(Error::Other(format!(
-                "the strategy `{name}` has {} populations of {} genes where {experiment} has {populations} of {genes}",
-                found.0, found.1
+                "the strategy `{name}` has {groups} populations of {length} genes where {experiment} has {populations} of {genes}"
             )));
         }
         let wanted = strategy.score_shape();
         if let Some(opponents) = strategy.opponents() {
-            let (name, experiment) = (self.definition().name(), self.experiment.name());
             if wanted != ScoreShape::new(1 + opponents, 0) || !(1..=trials).contains(&opponents) {
                 return Err(Error::Other(format!(
                     "the strategy `{name}` wants {wanted} of {opponents} opponents where {experiment} has {trials} trials"
@@ -206,10 +199,11 @@ impl<'e> Plan<'e> {
             }
             return Ok(strategy);
         }
-        if wanted.objectives > objectives || ![0, descriptors.len()].contains(&wanted.measures) {
-            let (name, experiment) = (self.definition().name(), self.experiment.name());
-            let found = ScoreShape::new(objectives, descriptors.len());
-            return Err(Error::Other(format!("the strategy `{name}` wants {wanted} where {experiment} has {found}")));
+        if wanted.objectives > objectives || ![0, ranges.len()].contains(&wanted.measures) {
+            let available = ScoreShape::new(objectives, ranges.len());
+            return Err(Error::Other(format!(
+                "the strategy `{name}` wants {wanted} where {experiment} has {available}"
+            )));
         }
         Ok(strategy)
     }
@@ -227,8 +221,7 @@ impl<'e> Plan<'e> {
     /// Returns the settings of trials. A population size of 0 is replaced by the size that the strategy chooses, because an
     /// experiment with several populations needs it.
     pub(crate) fn settings_of_trials(&self) -> Result<Settings, Error> {
-        let chosen_by_strategy = self.settings.count(POPULATION).is_ok_and(|size| size == 0);
-        let size = if chosen_by_strategy { self.size()? } else { 0 };
+        let size = if self.settings.count(POPULATION).is_ok_and(|size| size == 0) { self.size()? } else { 0 };
         self.settings_with(size)
     }
 
