@@ -270,9 +270,6 @@ fn leaked(text: &str) -> &'static str {
 }
 
 /// Converts a value of the document into that of a setting.
-///
-/// # Errors
-/// [`Error::Setting`] for tables and mixed lists.
 fn setting_value(value: &Value, path: &str, source: &Source) -> Result<SettingValue, Error> {
     let converted = match value {
         Value::Bool(flag) => Some(SettingValue::Flag(*flag)),

@@ -26,9 +26,6 @@ impl Default for Limits {
 
 impl Limits {
     /// Checks the size of a network.
-    ///
-    /// # Errors
-    /// [`Error::Other`] with both numbers.
     pub(crate) fn check_network(&self, parameters: usize, state: usize) -> Result<(), Error> {
         let most = self.network_values;
         for (what, count) in [("parameters", parameters), ("values to remember", state)] {

@@ -100,9 +100,6 @@ impl<W: ?Sized> Motor<W> for Nothing {
 }
 
 /// Builds the motor at a path of the document for robot number `robot`.
-///
-/// # Errors
-/// [`Error::Setting`] for a missing part of the robot.
 pub(crate) fn motor(
     kind: &MotorKind,
     scene: &Scene,

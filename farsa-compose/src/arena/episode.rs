@@ -33,6 +33,8 @@ pub(crate) struct ArenaEpisode {
     /// True if a term depends on the previous step.
     looks_back: bool,
     numbers: Vec<Numbers>,
+    /// Terms of each step, and terms of the last step only.
+    measured: [Vec<usize>; 2],
 }
 
 impl ArenaEpisode {
@@ -42,7 +44,12 @@ impl ArenaEpisode {
         let numbers = setup.scene.robots.iter();
         let numbers =
             numbers.map(|robot| Numbers { wheel_speed: robot.max_wheel_speed, radius: robot.radius, time_step });
+        let of_time = |late| {
+            let tallies = agents.ledger.tallies.iter().enumerate();
+            tallies.filter(|(_, tally)| tally.late == late).map(|(number, _)| number).collect()
+        };
         Self {
+            measured: [false, true].map(of_time),
             started: vec![Pose::planar([0.0; 2], 0.0); robots],
             before: vec![[0.0; 2]; robots],
             poses: vec![Pose::planar([0.0; 2], 0.0); robots],
@@ -54,9 +61,6 @@ impl ArenaEpisode {
     }
 
     /// Places everything at its start.
-    ///
-    /// # Errors
-    /// [`farsa_physics::arena::ArenaError::NoFreePlace`] after a thousand tries.
     pub(crate) fn arrange<W: PlanarWorld>(
         &mut self,
         world: &mut W,
@@ -72,17 +76,15 @@ impl ArenaEpisode {
         if self.setup.moving {
             self.setup.terms.iter_mut().for_each(|term| term.locate(world));
         }
-        for number in 0..self.setup.terms.len() {
+        for index in 0..self.measured[usize::from(late)].len() {
+            let number = self.measured[usize::from(late)][index];
             let Setup { members, terms, .. } = &self.setup;
-            let (term, tally) = (&terms[number], &self.agents.ledger.tallies[number]);
-            if tally.late != late {
-                continue;
-            }
+            let term = &terms[number];
             // The mean of one robot is its value.
             let value = if let ([member], [pose], [numbers]) = (&members[..], &self.poses[..], &self.numbers[..]) {
                 term.quick(world, &member.parts, pose, numbers).unwrap_or_else(|| self.value(world, term, 0))
             } else {
-                self.mean(world, term, tally)
+                self.mean(world, term, &self.agents.ledger.tallies[number])
             };
             self.agents.ledger.count(number, value);
         }
@@ -130,7 +132,28 @@ impl ArenaEpisode {
         (0..robots).map(|robot| tally.share(robot, self.value(world, term, robot))).sum::<f64>() / tally.robots()
     }
 
+    /// Returns true after an event that ends the trial early.
+    #[inline(always)]
+    fn has_event<W: PlanarWorld>(&self, world: &W) -> bool {
+        self.agents.document.episode.ends.iter().any(|ending| match ending {
+            Ending::Collision => self.setup.members.iter().any(|member| world.touches(PairId(member.parts.body.0))),
+            Ending::Success | Ending::Death => self.has_rare_event(*ending),
+        })
+    }
+
+    /// Separate, because the compiler would load its inputs in each step of a trial that ends by collision.
+    #[inline(never)]
+    fn has_rare_event(&self, ending: Ending) -> bool {
+        let Setup { members, foraging, .. } = &self.setup;
+        match ending {
+            Ending::Success => self.agents.ledger.would_succeed(),
+            Ending::Death => foraging.as_ref().is_some_and(|(_, field)| field.deaths() == members.len()),
+            Ending::Collision => false,
+        }
+    }
+
     /// Reads all sensors before any motor acts. Dead robots do neither.
+    #[inline(never)]
     fn act_as_team<W: PlanarWorld>(&mut self, world: &mut W) {
         let Setup { members, foraging, .. } = &mut self.setup;
         let Agents { spec: NetworkSpec { sensors, motors, inputs, outputs, .. }, networks, x, y, .. } =
@@ -246,17 +269,7 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
             }
         }
         self.measure(world, false);
-        let Setup { members, foraging, .. } = &self.setup;
-        let Agents { document, ledger, .. } = &self.agents;
-        let ends = |ending: &Ending| match ending {
-            Ending::Collision => members.iter().any(|member| world.touches(PairId(member.parts.body.0))),
-            Ending::Success => ledger.would_succeed(),
-            Ending::Death => foraging.as_ref().is_some_and(|(_, field)| field.deaths() == members.len()),
-        };
-        if !ledger.is_over() && !document.episode.ends.iter().any(ends) {
-            return None;
-        }
-        Some(self.conclude(world))
+        (self.agents.ledger.is_over() || self.has_event(world)).then(|| self.conclude(world))
     }
 
     /// Records the infrared rays: all of the first evolving robot, of the others those with a hit.

@@ -95,9 +95,6 @@ const BESIDE: f64 = 1.0;
 
 impl Scene {
     /// Builds the arena with its robots and things.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for duplicate names.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
         let world = &document.world;
         if world.engine == Engine::Articulated {
@@ -186,9 +183,6 @@ impl Scene {
     }
 
     /// Returns the thing of a name at a path of the document.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn thing(&self, name: &str, path: &str, source: &Source) -> Result<Thing, Error> {
         let thing = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
@@ -197,9 +191,6 @@ impl Scene {
     }
 
     /// Returns the body of a named thing.
-    ///
-    /// # Errors
-    /// As [`thing`](Self::thing), and [`Error::Setting`] for a wall.
     pub(crate) fn body(&self, name: &str, path: &str, source: &Source) -> Result<BodyId, Error> {
         let body = self.thing(name, path, source)?.body();
         body.ok_or_else(|| source.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
@@ -257,18 +248,12 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
 }
 
 /// Reads a point of the plane.
-///
-/// # Errors
-/// [`Error::Setting`] for three numbers.
 pub(crate) fn flat(at: &[f64], path: &str, source: &Source) -> Result<[f64; 2], Error> {
     let why = || format!("has {} values where 2 are wanted: robots on wheels have a plane", at.len());
     at.try_into().map_err(|_| source.wrong(path, why()))
 }
 
 /// Rejects a place beyond the walls, if there are any.
-///
-/// # Errors
-/// [`Error::Setting`] with the place and the walls.
 pub(crate) fn within_walls(document: &Document, at: [f64; 2], path: &str, source: &Source) -> Result<(), Error> {
     let (world, [x, y]) = (&document.world, at);
     let [width, depth] = world.size;
@@ -280,9 +265,6 @@ pub(crate) fn within_walls(document: &Document, at: [f64; 2], path: &str, source
 }
 
 /// Builds the robots of a document, and their groups.
-///
-/// # Errors
-/// [`Error::Setting`] without or with both of `robot` and `robots`, and for keys of robots with joints.
 fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Groups), Error> {
     let alone = document.robot.iter().map(|robot| (ROBOT.to_owned(), None, robot, "/robot".to_owned()));
     let grouped = document.robots.iter().enumerate();

@@ -119,9 +119,6 @@ impl Sensing {
 }
 
 /// Builds the sensor at a path of the document for robot number `robot`.
-///
-/// # Errors
-/// [`Error::Setting`] for an invalid sensor, [`Error::Setting`] for an unknown thing.
 pub(crate) fn sensor(
     kind: &SensorKind,
     scene: &Scene,

@@ -57,9 +57,6 @@ impl Member {
 
 impl Setup {
     /// Builds the parts of a document.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] and [`Error::Setting`] for parts that do not fit together.
     pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
         let scene = Scene::new(&document, source)?;
         let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
@@ -110,10 +107,6 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source
 }
 
 /// Builds the nest and the field of a document.
-///
-/// # Errors
-/// [`Error::Setting`] for an unknown nest, and [`Error::Setting`] for a nest that is no disc and for sensors, terms
-/// and endings that need the section `foraging`.
 fn foraging(
     document: &Document,
     scene: &Scene,

@@ -77,9 +77,6 @@ impl Before {
 
 impl Starting {
     /// Reads the placements of a document. Robots without one are placed last, anywhere.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown thing, [`Error::Setting`] for one that is placed twice or cannot be placed.
     pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();
         let robots: Vec<BodyId> = (0..scene.robots.len()).map(|robot| scene.parts(robot).body).collect();
@@ -181,9 +178,6 @@ impl Starting {
     }
 
     /// Places all bodies, by draws in the order of the rules.
-    ///
-    /// # Errors
-    /// [`ArenaError::NoFreePlace`] after a thousand tries.
     pub(crate) fn arrange<W: PlanarWorld>(&mut self, world: &mut W, stream: &mut Stream) -> Result<(), ArenaError> {
         world.clear();
         let Self { rules, size, standing, before, chosen } = self;
@@ -219,9 +213,6 @@ impl Starting {
 }
 
 /// Reads the point of a thing or robot. Only lamps may be beyond the walls.
-///
-/// # Errors
-/// [`Error::Setting`] for one beyond the walls or with three numbers.
 fn point_of(document: &Document, name: &str, at: &[f64], path: &str, source: &Source) -> Result<[f64; 2], Error> {
     let point = flat(at, path, source)?;
     if !document.objects.iter().any(|object| object.name == name && object.shines()) {

@@ -53,9 +53,6 @@ pub(crate) struct Numbers {
 
 impl Term {
     /// Reads the term at a path of the document. `sensors` are the channels of a robot.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown thing or sensor, [`Error::Setting`] for a thing without the measure.
     pub(crate) fn new(
         reward: &Reward,
         number: usize,

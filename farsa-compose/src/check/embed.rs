@@ -36,11 +36,6 @@ fn named(document: &Document) -> Vec<(String, &str)> {
 /// read from `folder`, the folder of `file`.
 ///
 /// Without a folder the text must contain them, because the text of a run is untrusted.
-///
-/// # Errors
-/// [`Error::Setting`] for a name outside the folder, for too many files, and for a file without a folder.
-/// [`Error::Setting`] for a file that is missing from those of the text. [`Error::Io`] and [`Error::File`] for
-/// unreadable files.
 pub(crate) fn embedded(
     file: &str,
     text: &str,

@@ -118,9 +118,6 @@ fn unit(text: &str) -> (&str, &str) {
 }
 
 /// Returns the document with the values of settings.
-///
-/// # Errors
-/// [`Error::Setting`] and [`Error::Setting`] for a table of another document.
 pub(crate) fn apply(document: &Value, entries: &[Entry], settings: &Settings) -> Result<Value, Error> {
     let mut document = document.clone();
     for Entry { setting, path, whole } in entries {

@@ -15,10 +15,6 @@ const MAX_PARTS: usize = 1000;
 const MAX_ERRORS: usize = 20;
 
 /// Reads the values of a text that match a schema, with their places.
-///
-/// # Errors
-/// [`Error::Usage`] for invalid TOML, [`Error::Setting`] with the nearest key or word,
-/// [`Error::Setting`] for invalid values. Each has file, line and key. [`Error::Several`] for more than one, by line.
 pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Source), Error> {
     let lines = Lines::new(text);
     let mut source = Source::new(file);

@@ -105,7 +105,6 @@ pub enum Placing {
         points: Vec<Vec<f64>>,
         /// An earlier placement `one-of` the same number of points. The point of the same number is taken, even if it
         /// is occupied. For several robots it is the point of the last one.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         like: Option<String>,
     },
     /// A joint at a uniformly drawn position.

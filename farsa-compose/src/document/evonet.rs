@@ -17,7 +17,6 @@ pub struct Evonet {
     /// except the largest bias and gain.
     ///
     /// Parameters with a value and a mutation rate of 0 in a `.phe` file are fixed. All others are searched.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Hidden neurons.
     #[serde(default)]

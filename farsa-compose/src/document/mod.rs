@@ -58,7 +58,6 @@ pub struct Document {
     #[serde(default)]
     pub objects: Vec<Object>,
     /// The robot, or the robots of a team with one genome.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<Robot>,
     /// Groups of different robots, instead of `robot`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -79,7 +78,6 @@ pub struct Document {
     #[serde(default)]
     pub start: Vec<Start>,
     /// Food and energy, if any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foraging: Option<Foraging>,
     /// Terms of the fitness.
     pub reward: Vec<Reward>,
@@ -96,7 +94,6 @@ pub struct Document {
     #[serde(default)]
     pub behaviour: BehaviourOfTerms,
     /// Parts that the test protocol `lesions` cuts, by default `parts`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesions: Option<Lesions>,
     /// Contents of the files that other keys name, by name. The text of a run contains them.
     #[serde(default)]

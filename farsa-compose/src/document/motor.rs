@@ -11,11 +11,9 @@ use crate::name::NAME;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Motor {
     /// Name for settings, drawings and recordings, by default the kind.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
     /// Names of the channels, in the order of the network's outputs, by default the name with a number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channels: Option<Vec<String>>,
     /// Enables the motor. The network has no outputs for a disabled one.
     #[serde(default = "yes")]
@@ -62,11 +60,9 @@ pub enum MotorKind {
         #[schemars(range(min = 1e-6, max = 1e6))]
         largest: f64,
         /// Torque per missing speed [N m s/rad or N s/m], by default that of the model's own motor.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         gain: Option<f64>,
         /// Largest torque of a motor with this `gain` [N m or N], by default unlimited.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         limit: Option<f64>,
     },
@@ -76,7 +72,6 @@ pub enum MotorKind {
         #[serde(default)]
         joints: Vec<String>,
         /// Largest torque [N m or N], by default that of the model's own motor.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         largest: Option<f64>,
     },
@@ -89,23 +84,18 @@ pub enum MotorKind {
         #[serde(default)]
         together: bool,
         /// Position at 0 [rad or m], by default the lowest of the joint.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         from: Option<f64>,
         /// Position at 1 [rad or m], by default the highest of the joint.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         to: Option<f64>,
         /// Stiffness of the servo [N m/rad or N/m], by default that of the model's own servo.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         stiffness: Option<f64>,
         /// Damping of the servo [N m s/rad or N s/m].
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 1e9))]
         damping: Option<f64>,
         /// Largest effort of the servo [N m or N].
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         limit: Option<f64>,
     },
@@ -115,11 +105,9 @@ pub enum MotorKind {
         #[serde(default)]
         joints: Vec<String>,
         /// Largest tension [N], by default that of the robot's own muscles.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-6, max = 1e9))]
         tension: Option<f64>,
         /// Lever arm of the tension about the joint [m].
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-6, max = 1e3))]
         moment_arm: Option<f64>,
     },

@@ -110,7 +110,6 @@ pub enum NetworkKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wire {
     /// Name for settings and parameters, by default the number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
     /// Names of inputs, such as `light 1`, in the order of addition.

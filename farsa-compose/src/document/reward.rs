@@ -9,11 +9,9 @@ use crate::name::NAME;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reward {
     /// Name for logs, tests and other terms, by default the kind.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
     /// Name in outcomes and recordings, by default `name`, in notes after the word "measured".
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
     /// Factor of the term. A negative one makes it a cost. With 0 it is only measured and not part of the fitness.
     #[serde(default = "one")]
@@ -23,17 +21,13 @@ pub struct Reward {
     #[serde(default)]
     pub over: Over,
     /// Number of the robot, from 1, by default all robots.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000))]
     pub robot: Option<u32>,
     /// Name of a group of `robots`, by default all robots, or those that evolve.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
     /// Name of another term. Only steps with a positive value of that term count.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<String>,
     /// Lower and upper limit of the value of a step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub clip: Option<[f64; 2]>,
     /// The kind of term.
@@ -53,7 +47,6 @@ pub enum RewardKind {
         #[schemars(range(min = 0.0, max = 1000.0))]
         within: f64,
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -65,7 +58,6 @@ pub enum RewardKind {
         /// Name of the thing.
         object: String,
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -77,7 +69,6 @@ pub enum RewardKind {
         /// Name of the thing.
         object: String,
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -95,13 +86,11 @@ pub enum RewardKind {
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
     /// Distance of the robot from its start [m].
     Displacement {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Distance of a thing from its start [m].
@@ -112,13 +101,11 @@ pub enum RewardKind {
     /// Speed of the robot [m/s].
     Speed {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Displacement in this step along the heading [m].
     Forward {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Displacement in this step along a direction of the world [m].
@@ -127,7 +114,6 @@ pub enum RewardKind {
         #[schemars(inner(range(min = -1.0, max = 1.0)))]
         along: [f64; 3],
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Position of a point of the robot along a direction of the world, from its origin [m]: `[1.0, 0.0, 0.0]` for x.
@@ -136,7 +122,6 @@ pub enum RewardKind {
         #[schemars(inner(range(min = -1.0, max = 1.0)))]
         along: [f64; 3],
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -146,7 +131,6 @@ pub enum RewardKind {
     /// Height of a point of the robot [m].
     Height {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -156,7 +140,6 @@ pub enum RewardKind {
     /// Uprightness of a body: 1 upright .. 0 lying .. -1 upside down.
     Upright {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Mean speed of joints [rad/s or m/s].
@@ -246,11 +229,9 @@ pub struct Condition {
     /// Name of a term.
     pub term: String,
     /// Lower limit. The value must be greater.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub above: Option<f64>,
     /// Upper limit. The value must be less.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub below: Option<f64>,
 }

@@ -15,19 +15,15 @@ pub struct Robot {
     #[schemars(range(min = 1, max = 1000))]
     pub count: u32,
     /// Radius of the hull [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 10.0))]
     pub radius: Option<f64>,
     /// Greatest speed [m/s].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0001, max = 10.0))]
     pub speed: Option<f64>,
     /// Range of the infrared sensors, from the hull [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 10.0))]
     pub infrared_range: Option<f64>,
     /// The URDF or MJCF file of a `model`, in the folder of the experiment's file or below it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Lets the first link of a URDF move freely instead of fixing it to the world.
     #[serde(default)]
@@ -45,7 +41,6 @@ pub struct RobotGroup {
     #[schemars(regex(pattern = NAME))]
     pub name: String,
     /// Color of the hulls for cameras: red, green and blue.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub color: Option<[f64; 3]>,
     /// The robots of the group.

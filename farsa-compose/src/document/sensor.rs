@@ -11,11 +11,9 @@ use crate::name::NAME;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensor {
     /// Name for settings, drawings and recordings, by default the kind.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
     /// Names of the channels, in the order of the network's inputs, by default the name with a number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channels: Option<Vec<String>>,
     /// Enables the sensor. The network has no inputs for a disabled one.
     #[serde(default = "yes")]
@@ -47,7 +45,6 @@ pub enum SensorKind {
         #[schemars(range(min = 0, max = 64))]
         groups: u32,
         /// Files of measured readings, for the model `tables`.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         tables: Option<MeasuredTables>,
     },
     /// Light intensity at the places of the infrared sensors: 0 dark .. 1.
@@ -146,7 +143,6 @@ pub enum SensorKind {
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
     /// Sum of the contact forces on the robot [N], nominal in the kinematic arena.
@@ -155,7 +151,6 @@ pub enum SensorKind {
         #[serde(default)]
         bodies: Vec<String>,
         /// The only thing that counts, or `floor`, for a robot with joints.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         with: Option<String>,
     },
     /// Position of a thing, in three channels. The third is its height.
@@ -163,7 +158,6 @@ pub enum SensorKind {
         /// Name of a thing, or of a body of a robot with joints.
         target: String,
         /// Body of a robot with joints from which it is seen, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -180,13 +174,11 @@ pub enum SensorKind {
     /// Pose of the robot: x, y, z [m] and a quaternion.
     BodyPose {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
     /// Velocity of the robot [m/s] and angular velocity [rad/s], three channels each.
     BodyVelocity {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Axes of the velocity.
         #[serde(default)]
@@ -195,7 +187,6 @@ pub enum SensorKind {
     /// Height of the robot's origin [m].
     Height {
         /// Body of a robot with joints, by default the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
         /// Point of that body [m].
         #[serde(default)]
@@ -208,11 +199,9 @@ pub enum SensorKind {
         #[serde(default)]
         joints: Vec<String>,
         /// Position that reads 0 [rad or m], by default the lowest of the joint.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         from: Option<f64>,
         /// Position that reads 1 [rad or m], by default the highest of the joint.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         to: Option<f64>,
     },
@@ -272,7 +261,6 @@ pub struct MeasuredBody {
 pub struct Camera {
     /// Body of a robot with joints that carries the camera at its origin, with the view along its x axis, by default
     /// the first.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Field of view around straight ahead [deg].
     #[schemars(range(min = 1.0, max = 360.0))]
@@ -295,7 +283,6 @@ pub struct Camera {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Eye {
     /// Body that carries it, by default the robot's first.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Position in the body's axes [m].
     #[serde(default)]

@@ -15,7 +15,6 @@ pub struct World {
     #[schemars(inner(range(min = 0.05, max = 1000.0)))]
     pub size: [f64; 2],
     /// A file with more `objects`, in the folder of the experiment's file or below it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
     /// Surrounds the arena with walls, for robots on wheels.
     pub walls: bool,
@@ -83,7 +82,6 @@ pub struct Object {
     #[schemars(regex(pattern = NAME))]
     pub name: String,
     /// Initial center: x and y, and z for experiments with joints [m], by default a trial has to place it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
     pub at: Option<Vec<f64>>,
     /// Direction of the length, counter-clockwise from the x axis [deg].

@@ -53,18 +53,15 @@ pub enum Wrapper {
     /// Passes on 0 for some channels.
     Lesion {
         /// First and last channel, from 0, by default all.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
         channels: Option<[u32; 2]>,
     },
     /// Holds some channels at a value after some steps.
     Stuck {
         /// First and last channel, from 0, by default all.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
         channels: Option<[u32; 2]>,
         /// The held value, by default the last one.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
         value: Option<f64>,
         /// Number of steps before.

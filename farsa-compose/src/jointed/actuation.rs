@@ -44,9 +44,6 @@ pub(crate) fn limit(scene: &Scene, joint: JointId) -> Option<f64> {
 }
 
 /// Returns the actuator of the motor at a path: the joint's own of a kind, or a new one with the given law.
-///
-/// # Errors
-/// [`Error::Setting`] for a joint without an actuator, and for an actuator of two motors.
 fn taken(
     scene: &mut Scene,
     joint: JointId,
@@ -71,9 +68,6 @@ fn taken(
 }
 
 /// Returns a velocity actuator, and its command per unit of speed [N m s/rad or N s/m, or 1].
-///
-/// # Errors
-/// As [`taken`], and [`Error::Setting`] for a limit without a gain.
 pub(crate) fn velocity(
     scene: &mut Scene,
     joint: JointId,
@@ -99,9 +93,6 @@ pub(crate) fn velocity(
 }
 
 /// Returns a torque actuator, and its limit [N m or N].
-///
-/// # Errors
-/// As [`taken`], and [`Error::Setting`] without a limit.
 pub(crate) fn torque(
     scene: &mut Scene,
     joint: JointId,
@@ -122,9 +113,6 @@ pub(crate) fn torque(
 }
 
 /// Returns a servo. Stiffness, damping and limit are those of a new one.
-///
-/// # Errors
-/// As [`taken`].
 pub(crate) fn servo(
     scene: &mut Scene,
     joint: JointId,
@@ -143,9 +131,6 @@ pub(crate) fn servo(
 }
 
 /// Returns a pair of muscles. Tension and moment arm are those of a new pair.
-///
-/// # Errors
-/// As [`taken`], and [`Error::Setting`] for a joint without a range.
 pub(crate) fn muscles(
     scene: &mut Scene,
     joint: JointId,

@@ -51,9 +51,6 @@ impl<W: SpatialWorld> Motor<W> for Driving {
 
 /// Returns the joints of a motor: those named, or all. Unless the law is `given`, all means those with an actuator of
 /// the kind.
-///
-/// # Errors
-/// As [`Scene::joints`].
 pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &Source) -> Result<Vec<JointId>, Error> {
     type Is = fn(&Law<f64>) -> bool;
     let (joints, given, of_kind): (_, _, Is) = match kind {
@@ -67,9 +64,6 @@ pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &So
 }
 
 /// Builds the motor at a path of the document. Adds the actuators that the robot lacks.
-///
-/// # Errors
-/// [`Error::Setting`] for a missing actuator, [`Error::Setting`] for an unknown joint.
 pub(crate) fn motor(kind: &MotorKind, scene: &mut Scene, path: &str, source: &Source) -> Result<Driving, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
     let joints = joints_of(kind, scene, path, source)?;

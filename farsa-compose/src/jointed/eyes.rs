@@ -32,17 +32,11 @@ fn size(eye: &Eye) -> [usize; 2] {
 }
 
 /// Builds a sensor of the image.
-///
-/// # Errors
-/// [`Error::Setting`] for an unknown body.
 pub(crate) fn image(eye: &Eye, scene: &Scene, path: &str, source: &Source) -> Result<CameraImage, Error> {
     Ok(CameraImage::new(camera(eye, size(eye), scene, path, source)?))
 }
 
 /// Builds a sensor of the positions of colors in the image.
-///
-/// # Errors
-/// [`Error::Setting`] for an unknown body, [`Error::Setting`] without colors.
 pub(crate) fn blobs(
     eye: &Eye,
     colors: &[ColorRange],
@@ -57,9 +51,6 @@ pub(crate) fn blobs(
 }
 
 /// Builds a sensor of the offset between two things or bodies in the image.
-///
-/// # Errors
-/// [`Error::Setting`] for an unknown body or thing, [`Error::Setting`] for a marker.
 pub(crate) fn offset(
     eye: &Eye,
     [of, from]: [&String; 2],

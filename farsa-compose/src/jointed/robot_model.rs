@@ -23,9 +23,6 @@ const MAX_CONTACTS: usize = 200;
 
 impl RobotModel {
     /// Builds the robot of a document at its base.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for a missing or invalid file, and for keys of robots on wheels.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
         let Some(robot) = &document.robot else { return Err(source.wrong("/robot", "there is none")) };
         let document::Robot { kind, count, radius, speed, infrared_range, file, floating, base } = robot;

@@ -38,9 +38,6 @@ const FLOOR: &str = "floor";
 
 impl Scene {
     /// Builds the robot of a document with its surroundings.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an invalid robot and for duplicate names.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
         let RobotModel { mut robot, frames } = RobotModel::new(document, source)?;
         let own = [robot.segments.len(), robot.colliders.len()];
@@ -137,9 +134,6 @@ impl Scene {
 
     /// Returns a named body of the robot or frame of its file, with the pose in that body. Without a name it is the
     /// first body.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn body(
         &self,
         name: Option<&String>,
@@ -166,9 +160,6 @@ impl Scene {
     }
 
     /// Returns a point of a body of the robot.
-    ///
-    /// # Errors
-    /// As [`body`](Self::body).
     pub(crate) fn point(
         &self,
         name: Option<&String>,
@@ -181,9 +172,6 @@ impl Scene {
     }
 
     /// Returns the center of a thing or of a body of the robot, and the distance of a thing's surface from it [m].
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] for a wall.
     pub(crate) fn point_named(&self, name: &String, path: &str, source: &Source) -> Result<(NamedPoint, f64), Error> {
         if let Some(thing) = self.things.iter().find(|thing| thing.name == *name) {
             return match thing.what {
@@ -203,9 +191,6 @@ impl Scene {
     }
 
     /// Returns named joints, or without names all of the robot for which `all` is true.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] without any joint.
     pub(crate) fn joints(
         &self,
         names: &[String],
@@ -242,9 +227,6 @@ impl Scene {
     }
 
     /// Returns the contact pairs between bodies of the robot, by default all, and a thing, the floor or everything.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name, [`Error::Setting`] without any pair.
     pub(crate) fn pairs(
         &self,
         bodies: &[String],

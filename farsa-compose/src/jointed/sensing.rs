@@ -113,9 +113,6 @@ impl Sensing {
 }
 
 /// Builds the sensor at a path of the document.
-///
-/// # Errors
-/// [`Error::Setting`] for an invalid sensor, [`Error::Setting`] for an unknown body, joint or thing.
 pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
     let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);

@@ -37,9 +37,6 @@ pub(crate) struct Setup {
 
 impl Setup {
     /// Builds the parts of a document.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] and [`Error::Setting`] for parts that do not fit together.
     pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
         refuse(&document, source)?;
         let mut scene = Scene::new(&document, source)?;

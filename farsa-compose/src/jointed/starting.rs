@@ -55,10 +55,6 @@ const TRIES: u32 = 1000;
 
 impl Starting {
     /// Reads the placements of a document.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown thing or joint, [`Error::Setting`] for one that is placed twice or cannot be
-    /// placed.
     pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
         let mut rules: Vec<Rule> = Vec::new();
         for (index, start) in document.start.iter().enumerate() {

@@ -50,10 +50,6 @@ pub(crate) struct Term {
 
 impl Term {
     /// Reads a term at a path of the document. `sensors` are the channels of the robot.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown thing, body, joint or sensor, [`Error::Setting`] for a part without the
-    /// measure.
     pub(crate) fn new(
         kind: &RewardKind,
         path: &str,

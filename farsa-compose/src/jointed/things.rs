@@ -57,9 +57,6 @@ fn in_space(at: Option<&[f64]>, height: f64) -> [f64; 3] {
 
 impl Thing {
     /// Adds an object of the document to a scene.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for objects of robots on wheels.
     pub(crate) fn add(
         object: &Object,
         robot: &mut Robot,

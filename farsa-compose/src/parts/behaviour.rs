@@ -18,9 +18,6 @@ pub(crate) struct TermBehaviour {
 
 impl TermBehaviour {
     /// Reads the objectives and measures of a document with these terms. Returns `None` without any.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for an empty range.
     pub(crate) fn new(behaviour: &BehaviourOfTerms, tallies: &[Tally], source: &Source) -> Result<Option<Self>, Error> {
         let mut terms = Vec::new();
         let mut term = |name: &String, path: String| {

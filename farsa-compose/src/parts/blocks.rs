@@ -25,9 +25,6 @@ struct ResolvedLink {
 }
 
 /// Builds the layout of a document. It updates the inputs, then links and updates each cluster, then the outputs.
-///
-/// # Errors
-/// [`Error::Setting`] for an unknown end, [`Error::Setting`] for an ambiguous name and for duplicate links.
 pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<BlockLayoutBuf, Error> {
     let link_ends = link_ends(blocks, ends, source)?;
     let mut links: Vec<(usize, ResolvedLink)> = Vec::new();

@@ -15,9 +15,6 @@ pub(crate) struct Choice<const N: usize> {
 
 impl<const N: usize> Choice<N> {
     /// Builds the choice of a rule of a document. `like` names an earlier rule.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for a name without an earlier choice, or with another number of points.
     pub(crate) fn new(
         points: Vec<[f32; N]>,
         like: Option<&String>,

@@ -22,8 +22,20 @@ impl<S: Channels, M: Channels> Equipment<S, M> {
     }
 
     /// Reads all sensors into the channels of their spans.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn sense<W>(&mut self, spans: &Spans, world: &W, x: &mut [f32])
+    where
+        S: Sensor<W>,
+    {
+        // A single sensor has all channels. Most experiments have no other, and the loop costs a call in each step.
+        match &mut self.sensors[..] {
+            [Part::Bare(sensor)] => sensor.read(world, x),
+            _ => self.sense_all(spans, world, x),
+        }
+    }
+
+    #[inline(never)]
+    fn sense_all<W>(&mut self, spans: &Spans, world: &W, x: &mut [f32])
     where
         S: Sensor<W>,
     {
@@ -33,8 +45,19 @@ impl<S: Channels, M: Channels> Equipment<S, M> {
     }
 
     /// Drives all motors by the channels of their spans.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drive<W>(&mut self, spans: &Spans, y: &[f32], world: &mut W)
+    where
+        M: Motor<W>,
+    {
+        match &mut self.motors[..] {
+            [Part::Bare(motor)] => motor.drive(y, world),
+            _ => self.drive_all(spans, y, world),
+        }
+    }
+
+    #[inline(never)]
+    fn drive_all<W>(&mut self, spans: &Spans, y: &[f32], world: &mut W)
     where
         M: Motor<W>,
     {

@@ -27,10 +27,6 @@ const MAX_LINES: usize = 1000;
 
 impl EvonetNetwork {
     /// Builds a network at rest between the given numbers of inputs and outputs, from flags or from a file.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for weights that are all 0 and for invalid numbers. [`Error::Setting`] for a file that is not
-    /// a network of this shape, and for flags in addition to a file.
     pub(crate) fn new(
         evonet: &Evonet,
         shape: [usize; 2],

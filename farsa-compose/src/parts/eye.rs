@@ -11,9 +11,6 @@ use crate::parts::channel_quantity::ChannelQuantity;
 pub(crate) type Eye = LinearCamera<Vec<Beam>, Vec<ColorBand>>;
 
 /// Builds a camera on a body.
-///
-/// # Errors
-/// As [`LinearCamera::for_view`].
 pub(crate) fn eye(body: BodyId, camera: &Camera) -> Result<Eye, ChannelError> {
     let narrow = |ends: [f64; 3]| ends.map(|x| x as f32);
     let band = |color: &ColorRange| ColorBand { low: narrow(color.low), high: narrow(color.high) };

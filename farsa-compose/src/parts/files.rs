@@ -22,9 +22,6 @@ impl<'f> Files<'f> {
 }
 
 /// Returns the tables of the sensor at a path. All robots share them.
-///
-/// # Errors
-/// [`Error::Setting`] for invalid tables.
 pub(crate) fn measured(
     tables: &MeasuredTables,
     files: &mut Files<'_>,

@@ -35,9 +35,6 @@ impl Groups {
     }
 
     /// Returns the group of the name at a path.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the nearest name.
     pub(crate) fn find(&self, name: &str, path: &str, source: &Source) -> Result<[usize; 2], Error> {
         let names = self.groups.iter().map(|(name, _)| name.as_str());
         self.named(name).ok_or_else(|| Error::unknown(&source.of(path), "group of robots", name, names))

@@ -25,9 +25,6 @@ pub(crate) struct HandWired {
 
 impl HandWired {
     /// Builds the wires of a document.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown end, [`Error::Setting`] for another number of biases than of outputs.
     pub(crate) fn new(
         wires: &[Wire],
         bias: &[f64],

@@ -39,9 +39,6 @@ pub(crate) struct Ledger {
 impl Ledger {
     /// Builds the terms of a document with these robots. `of_steps` is true for terms that depend on the previous
     /// step.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
     pub(crate) fn new(document: &Document, of_steps: &[bool], groups: &Groups, source: &Source) -> Result<Self, Error> {
         let rewards = &source.names.terms;
         let tally = |(number, reward)| Tally::new(reward, number, rewards, groups, source);

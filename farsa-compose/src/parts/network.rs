@@ -31,10 +31,6 @@ pub(crate) enum AnyNetwork {
 
 impl AnyNetwork {
     /// Builds the network of a document at rest.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for invalid numbers, and the errors of [`HandWired::new`], [`blocks::layout`] and
-    /// [`EvonetNetwork::new`].
     pub(crate) fn new(document: &Document, ends: Ends<'_>, source: &Source) -> Result<Self, Error> {
         let made = Self::between(document, ends, source);
         made.map_err(|error| if let Error::Other(why) = error { source.wrong("/network", why) } else { error })

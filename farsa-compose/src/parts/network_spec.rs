@@ -32,9 +32,6 @@ const MAX_CHANNELS: usize = 10_000;
 
 impl NetworkSpec {
     /// Builds the network of a document whose enabled sensors and motors have these numbers of channels.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for too few or too many channels, and the errors of the network.
     pub(crate) fn new(document: &Document, channels: [Vec<usize>; 2], source: &Source) -> Result<Self, Error> {
         let [mut absent, mut about] = [Vec::new(), Vec::new()];
         let [sensor_channels, motor_channels] = channels;
@@ -128,9 +125,6 @@ fn output_names(document: &Document, spans: &Spans, source: &Source) -> Result<V
 }
 
 /// Returns the names that a document gives to channels, or the default names.
-///
-/// # Errors
-/// [`Error::Setting`] for another number of names than of channels.
 fn given_names(
     given: Option<&Vec<String>>,
     names: Vec<String>,

@@ -35,9 +35,6 @@ impl<K> Part<K> {
 
 impl<K: Channels> Part<K> {
     /// Builds the enabled parts of a list of a document. `make` builds a kind at a path.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for invalid wrappers and beyond the budget, and the errors of `make`.
     pub(crate) fn list<'d, D: 'd>(
         list: &str,
         items: impl Iterator<Item = (&'d D, &'d [Wrapper], bool)>,

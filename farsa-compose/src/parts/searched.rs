@@ -33,10 +33,6 @@ const MAX_FIXED: f64 = 1e6;
 impl Searched {
     /// Selects the searched parameters: all except the fixed ones, and one of each shared list. `given` contains
     /// further fixed values.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown parameter, [`Error::Setting`] for duplicates, and for values and ranges that
-    /// do not fit together.
     pub(crate) fn new(
         all: Vec<Parameter>,
         given: &BTreeMap<String, f64>,
@@ -101,9 +97,6 @@ impl Searched {
     }
 
     /// Checks that the network accepts the fixed values.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] if it does not.
     pub(crate) fn check(&self, network: &AnyNetwork, source: &Source) -> Result<(), Error> {
         let least = self.origins.iter().map(|origin| match origin {
             Origin::Searched(number) => self.parameters[*number].ends[0] as f32,

@@ -8,9 +8,6 @@ use crate::limits::Limits;
 use crate::parts::eye::rays_of;
 
 /// Checks the numbers of sensors, motors and rays of all robots, of which `infrared` rays belong to infrared sensors.
-///
-/// # Errors
-/// [`Error::Setting`] with the numbers.
 pub(crate) fn check_parts(document: &Document, robots: usize, infrared: usize, source: &Source) -> Result<(), Error> {
     let Document { sensors, motors, .. } = document;
     let Limits { parts, rays: most_rays, .. } = source.limits;
@@ -47,9 +44,6 @@ impl MemoryBudget {
     }
 
     /// Takes the given number of values for the part at a path.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] with the number of values taken so far.
     pub(crate) fn take(&mut self, values: usize, path: &str, source: &Source) -> Result<(), Error> {
         let total = self.total;
         self.left = self.left.checked_sub(values).ok_or_else(|| {

@@ -35,9 +35,6 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Builds the term at a number of the document. `names` are those of all terms.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for keys that do not fit together.
     pub(crate) fn new(
         reward: &Reward,
         number: usize,

@@ -16,9 +16,6 @@ pub(crate) struct Wanted {
 
 impl Wanted {
     /// Reads the condition at a path.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for an unknown term, [`Error::Setting`] for a condition without limits.
     pub(crate) fn new(condition: &Condition, path: &str, names: &[String], source: &Source) -> Result<Self, Error> {
         let Condition { term, above, below } = condition;
         let names_of = names.iter().map(String::as_str);

@@ -29,9 +29,6 @@ const ITSELF: usize = 32;
 
 impl<T: Channels> Wrapped<T> {
     /// Wraps a part as the wrapper at a path requires, within the memory budget.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for missing channels, for limits in the wrong order, and beyond the budget.
     pub(crate) fn new(
         inner: T,
         wrapper: &Wrapper,
