@@ -1,48 +1,48 @@
-//! The error of constructors of sensors and motors, and writes to slices that may be short.
+//! Errors of sensors and motors, and a helper that writes to slices of any length.
 
 use core::fmt;
 
-/// A number by which a sensor, a motor or a wrapper cannot be built.
+/// The error that is returned when a sensor, a motor or a wrapper cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ChannelError {
     /// A number is NaN, infinite or out of its range.
     Value {
-        /// Which number.
+        /// The name of the number.
         field: &'static str,
-        /// Its value.
+        /// The invalid value.
         value: f32,
     },
-    /// The two ends of a range are equal, in the wrong order or not finite.
+    /// The ends of a range are equal, in the wrong order or not finite.
     Range {
-        /// Where the range begins.
+        /// The beginning of the range.
         from: f32,
-        /// Where it ends.
+        /// The end of the range.
         to: f32,
     },
-    /// A selection of channels reaches beyond the last, or runs backwards.
+    /// A selection of channels ends after the last channel or before its start.
     Selection {
-        /// First selected channel.
+        /// The first selected channel.
         start: usize,
-        /// One past the last selected channel.
+        /// The index after the last selected channel.
         end: usize,
-        /// The number of channels.
+        /// The number of available channels.
         channels: usize,
     },
-    /// A list cannot be divided into groups of one size, or is empty.
+    /// A list is empty or cannot be divided into groups of equal size.
     Groups {
-        /// The listed parts.
+        /// The kind of elements in the list.
         field: &'static str,
-        /// The number available.
+        /// The number of elements in the list.
         count: usize,
-        /// The number of parts in a group.
+        /// The required size of a group.
         size: usize,
     },
-    /// The memory given to a wrapper is too short.
+    /// The memory that was provided for a wrapper is too short.
     Memory {
-        /// Its length.
+        /// The length of the memory.
         given: usize,
-        /// The length that is needed.
+        /// The required length.
         needed: usize,
     },
 }

@@ -1,7 +1,8 @@
-//! Sensors and motors made of sensors and motors: tuples, arrays, slices, options, references and boxes.
+//! Composition of sensors and motors. Tuples, arrays, slices, options, references and boxes of them are again sensors
+//! and motors.
 //!
-//! The parts are read and driven in order, each over its own part of the slice. A short slice serves the first parts in
-//! full and leaves the last with what remains.
+//! The parts are processed in order, and each part has its own range of the slice. If the slice is too short, the first
+//! parts are served completely and a later part receives the rest.
 
 #[cfg(feature = "alloc")]
 use alloc::{boxed::Box, vec::Vec};

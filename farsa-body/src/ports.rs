@@ -1,4 +1,4 @@
-//! The capability ports: what a body may ask of a world, and the two sides that use them.
+//! The ports of a world. Each trait describes one capability that sensors and motors can require.
 
 use crate::pose::{Pose, Twist};
 
@@ -10,7 +10,7 @@ macro_rules! id {
         pub struct $name(pub u16);
 
         impl $name {
-            /// The position in the robot's list.
+            /// Returns the index in the corresponding list of the robot.
             pub fn index(self) -> usize {
                 usize::from(self.0)
             }
@@ -19,132 +19,138 @@ macro_rules! id {
 }
 
 id! {
-    /// A rigid body: the index of its segment in the robot's description.
+    /// Identifies a rigid body by the index of its segment in the description of the robot.
     BodyId
 }
 id! {
-    /// A joint: the index of the segment that it carries.
+    /// Identifies a joint by the index of the segment that it carries.
     JointId
 }
 id! {
-    /// An actuator: its index in the robot's list of actuators.
+    /// Identifies an actuator by its index in the robot's list of actuators.
     ActuatorId
 }
 id! {
-    /// A pair of colliders that may touch: its index in the robot's list of pairs.
+    /// Identifies a pair of colliders that may touch by its index in the robot's list of pairs.
     PairId
 }
 
-/// The handles of a world's parts. All worlds of FARSA use [`BodyId`], [`JointId`] and [`ActuatorId`].
+/// The types that identify the parts of a world. All worlds of FARSA use [`BodyId`], [`JointId`] and [`ActuatorId`].
 #[diagnostic::on_unimplemented(message = "`{Self}` is no world of FARSA: it names no bodies, joints or actuators")]
 pub trait Handles {
-    /// A rigid body.
+    /// The type that identifies a rigid body.
     type Body: Copy;
-    /// A joint with one degree of freedom.
+    /// The type that identifies a joint with one degree of freedom.
     type Joint: Copy;
-    /// Something that can be commanded.
+    /// The type that identifies an actuator.
     type Actuator: Copy;
 }
 
-/// A world that moves by itself.
+/// A world that can be simulated step by step.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be stepped",
     note = "a lane of a batch and a board have ports but no step"
 )]
 pub trait World: Handles {
-    /// Lets one control step of [`World::time_step`] pass.
+    /// Advances the world by one control step, whose duration is [`World::time_step`].
     fn step(&mut self);
-    /// The control step [s].
+    /// Returns the duration of a control step [s].
     fn time_step(&self) -> f32;
 }
 
-/// Where bodies are and how they move.
+/// Access to the poses and velocities of bodies.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not tell where its bodies are (port `Kinematics`)")]
 pub trait Kinematics: Handles {
-    /// The pose of a body's frame in the world.
+    /// Returns the pose of a body's frame in the world.
     fn pose(&self, body: Self::Body) -> Pose;
-    /// The velocity of a body's origin and its angular velocity, in the world's axes.
+    /// Returns the velocity of a body's origin and its angular velocity. Both are given in the axes of the world.
     fn velocity(&self, body: Self::Body) -> Twist;
-    /// Where the origin of a body's frame is [m]: the same as the pose has, for less where a world turns rotations into quaternions.
+    /// Returns the origin of a body's frame [m]. This can be faster than [`pose`](Self::pose), because no quaternion is
+    /// needed.
     fn origin(&self, body: Self::Body) -> [f32; 3] {
         self.pose(body).position
     }
 }
 
-/// Joint angles and speeds.
+/// Access to the positions and speeds of joints.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not tell its joints' angles (port `Joints`)")]
 pub trait Joints: Handles {
-    /// The joint's angle [rad] or displacement [m].
+    /// Returns the angle [rad] or the displacement [m] of a joint.
     fn position(&self, joint: Self::Joint) -> f32;
-    /// The joint's speed [rad/s or m/s].
+    /// Returns the speed of a joint [rad/s or m/s].
     fn speed(&self, joint: Self::Joint) -> f32;
 }
 
-/// Actuators that take commands.
+/// Access to actuators, which can be commanded.
 #[diagnostic::on_unimplemented(message = "`{Self}` has no actuators to command (port `Actuated`)")]
 pub trait Actuated: Handles {
-    /// Sets an actuator's command, which holds until the next one.
+    /// Sets the command of an actuator. It remains active until the next command.
     ///
-    /// A muscle pair takes [agonist, antagonist] activations [0..1]. The others read the first value only: a servo its
-    /// desired position [rad or m], a torque motor its torque [N m or N], a velocity motor its speed [rad/s or m/s].
+    /// A muscle pair uses both values as the activations of agonist and antagonist in [0..1]. Most other actuators
+    /// ignore the second value. For a servo, the first value is the desired position [rad or m]. For a torque motor it
+    /// is the torque [N m or N], and for a velocity motor the speed [rad/s or m/s]. A custom law
+    /// ([`Held`](crate::actuators::Held)) uses both.
     ///
-    /// A wheel takes its speed [rad/s], an LED its brightness and a signal its value [0..1]. An attachment device holds
-    /// above 0.5.
+    /// For mobile robots, the first value is the speed of a wheel [rad/s], the brightness of an LED or the value of a
+    /// signal [0..1]. An attachment device holds if the value is above 0.5.
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
 
-/// Forces from outside, such as a hand that pushes.
+/// Support for external forces, for example to push a robot by hand.
 #[diagnostic::on_unimplemented(
     message = "nothing can push the bodies of `{Self}` (port `ExternalForces`)",
     note = "kinematic worlds know no forces"
 )]
 pub trait ExternalForces: Handles {
-    /// Lets a force [N] act on a body at a point [m], both in the world's axes, during the next control step alone.
+    /// Applies a force [N] to a body at a point [m] during the next control step. Both vectors are given in the axes of
+    /// the world.
     ///
-    /// Force and moment about the center of mass keep their direction in that step. Several forces on a body add up. A
-    /// body that does not move or does not exist is unaffected. A snapshot does not hold pending forces, and
-    /// [`Arrange::clear`] and [`Snapshot::restore`] discard them.
+    /// The force and its moment about the center of mass keep their direction during the step. Several forces on the
+    /// same body are added. Forces on bodies that do not move or do not exist have no effect. Snapshots do not contain
+    /// pending forces, and [`Arrange::clear`] and [`Snapshot::restore`] discard them.
     fn apply_force(&mut self, body: Self::Body, point: [f32; 3], force: [f32; 3]);
 }
 
-/// The first surface on a ray.
+/// The first surface that is hit by a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
-    /// Distance along the ray [m].
+    /// The distance along the ray [m].
     pub distance: f32,
-    /// Outward unit normal of the surface, in the world's axes.
+    /// The outward unit normal of the surface, in the axes of the world.
     pub normal: [f32; 3],
-    /// The body that was met, or `None` for what does not move.
+    /// The body that was hit, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
 }
 
-/// Ray casts.
+/// Support for ray casts.
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot cast rays (port `Rays`)")]
 pub trait Rays: Handles {
-    /// The first surface on a ray from `origin` [m] along the unit vector `direction` within `range` [m], in the world's axes.
+    /// Returns the first surface on a ray from `origin` [m] in the direction of the unit vector `direction`. The ray
+    /// ends after `range` [m]. All vectors are given in the axes of the world.
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
-/// The first surface on a camera's ray.
+/// The first surface that is visible along a ray of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seen<B> {
-    /// Distance along the ray [m].
+    /// The distance along the ray [m].
     pub distance: f32,
-    /// The body that is met, or `None` for what does not move.
+    /// The body that is visible, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
-    /// The color it shows, red, green and blue [0..1], or `None` for a surface without a color, which hides what is
-    /// behind it.
+    /// The red, green and blue components of its color [0..1]. A surface without a color (`None`) still hides
+    /// everything behind it.
     pub color: Option<[f32; 3]>,
 }
 
-/// Many rays from one place, for cameras with an image.
+/// Support for cameras, which cast many rays from one point.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
 pub trait Vision: Handles {
-    /// The first surface on each ray from `from` [m] along unit vectors within `range` [m], in the world's axes, except
-    /// those of `but`. `seen` [directions]. Bodies around `from` are invisible, and the longer slice is used only in
-    /// part.
+    /// Finds the first surface on each ray that starts at `from` [m] in the given directions. The directions are unit
+    /// vectors in the axes of the world, and rays end after `range` [m]. The body `but` is ignored, and bodies that
+    /// contain `from` are invisible. The results are written to `seen`. If the slices have different lengths, only the
+    /// common part is used.
     fn look(
         &self,
         from: [f32; 3],
@@ -155,52 +161,53 @@ pub trait Vision: Handles {
     );
 }
 
-/// The contact of a pair of colliders at the end of the last step.
+/// The contact between a pair of colliders at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairContact {
-    /// Number of points that carry a normal force > 0.
+    /// The number of contact points with a normal force > 0.
     pub points: u32,
-    /// Force on the pair's first body, in the world's axes [N]. The second body gets the opposite.
+    /// The force on the first body of the pair, in the axes of the world [N]. The opposite force acts on the second
+    /// body.
     pub force: [f32; 3],
-    /// Sum of the normal forces of the points [N].
+    /// The sum of the normal forces at all points [N].
     pub normal_force: f32,
-    /// Mean of the touching points, weighted by normal force, in the world [m], or zero when none touches.
+    /// The mean position of the contact points in the world, weighted by normal force [m]. It is zero if there is no
+    /// contact.
     pub point: [f32; 3],
-    /// The largest penetration of the pair's points [m]. A negative value is the remaining distance, if the world
-    /// computes it.
+    /// The largest penetration depth [m]. A negative value is the remaining distance, which only some worlds compute.
     pub depth: f32,
 }
 
-/// Contacts between the pairs of colliders that the robot lists.
+/// Access to the contacts between the pairs of colliders in the description of the robot.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not report its contacts (port `Contacts`)")]
 pub trait Contacts: Handles {
-    /// Number of pairs. They are numbered from 0 in the order of the robot's list.
+    /// Returns the number of pairs. They are numbered in the order of the robot's list, starting at 0.
     fn pairs(&self) -> usize;
-    /// The two bodies of a pair, or `None` for what does not move.
+    /// Returns the two bodies of a pair. `None` represents the static environment.
     fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
-    /// Returns the contact of a pair at the end of the last step, all zero for a pair that does not exist.
+    /// Returns the contact of a pair at the end of the last step. It is all zero for a pair that does not exist.
     fn pair_contact(&self, pair: PairId) -> PairContact;
-    /// Returns whether a point of the pair carries a normal force > 0. A world may compute this faster than all of
+    /// Returns true if there is a contact point with a normal force > 0. This can be faster than
     /// [`pair_contact`](Self::pair_contact).
     fn touches(&self, pair: PairId) -> bool {
         self.pair_contact(pair).points > 0
     }
 }
 
-/// A surface near a place of a planar world, and its point that is nearest to there.
+/// A surface that is close to a given position in a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NearbySurface<B> {
-    /// The body whose surface it is, or `None` for a wall.
+    /// The body to which the surface belongs, or `None` for a wall.
     pub body: Option<B>,
-    /// The nearest point [m].
+    /// The nearest point of the surface [m].
     pub point: [f32; 2],
-    /// Distance to that point [m]. Negative within a round body, 0 within another one.
+    /// The distance to this point [m]. Inside a round body it is negative, and inside any other body it is 0.
     pub distance: f32,
-    /// Radius of a round body [m], or 0 for a wall and for a body of another form.
+    /// The radius of a round body [m]. It is 0 for walls and for other shapes.
     pub radius: f32,
-    /// The color it shows, red, green and blue [0..1]. A robot shows the color of its LEDs.
+    /// The red, green and blue components of its color [0..1]. For a robot with LEDs this is the color of the LEDs.
     pub color: [f32; 3],
     /// The signal of a robot [0..1], or `None` for everything else.
     pub signal: Option<f32>,
@@ -210,35 +217,36 @@ pub struct NearbySurface<B> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanarHit<B> {
-    /// Distance along the line [m].
+    /// The distance along the line [m].
     pub distance: f32,
-    /// The body that is seen, or `None` for a wall.
+    /// The body that is visible, or `None` for a wall.
     pub body: Option<B>,
-    /// The color it shows, red, green and blue [0..1].
+    /// The red, green and blue components of its color [0..1].
     pub color: [f32; 3],
 }
 
-/// A lamp of a planar world.
+/// A lamp in a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lamp<B> {
-    /// The body that shines.
+    /// The body that emits the light.
     pub body: B,
-    /// Its center [m].
+    /// The center of the lamp [m].
     pub position: [f32; 2],
-    /// The intensity, in a unit of the caller's choice.
+    /// The intensity of the lamp. You can choose any unit.
     pub intensity: f32,
 }
 
-/// Surfaces and lines of sight in a plane, of a planar world or at the height of a camera.
+/// Access to surfaces and lines of sight in a plane. It can be a planar world or the plane of a camera.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces and their colours (port `Sight`)")]
 pub trait Sight: Handles {
-    /// Reports every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
+    /// Calls `tell` for every surface that has a point within `range` [m] of `from` [m]. Walls are reported first,
+    /// followed by bodies.
     ///
-    /// The robot that asks is reported, too.
+    /// Note that the robot at `from` is reported as well.
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<Self::Body>));
-    /// The first surface along the unit vector `direction` from `from` [m] within `range` [m], except that of `but`.
-    /// Bodies around `from` are invisible.
+    /// Returns the first surface on a line that starts at `from` [m] in the direction of the unit vector `direction`.
+    /// The line ends after `range` [m]. The body `but` is ignored, and bodies that contain `from` are invisible.
     fn cast_planar(
         &self,
         from: [f32; 2],
@@ -248,59 +256,60 @@ pub trait Sight: Handles {
     ) -> Option<PlanarHit<Self::Body>>;
 }
 
-/// The ground, lamps and attachments of a planar world, for sensors of mobile robots.
+/// Access to the ground, the lamps and the attachments of a planar world. It is used by the sensors of mobile robots.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its ground and lamps (port `Planar`)")]
 pub trait Planar: Sight {
-    /// The color of the ground at a place [m]: red, green and blue [0..1].
+    /// Returns the red, green and blue components of the color of the ground at a position [m], each in [0..1].
     fn ground(&self, at: [f32; 2]) -> [f32; 3];
-    /// Reports every lamp.
+    /// Calls `tell` for every lamp.
     fn lamps(&self, tell: &mut dyn FnMut(Lamp<Self::Body>));
-    /// Returns the body that a robot's attachment device holds.
+    /// Returns the body that is held by the attachment device of a robot, if any.
     fn attached(&self, robot: Self::Body) -> Option<Self::Body> {
         let _ = robot;
         None
     }
 }
 
-/// The state of a world as numbers.
+/// Support for saving and restoring the state of a world.
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot be saved and restored (port `Snapshot`)")]
 pub trait Snapshot {
-    /// Length of a snapshot.
+    /// Returns the length of a snapshot.
     fn snapshot_len(&self) -> usize;
-    /// Writes every word that a step or a port reads and a step or a command wrote. `out` [`snapshot_len`].
+    /// Writes a snapshot to `out`, which must have [`snapshot_len`](Self::snapshot_len) elements. It contains
+    /// everything that influences later steps or is reported by a port.
     fn save(&self, out: &mut [f32]);
-    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits. `from` [`snapshot_len`].
+    /// Restores a snapshot that was written by [`Snapshot::save`]. The simulation then continues with identical bits.
     fn restore(&mut self, from: &[f32]);
 }
 
-/// Setting a world up for a new episode.
+/// Support for preparing a world for a new episode.
 #[diagnostic::on_unimplemented(
     message = "the bodies of `{Self}` cannot be put somewhere (port `Arrange`)",
     note = "a board has ports, but no call can move its robot"
 )]
 pub trait Arrange: Handles {
-    /// Restores the description's start: every joint at 0 or the nearest limit, everything at rest, no commands or
-    /// contacts.
+    /// Restores the initial state of the description. All joints are at 0 or the nearest limit, everything is at rest,
+    /// and there are no commands or contacts.
     fn clear(&mut self);
-    /// Puts a joint at a position [rad or m] with a speed [rad/s or m/s].
+    /// Sets the position [rad or m] and the speed [rad/s or m/s] of a joint.
     fn place_joint(&mut self, joint: Self::Joint, position: f32, speed: f32);
-    /// Puts a floating body somewhere with a velocity. Ignored for a body that hangs on a joint.
+    /// Sets the pose and the velocity of a floating body. Calls for bodies that are attached to a joint are ignored.
     fn place_body(&mut self, body: Self::Body, pose: Pose, twist: Twist);
-    /// Ends the placement: what the other ports report is true again.
+    /// Completes the placement. Afterwards all other ports report the new state.
     fn finish_placement(&mut self);
 }
 
-/// Something with a fixed number of channels: every sensor and every motor.
+/// A component with a fixed number of channels. It is implemented by all sensors and motors.
 pub trait Channels {
-    /// Number of values read or driven.
+    /// Returns the number of values that are read or driven.
     fn channels(&self) -> usize;
-    /// Discards the memory of an earlier episode (noise streams, delays). Called at the start of each.
+    /// Resets the internal state, such as noise streams and delays. It is called at the start of each episode.
     fn reset(&mut self) {}
 }
 
-/// Something that reads a world.
+/// A sensor, which reads values from a world.
 ///
-/// A custom sensor names the ports that it needs and works in every world that has them:
+/// A custom sensor requires only the ports that it uses. It then works in every world that supports them:
 ///
 /// ```
 /// use farsa_body::ports::{Channels, Kinematics, Sensor};
@@ -324,16 +333,16 @@ pub trait Channels {
     note = "the world may lack a port that the sensor needs"
 )]
 pub trait Sensor<W: ?Sized>: Channels {
-    /// Writes one value per channel. `out` [channels]. A shorter slice gets the first channels.
+    /// Writes one value per channel to `out`. If the slice is too short, it receives only the first channels.
     fn read(&mut self, world: &W, out: &mut [f32]);
 }
 
-/// Something that commands a world.
+/// A motor, which sends commands to a world.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot drive a world of type `{W}`",
     note = "the world may lack a port that the motor needs"
 )]
 pub trait Motor<W: ?Sized>: Channels {
-    /// Turns one value per channel into commands. `y` [channels]. A shorter slice drives the first channels.
+    /// Converts one value per channel into commands. If the slice is too short, only the first channels are driven.
     fn drive(&mut self, y: &[f32], world: &mut W);
 }

@@ -1,24 +1,24 @@
-//! Positions and orientations, velocities.
+//! Poses and velocities of rigid bodies.
 
 use farsa_num::Real;
 
-/// Where a frame is: position [m] and orientation as a unit quaternion [x, y, z, w].
+/// The position [m] and the orientation of a frame. The orientation is a unit quaternion [x, y, z, w].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<R = f32> {
-    /// The frame's origin in the reference frame [m].
+    /// The position of the frame's origin in the reference frame [m].
     pub position: [R; 3],
-    /// The rotation from the frame to the reference frame, unit quaternion [x, y, z, w].
+    /// The rotation from the frame to the reference frame as a unit quaternion [x, y, z, w].
     pub rotation: [R; 4],
 }
 
-/// The velocity of a body, both parts in the world's axes.
+/// The velocity of a body. Both components are given in the axes of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Twist<R = f32> {
-    /// Velocity of the body's origin [m/s].
+    /// The velocity of the body's origin [m/s].
     pub linear: [R; 3],
-    /// Angular velocity [rad/s].
+    /// The angular velocity [rad/s].
     pub angular: [R; 3],
 }
 
@@ -35,32 +35,34 @@ pub(crate) fn norm<R: Real>(v: &[R]) -> R {
 }
 
 impl<R: Real> Pose<R> {
-    /// The pose of the reference frame itself.
+    /// Returns the pose of the reference frame itself.
     pub fn identity() -> Self {
         let (o, l) = (R::from_f64(0.0), R::from_f64(1.0));
         Self { position: [o, o, o], rotation: [o, o, o, l] }
     }
 
-    /// A pose without rotation, at `position` [m].
+    /// Creates a pose without rotation at the given `position` [m].
     pub fn at(position: [R; 3]) -> Self {
         Self { position, ..Self::identity() }
     }
 
-    /// A pose on the ground, at `place` [m], turned counter-clockwise by `heading` [rad] about the vertical.
+    /// Creates a pose on the ground at the position (x, y) [m]. The frame is rotated counter-clockwise about the
+    /// vertical axis by `heading` [rad].
     pub fn planar([x, y]: [R; 2], heading: R) -> Self {
         let o = R::from_f64(0.0);
         let (sine, cosine) = farsa_num::sin_cos(R::from_f64(0.5) * heading);
         Self { position: [x, y, o], rotation: [o, o, sine, cosine] }
     }
 
-    /// Where the frame's x axis points to, seen from above, counter-clockwise from that of the reference frame [rad].
+    /// Returns the direction of the frame's x axis as seen from above [rad]. The angle is measured counter-clockwise
+    /// from the x axis of the reference frame.
     pub fn heading(&self) -> R {
         let [x, y, z, w] = self.rotation;
         let (one, two) = (R::from_f64(1.0), R::from_f64(2.0));
         farsa_num::atan2(two * (w * z + x * y), one - two * (y * y + z * z))
     }
 
-    /// A vector of this frame in the axes of the reference frame.
+    /// Rotates a vector from this frame to the reference frame.
     pub fn rotate(&self, v: [R; 3]) -> [R; 3] {
         let [x, y, z, w] = self.rotation;
         let u = [x, y, z];
@@ -70,25 +72,25 @@ impl<R: Real> Pose<R> {
         [v[0] + w * t[0] + c[0], v[1] + w * t[1] + c[1], v[2] + w * t[2] + c[2]]
     }
 
-    /// A vector of the reference frame in the axes of this frame.
+    /// Rotates a vector from the reference frame to this frame.
     pub fn rotate_back(&self, v: [R; 3]) -> [R; 3] {
         let [x, y, z, w] = self.rotation;
         Self { position: self.position, rotation: [-x, -y, -z, w] }.rotate(v)
     }
 
-    /// A point of this frame [m] in the reference frame [m].
+    /// Transforms a point [m] from this frame to the reference frame.
     pub fn transform(&self, point: [R; 3]) -> [R; 3] {
         let p = self.rotate(point);
         [p[0] + self.position[0], p[1] + self.position[1], p[2] + self.position[2]]
     }
 
-    /// A point of the reference frame [m] in this frame [m].
+    /// Transforms a point [m] from the reference frame to this frame.
     pub fn transform_back(&self, point: [R; 3]) -> [R; 3] {
         let p = self.position;
         self.rotate_back([point[0] - p[0], point[1] - p[1], point[2] - p[2]])
     }
 
-    /// The pose of `inner`, given in this frame, in the reference frame.
+    /// Converts the pose `inner`, which is relative to this frame, to the reference frame.
     pub fn compose(&self, inner: &Self) -> Self {
         let [ax, ay, az, aw] = self.rotation;
         let [bx, by, bz, bw] = inner.rotation;
@@ -103,7 +105,7 @@ impl<R: Real> Pose<R> {
         }
     }
 
-    /// Returns the pose in another precision, each number rounded once.
+    /// Converts the pose to a different precision. Each number is rounded once.
     pub fn cast<Q: Real>(&self) -> Pose<Q> {
         Pose {
             position: self.position.map(|x| Q::from_f64(x.to_f64())),

@@ -1,6 +1,7 @@
-//! The names of a first program: `use farsa_body::prelude::*;`.
+//! The most common names for a first program. Import them with `use farsa_body::prelude::*;`.
 //!
-//! The trait [`World`](crate::ports::World) is in scope without its name, because each world of `farsa-physics` has it.
+//! The trait [`World`](crate::ports::World) is imported without a name, because each world of `farsa-physics` has the
+//! same name.
 
 pub use crate::motors::{Muscles, ServoGroup, SpeedAndTurn, TorqueMotor, WheelVelocity};
 pub use crate::ports::World as _;

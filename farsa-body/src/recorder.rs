@@ -1,17 +1,18 @@
-//! Recorders of an episode: a file, a page, a viewer.
+//! Recorders, which receive the data of an episode and write it to a file, a page or a viewer.
 
 use crate::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
 use crate::pose::Pose;
 
-/// A recorder of an episode, tick by tick: a table, a page, a custom viewer.
+/// A recorder receives the data of an episode tick by tick, for example to write a table or a page.
 ///
-/// The loop passes its values in any order and ends the tick with [`tick`](Self::tick). Every other method has an empty
-/// default, so a loop may pass everything and a recorder may keep a part. `()` keeps nothing and costs nothing. A pair
-/// of recorders keeps both.
+/// During a tick, the values can be passed in any order. The call of [`tick`](Self::tick) ends the tick. All other
+/// methods do nothing by default. Callers may therefore pass all data, and each recorder stores only the data that it
+/// needs. The unit type `()` records nothing at no cost. A pair of recorders passes the data to both of them.
 ///
 /// # For implementors
-/// An episode must not depend on its recorder, so a recorder returns nothing and cannot fail. A second value in a tick
-/// replaces or adds, as the method documents. A missing value is NaN in a table.
+/// An episode must not depend on its recorder. Therefore the methods return nothing and cannot fail. A second value in
+/// the same tick replaces the first one or is added to it, as documented by each method. Missing values are written as
+/// NaN in tables.
 ///
 /// ```
 /// use farsa_body::ports::BodyId;
@@ -30,53 +31,53 @@ use crate::pose::Pose;
 /// }
 /// ```
 pub trait Recorder {
-    /// The parameters of the controller that will act, once before the first tick [parameters].
+    /// Records the parameters of the controller. It is called once before the first tick.
     fn parameters(&mut self, parameters: &[f32]) {
         let _ = parameters;
     }
-    /// Where a body is.
+    /// Records the pose of a body.
     fn pose(&mut self, body: BodyId, pose: Pose) {
         let _ = (body, pose);
     }
-    /// A pair that touches. One call for each.
+    /// Records a pair of colliders that touch. It is called once per pair.
     fn contact(&mut self, pair: PairId, contact: &PairContact) {
         let _ = (pair, contact);
     }
-    /// A ray that a sensor cast, from its origin to where it ended [m], and whether it met something. One call for
-    /// each.
+    /// Records a ray of a sensor from its origin to its end [m]. The argument `met` is true if it hit something. It is
+    /// called once per ray.
     fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
         let _ = (from, to, met);
     }
-    /// A point that is not a body but worth seeing, such as one that the fitness measures from [m], numbered from 0.
+    /// Records a point that is not a body [m], such as a point that is used by the fitness. Points are numbered from 0.
     fn point(&mut self, point: usize, position: [f32; 3]) {
         let _ = (point, position);
     }
-    /// The color of a pixel of a camera's image, red, green and blue in [0, 1]. One call for each, number 0 is the
-    /// upper left one.
+    /// Records the color of a pixel in a camera's image, with red, green and blue in [0, 1]. It is called once per
+    /// pixel, and pixel 0 is at the upper left.
     fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
         let _ = (image, pixel, color);
     }
-    /// The values of the sensors [sensors].
+    /// Records the values of the sensors.
     fn sensors(&mut self, x: &[f32]) {
         let _ = x;
     }
-    /// The states of the neurons between sensors and motors [neurons].
+    /// Records the states of the neurons between the sensors and the motors.
     fn neurons(&mut self, states: &[f32]) {
         let _ = states;
     }
-    /// The outputs of the controller [outputs].
+    /// Records the outputs of the controller.
     fn outputs(&mut self, y: &[f32]) {
         let _ = y;
     }
-    /// Whatever else has a name [scalars].
+    /// Records all other values that have a name.
     fn scalars(&mut self, values: &[f64]) {
         let _ = values;
     }
-    /// Ends the tick: what was recorded since the last is how things were at `time` [s].
+    /// Ends the tick. The data since the previous tick describe the state at `time` [s].
     fn tick(&mut self, time: f64);
 }
 
-/// Records where these bodies of a world are and which pairs touch.
+/// Records the poses of the given bodies and all pairs that touch.
 pub fn record_world<W, R>(world: &W, bodies: impl IntoIterator<Item = BodyId>, recorder: &mut R)
 where
     W: Kinematics<Body = BodyId> + Contacts + ?Sized,

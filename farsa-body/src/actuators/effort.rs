@@ -1,13 +1,13 @@
-//! The effect of an actuator on its joint.
+//! The torque that an actuator exerts on its joint, and its derivatives.
 
-/// The effect of an actuator on its joint at one instant.
+/// The torque that an actuator exerts on its joint at one instant. The derivatives are used for implicit integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Effort<S> {
-    /// Torque [N m] or force [N], positive towards a growing joint position.
+    /// The torque [N m] or force [N]. Positive values increase the joint position.
     pub torque: S,
-    /// The part of -dtorque/dposition that may be taken implicitly, never negative [N m/rad or N/m].
+    /// The part of -dtorque/dposition that can be integrated implicitly [N m/rad or N/m]. It is never negative.
     pub stiffness: S,
-    /// -dtorque/dspeed, never negative [N m s/rad or N s/m].
+    /// The value of -dtorque/dspeed [N m s/rad or N s/m]. It is never negative.
     pub damping: S,
 }

@@ -1,70 +1,71 @@
-//! Actuator laws: from a joint's position, speed and a command to an effort and its derivatives.
+//! Actuator laws, which compute an effort and its derivatives from the state of a joint and a command.
 
 use farsa_num::{Real, Scalar};
 
 use crate::actuators::effort::Effort;
 use crate::actuators::muscle::MusclePair;
 
-/// A position servo: a spring and damper to the commanded position, with a capped effort.
+/// A position servo, which acts like a spring and a damper. The effort is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Servo<R> {
-    /// Position gain [N m/rad or N/m].
+    /// The position gain [N m/rad or N/m].
     pub stiffness: R,
-    /// Speed gain [N m s/rad or N s/m].
+    /// The velocity gain [N m s/rad or N s/m].
     pub damping: R,
-    /// Largest effort [N m or N].
+    /// The largest effort that the servo can exert [N m or N].
     pub limit: R,
 }
 
-/// A motor that exerts the commanded torque, capped.
+/// A motor that exerts the commanded torque up to a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Torque<R> {
-    /// Largest effort [N m or N].
+    /// The largest effort that the motor can exert [N m or N].
     pub limit: R,
 }
 
-/// A motor that holds a commanded speed: a torque in proportion to what is lacking of it, capped.
+/// A motor that keeps a commanded speed. Its torque is proportional to the speed error up to a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocity<R> {
-    /// Torque for each unit of speed that is lacking [N m s/rad or N s/m].
+    /// The torque per unit of speed error [N m s/rad or N s/m].
     pub gain: R,
-    /// Largest effort [N m or N].
+    /// The largest effort that the motor can exert [N m or N].
     pub limit: R,
 }
 
-/// A user's own law, evaluated once per control step: the commanded torque with constant stiffness and damping.
+/// A custom law that is evaluated by the user once per control step. It combines the commanded torque with constant
+/// stiffness and damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Held<R> {
-    /// Stiffness around the position at which the second command was given [N m/rad or N/m].
+    /// The stiffness around the position that is given by the second command [N m/rad or N/m].
     pub stiffness: R,
-    /// Damping [N m s/rad or N s/m].
+    /// The damping of the joint [N m s/rad or N s/m].
     pub damping: R,
 }
 
-/// The law of one actuator.
+/// The law of an actuator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Law<R> {
-    /// Two muscles that pull against each other.
+    /// A pair of antagonistic muscles.
     MusclePair(MusclePair<R>),
     /// A position servo.
     Servo(Servo<R>),
     /// A torque motor.
     Torque(Torque<R>),
-    /// A motor that holds a speed.
+    /// A motor that keeps a commanded speed.
     Velocity(Velocity<R>),
-    /// A law of the user's, held over the control step.
+    /// A custom law whose result is held during a control step.
     Held(Held<R>),
 }
 
 impl<R: Real> Servo<R> {
-    /// The servo's effort at position `q` and speed `qdot`, with the desired position in `command[0]`.
+    /// Computes the effort at position `q` and speed `qdot`. The desired position is `command[0]`.
     ///
-    /// Returns whether it saturates is decided here. A saturated servo has no stiffness and no damping.
+    /// This function also decides if the servo is saturated. A saturated servo has neither stiffness nor damping.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let limit = q.like(self.limit);
@@ -82,13 +83,11 @@ impl<R: Real> Servo<R> {
 }
 
 impl<R: Real> Velocity<R> {
-    /// The motor's effort at speed `qdot`, with the desired speed in `command[0]`.
+    /// Computes the effort at speed `qdot`. The desired speed is `command[0]`.
     ///
-    /// The damping of a saturated motor is limit / |lack|. It is the chord between the present effort and zero effort
-    /// at the desired speed.
-    ///
-    /// A strong motor of a light joint therefore reaches its speed in a step and does not pass it, and never exceeds
-    /// the limit.
+    /// The damping of a saturated motor is limit / |speed error|, which is the slope between the present effort and
+    /// zero effort at the desired speed. Therefore a strong motor on a light joint reaches its speed within one step
+    /// without overshooting, and it never exceeds the limit.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, qdot: S, command: [S; 2]) -> Effort<S> {
         let (limit, gain) = (qdot.like(self.limit), qdot.like(self.gain));
@@ -102,7 +101,8 @@ impl<R: Real> Velocity<R> {
 }
 
 impl<R: Real> Law<R> {
-    /// The effort at position `q` and speed `qdot` under `command`, as [`crate::ports::Actuated::command`] describes it.
+    /// Computes the effort at position `q` and speed `qdot`. See [`crate::ports::Actuated::command`] for the meaning of
+    /// `command`.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let zero = q.constant(0.0);
@@ -121,7 +121,7 @@ impl<R: Real> Law<R> {
         }
     }
 
-    /// Returns the law in another precision, each number rounded once.
+    /// Converts the law to a different precision. Each number is rounded once.
     pub fn cast<Q: Real>(&self) -> Law<Q> {
         let c = |x: R| Q::from_f64(x.to_f64());
         match self {

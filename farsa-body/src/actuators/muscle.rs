@@ -1,68 +1,70 @@
-//! Antagonist pairs of muscles: tension from length, rate and activation, and the torque of the pair.
+//! Pairs of antagonistic muscles, whose tension depends on length, rate of length and activation.
 
 use farsa_num::{Real, Scalar, exp};
 
 use crate::actuators::effort::Effort;
 
-/// Which reading of the muscle model: the printed one or that of the original program.
+/// The variant of the muscle model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MuscleVariant {
-    /// As printed in the thesis: passive tension in full, b = 0.9. See [`MusclePair::thesis`].
+    /// The model as printed in the thesis, with the full passive tension and b = 0.9. See [`MusclePair::thesis`].
     #[default]
     Thesis,
-    /// As in the original program: passive tension times 0.5 and a reduction factor, b = 1.0. See
-    /// [`MusclePair::original`].
+    /// The model of the original program. The passive tension is multiplied by 0.5 and by a reduction factor, and b =
+    /// 1.0. See [`MusclePair::original`].
     Original,
 }
 
-/// An antagonist pair of Hill-type muscles on one joint [Ferrauto2010].
+/// A pair of antagonistic Hill-type muscles that act on one joint [Ferrauto2010].
 ///
-/// Over the joint's range the agonist's length grows from [`MusclePair::shortest`] to [`MusclePair::longest`] while the
-/// antagonist's shrinks, so the agonist pulls towards the lower end of the range. Lengths have no unit in the source.
+/// When the joint moves from the lower to the upper end of its range, the agonist lengthens from
+/// [`MusclePair::shortest`] to [`MusclePair::longest`] and the antagonist shortens. The agonist therefore pulls towards
+/// the lower end. In the source, lengths have no unit.
 ///
-/// Deviations: a moment arm makes torque of the difference of tensions, which the source uses as the torque itself.
-/// Rates follow from the joint's speed instead of backward differences. Outside [shortest, longest] the active tension
-/// is 0 and the passive one continues.
+/// Deviations: the difference of the tensions is multiplied by a moment arm, whereas the source uses it directly as
+/// torque. Rates are computed from the speed of the joint and not from backward differences. Outside [shortest,
+/// longest] the active tension is 0, and the formula of the passive tension continues to apply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MusclePair<R> {
-    /// Largest active tension of each muscle, Tmax [N].
+    /// The largest active tension of each muscle, Tmax [N].
     pub tension: R,
-    /// Moment arm [m].
+    /// The moment arm of the muscles [m].
     pub moment_arm: R,
-    /// Joint position at which the agonist is shortest [rad].
+    /// The joint position at which the agonist is shortest [rad].
     pub lower: R,
-    /// Joint position at which the agonist is longest [rad].
+    /// The joint position at which the agonist is longest [rad].
     pub upper: R,
-    /// Shortest length.
+    /// The shortest length of a muscle.
     pub shortest: R,
-    /// Length at which active tension is largest and passive tension zero, RL.
+    /// The rest length RL, at which the active tension is largest and the passive tension is zero.
     pub rest_length: R,
-    /// Longest length, Lmax.
+    /// The longest length of a muscle, Lmax.
     pub longest: R,
-    /// Shape of the passive tension, Ksh.
+    /// The shape parameter of the passive tension, Ksh.
     pub shape: R,
-    /// Passive tension at the longest length divided by e^shape - 1 [N].
+    /// The passive tension at the longest length, divided by e^shape - 1 [N].
     pub passive_scale: R,
-    /// Viscosity, b [N per unit of length per second].
+    /// The viscosity b [N per unit of length per second].
     pub viscosity: R,
 }
 
-/// The three parts of one muscle's tension.
+/// The components of the tension of one muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
-    /// The tension from activation [N].
+    /// The tension that results from the activation [N].
     pub active: S,
-    /// The tension from length, negative (at most 5 % of the largest tension) below the rest length [N].
+    /// The tension that results from the length [N]. Below the rest length it is negative, but never more than 5 % of
+    /// the largest tension.
     pub passive: S,
-    /// The tension from the rate of length, negative while the muscle shortens [N].
+    /// The tension that results from the rate of length [N]. It is negative while the muscle shortens.
     pub viscous: S,
 }
 
 impl<S: Scalar> Tension<S> {
-    /// The sum of the parts [N].
+    /// Returns the sum of the components [N].
     #[inline(always)]
     pub fn total(self) -> S {
         self.active + self.passive + self.viscous
@@ -70,17 +72,20 @@ impl<S: Scalar> Tension<S> {
 }
 
 impl<R: Real> MusclePair<R> {
-    /// The pair as printed: Ksh = 3, RL = 2.5, lengths 1.3 to 3.7, b = 0.9 [Ferrauto2010, chapter 2].
+    /// Creates a pair with the printed values, which are Ksh = 3, RL = 2.5, lengths from 1.3 to 3.7 and b = 0.9
+    /// [Ferrauto2010, chapter 2].
     ///
-    /// `tension` is Tmax [N], `moment_arm` in [m], `range` the joint's lower and upper limit [rad].
+    /// The `tension` is Tmax in newtons, and the `moment_arm` is given in meters. The `range` contains the lower and
+    /// the upper limit of the joint in radians.
     pub fn thesis(tension: R, moment_arm: R, range: [R; 2]) -> Self {
         Self::new(tension, moment_arm, range, R::from_f64(1.0), R::from_f64(0.9))
     }
 
-    /// The pair as in the original program: as [`MusclePair::thesis`], but passive tension times 0.5 and `reduction`, b
-    /// = 1.0.
+    /// Creates a pair with the values of the original program. It differs from [`MusclePair::thesis`] in that b = 1.0
+    /// and the passive tension is multiplied by 0.5 and by `reduction`.
     ///
-    /// The value of the original's reduction factor is not published, so it has no default here.
+    /// Note that there is no default for the reduction factor, because the value of the original program is not
+    /// published.
     pub fn original(tension: R, moment_arm: R, range: [R; 2], reduction: R) -> Self {
         Self::new(tension, moment_arm, range, R::from_f64(0.5) * reduction, R::from_f64(1.0))
     }
@@ -101,20 +106,21 @@ impl<R: Real> MusclePair<R> {
         }
     }
 
-    /// Returns the change of muscle length per joint position, s [1/rad].
+    /// Returns the change of muscle length per unit of joint position, s [1/rad].
     #[inline(always)]
     pub fn gear(&self) -> R {
         (self.longest - self.shortest) / (self.upper - self.lower)
     }
 
-    /// The lengths [agonist, antagonist] at joint position `q` [rad].
+    /// Returns the lengths of the agonist and the antagonist at joint position `q` [rad].
     #[inline(always)]
     pub fn lengths<S: Scalar<Real = R>>(&self, q: S) -> [S; 2] {
         let stroke = q.like(self.gear()) * (q - q.like(self.lower));
         [q.like(self.shortest) + stroke, q.like(self.longest) - stroke]
     }
 
-    /// The tension of one muscle of `length`, lengthening at `rate` [1/s], with `activation` in [0, 1].
+    /// Computes the tension of one muscle. The `rate` of length is positive while the muscle lengthens [1/s], and
+    /// `activation` is between 0 and 1.
     #[inline(always)]
     pub fn tension_at<S: Scalar<Real = R>>(&self, length: S, rate: S, activation: S) -> Tension<S> {
         let (active, passive, _) = self.elastic(length, activation);
@@ -137,12 +143,12 @@ impl<R: Real> MusclePair<R> {
         (S::select(within, pull * parabola, zero), growth - scale, (active_slope + growth * shape) * per_width)
     }
 
-    /// The pair's effort at joint position `q` [rad], speed `qdot` [rad/s] and activations [agonist, antagonist] in [0,
-    /// 1].
+    /// Computes the effort of the pair at joint position `q` [rad] and speed `qdot` [rad/s]. The command contains the
+    /// activations of agonist and antagonist, each between 0 and 1. They are not clamped.
     ///
-    /// With s the [`gear`](MusclePair::gear), r the moment arm and T1, T2 the tensions, torque is r (T2 - T1), damping
-    /// 2 r s b, and stiffness max(0, -dtorque/dq). The derivative is negative in sum where the active tension falls
-    /// with length, and must not be integrated implicitly there. Activations are not clamped.
+    /// Let s be the [`gear`](MusclePair::gear), r the moment arm and T1, T2 the tensions. Then the torque is r (T2 -
+    /// T1), the damping is 2 r s b, and the stiffness is max(0, -dtorque/dq). The derivative becomes negative where the
+    /// active tension decreases with length. In this region it must not be integrated implicitly.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
         let [x1, x2] = self.lengths(q);
@@ -158,11 +164,11 @@ impl<R: Real> MusclePair<R> {
         }
     }
 
-    /// The activations [agonist, antagonist] that hold `torque` [N m] at rest at `q` [rad] with the least
-    /// co-contraction, and whether they are within [0, 1]. Activations outside are clamped.
+    /// Computes the activations of agonist and antagonist that hold `torque` [N m] at rest at the position `q` [rad],
+    /// with minimal co-contraction. The second result is true if both are within [0, 1]. Otherwise they are clamped.
     ///
-    /// One of the two is always 0. At the ends of the range no active tension is left: nothing but the passive torque
-    /// is held there.
+    /// One of the two activations is always 0. At the ends of the range there is no active tension, so only the passive
+    /// torque can be held there.
     pub fn activations(&self, q: R, torque: R) -> ([R; 2], bool) {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let [x1, x2] = self.lengths(q);

@@ -1,4 +1,4 @@
-//! Where a body shall be and how it shall be turned.
+//! Goals for inverse kinematics, which specify the position and the orientation of a body.
 
 use farsa_num::atan2;
 
@@ -10,29 +10,29 @@ use crate::pose::{Pose, cross, norm};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Orientation {
-    /// In any way.
+    /// The orientation is not constrained.
     Free,
-    /// So that one of its directions points in a given direction. Turning about that does not matter. Its length is any
-    /// number > 0.
+    /// A direction of the body must point in a given direction, and rotations about it are not constrained. Both
+    /// vectors may have any length greater than zero.
     Direction {
-        /// The direction in the body's axes.
+        /// The direction in the frame of the body.
         own: [f64; 3],
-        /// Where it shall point, in the world's axes.
+        /// The desired direction in the world.
         wanted: [f64; 3],
     },
-    /// Fully: unit quaternion [x, y, z, w] from the body's axes to the world's.
+    /// The orientation is given by a unit quaternion [x, y, z, w] that maps the axes of the body to those of the world.
     Full([f64; 4]),
 }
 
-/// Where a point of a body shall be and how the body shall be turned.
+/// The desired position of a point of a body, and the desired orientation of this body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Goal {
-    /// The body.
+    /// The body that should be moved.
     pub body: BodyId,
-    /// The point in the body's frame [m].
+    /// The point in the frame of the body [m].
     pub point: [f64; 3],
-    /// Where the point shall be, in the world [m].
+    /// The desired position of the point in the world [m].
     pub position: [f64; 3],
     /// The desired orientation of the body.
     pub orientation: Orientation,

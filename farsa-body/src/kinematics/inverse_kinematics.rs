@@ -1,4 +1,4 @@
-//! Joint positions that fulfil a goal.
+//! Inverse kinematics, which computes joint positions for a given goal.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,41 +9,42 @@ use crate::kinematics::goal::{Goal, Miss, Orientation};
 use crate::kinematics::tree::{KinematicTree, dot};
 use crate::pose::{Pose, norm};
 
-/// Joint positions and how far they miss a goal.
+/// Joint positions that were found by inverse kinematics, and the remaining errors.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
-    /// Joint positions [rad or m], in the order of [`KinematicTree::joints`].
+    /// The joint positions [rad or m], in the order of [`KinematicTree::joints`].
     pub joints: Vec<f64>,
-    /// Distance of the point from its place [m].
+    /// The distance between the point and its desired position [m].
     pub position_error: f64,
-    /// Angle between the body's orientation, or its direction, and the desired one [rad].
+    /// The angle between the actual and the desired orientation or direction [rad].
     pub angle_error: f64,
 }
 
-/// Why no joint positions were found.
+/// The reason why no joint positions were found.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum InverseKinematicsError {
-    /// The robot has no such body.
+    /// The robot does not have this body.
     Body {
-        /// The body's index.
+        /// The index of the body.
         body: usize,
-        /// The number available.
+        /// The number of bodies of the robot.
         count: usize,
     },
-    /// A number of the goal or the start is not finite, a direction has no length or a quaternion is not of length 1.
+    /// A value of the goal or of the start is not finite, a direction has zero length, or a quaternion is not
+    /// normalized.
     Goal,
-    /// Fewer or more start positions than joints.
+    /// The number of start positions differs from the number of joints.
     Start {
-        /// The number given.
+        /// The number of start positions.
         given: usize,
-        /// The number available.
+        /// The number of joints.
         joints: usize,
     },
-    /// No attempt came within the tolerances. The goal may be out of reach.
+    /// All attempts ended outside the tolerances. The goal may be out of reach.
     NotReached {
-        /// The closest that was found.
+        /// The solution with the smallest error.
         closest: Solution,
     },
 }
@@ -63,27 +64,28 @@ impl fmt::Display for InverseKinematicsError {
 
 impl core::error::Error for InverseKinematicsError {}
 
-/// Inverse kinematics by damped least squares within joint limits [Wampler1986], from one start and then from others
-/// spread evenly over the joints' ranges.
+/// Inverse kinematics by damped least squares within the joint limits [Wampler1986]. If the first start does not lead
+/// to a solution, it tries other starts that are spread evenly over the joint ranges.
 ///
-/// Deviations: the damping adapts as in Levenberg-Marquardt. Joints that would leave their range are held at its end
-/// for that step. Only the joints between the body and the world move. The same goal and start give the same bits.
+/// Deviations: the damping is adapted as in the Levenberg-Marquardt method. A joint that would leave its range is held
+/// at the end of the range for this step. Only joints between the body and the world are moved. Note that equal goals
+/// and starts always lead to identical bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct InverseKinematics {
-    /// Distance from the place that is near enough [m].
+    /// The largest position error of a solution [m].
     pub position_tolerance: f64,
-    /// Angle that is near enough [rad].
+    /// The largest angle error of a solution [rad].
     pub angle_tolerance: f64,
-    /// Meters that count as much as a radian [m].
+    /// The distance that is weighted like an angle of one radian [m].
     pub angle_weight: f64,
-    /// The middle part of the bounded ranges of the moving joints that may be used, in [0, 1].
+    /// The fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
     ///
-    /// Muscles at constant activations hold a joint only within 0.72 of its half range.
+    /// This is useful for muscles, because constant activations hold a joint only within 0.72 of its half range.
     pub range_fraction: f64,
-    /// Most iterations of one attempt.
+    /// The maximum number of iterations in each attempt.
     pub iterations: usize,
-    /// Most attempts, the one from the start included.
+    /// The maximum number of attempts, including the first one.
     pub attempts: usize,
 }
 
@@ -161,13 +163,15 @@ fn check(tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<(), Inverse
 }
 
 impl InverseKinematics {
-    /// Joint positions that fulfil `goal`, from `start` [rad or m, a value per joint of the tree].
+    /// Searches joint positions for `goal`. The search begins at `start`, which contains one value per joint of the
+    /// tree [rad or m].
     ///
-    /// The first attempt begins at `start`, brought into the limits, and moves on continuously: for a path of goals
-    /// pass the last solution. Joints that do not carry the body keep their start position, brought into the limits.
+    /// The start is clamped to the joint limits. Since the first attempt moves continuously from there, the previous
+    /// solution is a good start when you follow a path of goals. Joints that do not move the body keep their clamped
+    /// start position.
     ///
     /// # Errors
-    /// [`InverseKinematicsError`]. `NotReached` holds the closest joint positions found.
+    /// Returns an [`InverseKinematicsError`]. The variant `NotReached` contains the closest solution that was found.
     pub fn solve(&self, tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<Solution, InverseKinematicsError> {
         check(tree, goal, start)?;
         let moving: Vec<usize> = tree.path(goal.body).map(|(_, c)| c).collect();

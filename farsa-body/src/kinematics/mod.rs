@@ -1,4 +1,4 @@
-//! Questions to a description that need no world: where its segments are, and which posture reaches a goal.
+//! Kinematic computations that need a description of the robot but no world.
 //!
 //! | question | answer |
 //! |---|---|

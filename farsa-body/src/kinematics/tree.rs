@@ -1,4 +1,4 @@
-//! Where a robot's segments are at given joint positions: forward kinematics, Jacobians, gravity torques.
+//! Forward kinematics, Jacobians and gravity torques of a robot.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -22,11 +22,11 @@ struct Link {
     body: MassProperties,
 }
 
-/// The kinematics of a robot's description, in double precision.
+/// The kinematics of a robot in double precision.
 ///
-/// Joint positions are slices with one value per joint that turns or slides, in the order of [`KinematicTree::joints`].
-/// Floating segments stay at the placement of their joint. A world has the same answers about its own state. This type
-/// answers about any state, without a world.
+/// Joint positions are passed as slices in the order of [`KinematicTree::joints`], which contains all joints that turn
+/// or slide. Floating segments remain at the placement of their joint. A world provides the same information about its
+/// current state. Use this type for states that are not simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinematicTree {
     links: Vec<Link>,
@@ -58,10 +58,10 @@ impl Link {
 }
 
 impl KinematicTree {
-    /// The kinematics of this robot.
+    /// Creates the kinematic tree of a robot.
     ///
     /// # Errors
-    /// The errors of [`Robot::validate`].
+    /// Returns the errors of [`Robot::validate`].
     pub fn new(robot: &Robot) -> Result<Self, RobotError> {
         robot.validate()?;
         let joints: Vec<JointId> = robot.joints().collect();
@@ -84,41 +84,41 @@ impl KinematicTree {
         Ok(Self { links, joints, ranges })
     }
 
-    /// The joints that turn or slide, in the order of the joint positions.
+    /// Returns the joints that turn or slide, in the order of the joint positions.
     pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
-    /// The ranges of these joints [rad or m].
+    /// Returns the ranges of these joints [rad or m].
     pub fn ranges(&self) -> &[[f64; 2]] {
         &self.ranges
     }
 
-    /// Returns the index of a joint among the joint positions, or `None` for a joint that neither turns nor slides.
+    /// Returns the index of a joint in the slices of joint positions, or `None` if the joint does not turn or slide.
     pub fn coordinate(&self, joint: JointId) -> Option<usize> {
         self.links.get(joint.index())?.coordinate
     }
 
-    /// Number of segments.
+    /// Returns the number of segments.
     pub fn bodies(&self) -> usize {
         self.links.len()
     }
 
-    /// Every joint at 0 or the nearest limit [rad or m].
+    /// Returns the joint positions [rad or m] that are as close to 0 as the limits permit.
     pub fn zero(&self) -> Vec<f64> {
         self.ranges.iter().map(|[low, high]| low.max(0.0).min(*high)).collect()
     }
 
-    /// The poses of all segments in the world, in their order, at joint positions `q` [rad or m].
+    /// Computes the poses of all segments in the world at the joint positions `q` [rad or m].
     ///
-    /// Positions beyond the end of `q` are 0.
+    /// If `q` is too short, the missing positions are 0.
     pub fn poses(&self, q: &[f64]) -> Vec<Pose<f64>> {
         let mut poses = Vec::with_capacity(self.links.len());
         self.poses_into(q, &mut poses);
         poses
     }
 
-    /// [`KinematicTree::poses`] into a vector that is emptied first.
+    /// Computes the same poses as [`KinematicTree::poses`], but replaces the contents of an existing vector.
     pub fn poses_into(&self, q: &[f64], poses: &mut Vec<Pose<f64>>) {
         debug_assert!(q.len() >= self.joints.len(), "{} joint positions for {} joints", q.len(), self.joints.len());
         poses.clear();
@@ -159,12 +159,12 @@ impl KinematicTree {
         })
     }
 
-    /// Returns the Jacobian of a `point` of `body` [m in its frame], at the `poses` of all segments. It has a column
-    /// per joint position: the body's angular velocity and the point's velocity in the world's axes [rad/s, m/s] at
-    /// unit joint speed.
+    /// Computes the Jacobian of a `point` in the frame of `body` [m], given the `poses` of all segments. Each column
+    /// belongs to a joint. It contains the angular velocity of the body [rad/s] and the velocity of the point [m/s] in
+    /// the world at unit joint speed.
     ///
     /// # Panics
-    /// If there are fewer poses than segments or no such body.
+    /// Panics if there are fewer poses than segments, or if the body does not exist.
     pub fn jacobian(&self, poses: &[Pose<f64>], body: BodyId, point: [f64; 3]) -> Vec<[f64; 6]> {
         let at = poses[body.index()].transform(point);
         let mut jacobian = vec![[0.0; 6]; self.joints.len()];
@@ -174,10 +174,11 @@ impl KinematicTree {
         jacobian
     }
 
-    /// The joint torques [N m] or forces [N] that hold the robot at rest against `gravity` [m/s2, world's axes].
+    /// Computes the joint torques [N m] or forces [N] that hold the robot at rest. The vector `gravity` is given in the
+    /// axes of the world [m/s2].
     ///
     /// # Panics
-    /// If there are fewer poses than segments.
+    /// Panics if there are fewer poses than segments.
     pub fn gravity_torques(&self, poses: &[Pose<f64>], gravity: [f64; 3]) -> Vec<f64> {
         // Mass and first moment of everything that a joint carries, summed from the leaves.
         let mut carried: Vec<(f64, [f64; 3])> = self

@@ -1,9 +1,9 @@
-//! Devices by which robots hold on to things and to each other.
+//! Attachment devices, which robots use to hold objects and each other.
 
 use crate::channel::write;
 use crate::ports::{Actuated, ActuatorId, BodyId, Channels, Motor, Planar, Sensor};
 
-/// Reads whether a robot's attachment device holds something: 1 if so, else 0. One channel.
+/// A sensor with one channel that reads 1 if the attachment device of a robot holds something, and 0 otherwise.
 #[doc(alias = "gripper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -12,7 +12,7 @@ pub struct AttachmentSensor<B = BodyId> {
 }
 
 impl<B> AttachmentSensor<B> {
-    /// A sensor of the device of this robot.
+    /// Creates a sensor for the attachment device of the given robot.
     pub fn new(body: B) -> Self {
         Self { body }
     }
@@ -30,9 +30,9 @@ impl<B: Copy, W: Planar<Body = B> + ?Sized> Sensor<W> for AttachmentSensor<B> {
     }
 }
 
-/// Switches an attachment device, one channel: above 0.5 it holds, else it lets go.
+/// A motor with one channel that controls an attachment device. It holds for values above 0.5 and releases otherwise.
 ///
-/// NaN lets go.
+/// NaN also releases the device.
 #[doc(alias = "gripper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,7 +41,7 @@ pub struct AttachmentMotor<A = ActuatorId> {
 }
 
 impl<A> AttachmentMotor<A> {
-    /// A motor of this device.
+    /// Creates a motor for the given attachment device.
     pub fn new(device: A) -> Self {
         Self { device }
     }

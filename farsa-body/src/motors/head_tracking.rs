@@ -1,4 +1,4 @@
-//! A reflex that turns a head towards a thing.
+//! A reflex that turns a head towards a target.
 
 use farsa_num::atan2;
 
@@ -7,13 +7,14 @@ use crate::motors::joints::ServoRange;
 use crate::ports::{Actuated, ActuatorId, BodyId, Kinematics};
 use crate::pose::Pose;
 
-/// Keeps a point of a body in the middle of an eye's image by two servos.
+/// Keeps a point of a body in the center of an eye's image by means of two servos.
 ///
-/// At each step the desired position of each servo changes by a share of the angle between the camera's axis and the
-/// target. One servo turns to the left, the other upwards, each by a limited amount. Both servos stay while the target
-/// is not in front of the camera.
+/// In each step, the desired position of each servo is changed by a fraction of the angle between the axis of the
+/// camera and the target. The change is limited. One servo turns to the left and the other one upwards. They do not
+/// move while the target is behind the camera.
 ///
-/// The rule is our own. It is no [`Motor`](crate::ports::Motor): it takes no values of a controller, and moves the servos by itself.
+/// Note that this type is not a [`Motor`](crate::ports::Motor), because it does not use the values of a controller.
+/// Source: the rule was designed for this crate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadTracking<B = BodyId, A = ActuatorId> {
     eye: (B, Pose),
@@ -26,15 +27,17 @@ pub struct HeadTracking<B = BodyId, A = ActuatorId> {
 }
 
 impl<B, A: Copy> HeadTracking<B, A> {
-    /// A reflex of an eye, the body that it is on and its pose there with x forward, y to the left and z up.
+    /// Creates a reflex for an eye at the given pose on a body. In the frame of the eye, x points forward, y to the
+    /// left and z up.
     ///
-    /// The target is a point [m] of a body. The first servo turns to the left, with its rightmost and leftmost
-    /// position. The second turns upwards, with its lowest and highest position. They start at positions `start` [rad].
-    /// At each step they correct the share `gain` of the angles, by at most `most` [rad].
+    /// The target is a point of a body in meters. The first servo turns to the left. Its range contains the rightmost
+    /// and the leftmost position. The second servo turns upwards, and its range contains the lowest and the highest
+    /// position. The servos start at `start` [rad]. In each step they correct the fraction `gain` of the angles, but
+    /// not more than `most` [rad].
     ///
     /// # Errors
-    /// [`ChannelError::Range`] for a range of a servo that is empty or not finite. [`ChannelError::Value`] for a start
-    /// out of it, a `gain` that is not within 0 and 1, or a `most` that is not a finite number > 0.
+    /// Returns [`ChannelError::Range`] if the range of a servo is empty or not finite. Returns [`ChannelError::Value`]
+    /// if a start is out of range, if `gain` is not between 0 and 1, or if `most` is not a finite number > 0.
     pub fn new(
         eye: (B, Pose),
         target: (B, [f32; 3]),
@@ -59,17 +62,18 @@ impl<B, A: Copy> HeadTracking<B, A> {
         Ok(Self { eye, target, servos, start, gain, most: positive("most", most)?, desired: start })
     }
 
-    /// The desired positions of the two servos [rad].
+    /// Returns the desired positions of the two servos [rad].
     pub fn desired(&self) -> [f32; 2] {
         self.desired
     }
 
-    /// Goes back to the start.
+    /// Moves the desired positions back to the start.
     pub fn reset(&mut self) {
         self.desired = self.start;
     }
 
-    /// Looks, and commands both servos. Once before each step of the world.
+    /// Measures the direction of the target and commands both servos. Call this function once before each step of the
+    /// world.
     pub fn step<W>(&mut self, world: &mut W)
     where
         B: Copy,
@@ -85,8 +89,8 @@ impl<B, A: Copy> HeadTracking<B, A> {
         }
     }
 
-    /// Returns the angles from the camera's axis to the target, to the left and upwards [rad], or `None` for a target
-    /// that is not in front.
+    /// Returns the angles from the axis of the camera to the target, to the left and upwards [rad]. Returns `None` if
+    /// the target is not in front of the camera.
     pub fn angles<W>(&self, world: &W) -> Option<[f32; 2]>
     where
         B: Copy,

@@ -1,13 +1,14 @@
-//! Motors: from values in [0, 1] to commands.
+//! Motors that convert values in [0, 1] to commands for joints.
 //!
-//! A value outside [0, 1] drives like the nearer end, NaN like 0.
+//! Values outside [0, 1] are clamped, and NaN is treated as 0.
 
 use crate::channel::{ChannelError, finite, finite_range, unit};
 use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
-/// Drives one muscle pair, two channels: the activations of agonist and antagonist.
+/// Drives a pair of muscles. The two channels are the activations of the agonist and the antagonist.
 ///
-/// The agonist pulls towards the joint's lower limit. A slice with one value leaves the antagonist slack.
+/// The agonist pulls towards the lower limit of the joint. If only one value is provided, the activation of the
+/// antagonist is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Muscles<A = ActuatorId> {
@@ -15,7 +16,7 @@ pub struct Muscles<A = ActuatorId> {
 }
 
 impl<A> Muscles<A> {
-    /// A motor of this muscle pair.
+    /// Creates a motor for the given muscle pair.
     pub fn new(pair: A) -> Self {
         Self { pair }
     }
@@ -36,31 +37,33 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for Muscles<A> {
     }
 }
 
-/// A servo and the positions that it takes at the two ends of its motor's channel.
+/// A servo, and its positions at both ends of the channel's range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ServoRange<A = ActuatorId> {
-    /// The servo.
+    /// The servo that is commanded.
     pub servo: A,
-    /// Desired position at channel value 0 [rad or m].
+    /// The desired position at a channel value of 0 [rad or m].
     pub from: f32,
-    /// Desired position at channel value 1 [rad or m].
+    /// The desired position at a channel value of 1 [rad or m].
     pub to: f32,
 }
 
-/// Drives several servos from one channel: each is commanded to from + (to - from) y.
+/// Drives several servos with a single channel. The value y sets the desired position of each servo to from + (to -
+/// from) y.
 ///
-/// The servos are any list: an array, a borrowed slice, a `Vec`. For several groups take an array or a `Vec` of these.
+/// The servos can be stored in an array, a borrowed slice or a `Vec`. Use an array or a `Vec` of these motors to drive
+/// several groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoGroup<L> {
     servos: L,
 }
 
 impl<L> ServoGroup<L> {
-    /// A motor of these servos.
+    /// Creates a motor for the given servos.
     ///
     /// # Errors
-    /// [`ChannelError::Range`] if an end of a servo's range is not finite.
+    /// Returns [`ChannelError::Range`] if an end of a range is not finite.
     pub fn new<A>(servos: L) -> Result<Self, ChannelError>
     where
         L: AsRef<[ServoRange<A>]>,
@@ -89,7 +92,7 @@ impl<L: AsRef<[ServoRange<W::Actuator>]>, W: Actuated + ?Sized> Motor<W> for Ser
     }
 }
 
-/// Drives one torque motor, one channel: the torque is (2 y - 1) times the largest.
+/// Drives a torque motor with one channel. A value y results in 2 y - 1 times the largest torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueMotor<A = ActuatorId> {
     motor: A,
@@ -97,10 +100,10 @@ pub struct TorqueMotor<A = ActuatorId> {
 }
 
 impl<A> TorqueMotor<A> {
-    /// A motor that turns the values 0, 1/2 and 1 into the torques -`largest`, 0 and `largest` [N m or N].
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the torques -`largest`, 0 and `largest` [N m or N].
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `largest` is not finite.
+    /// Returns [`ChannelError::Value`] if `largest` is not finite.
     pub fn new(motor: A, largest: f32) -> Result<Self, ChannelError> {
         Ok(Self { motor, largest: finite("largest", largest)? })
     }
@@ -121,10 +124,10 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for TorqueMotor<A> {
     }
 }
 
-/// Drives one joint at a speed, one channel: the speed is (2 y - 1) times the largest.
+/// Drives a joint at a desired speed with one channel. A value y results in 2 y - 1 times the largest speed.
 ///
-/// The actuator's law is a [`Held`](crate::actuators::Held) without stiffness whose damping is the gain: its torque is gain times what is
-/// lacking of the speed, solved implicitly.
+/// The law of the actuator must be [`Held`](crate::actuators::Held) with zero stiffness and a damping equal to the
+/// gain. The torque is then the product of the gain and the speed error, and it is integrated implicitly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityMotor<A = ActuatorId> {
     motor: A,
@@ -133,11 +136,11 @@ pub struct VelocityMotor<A = ActuatorId> {
 }
 
 impl<A> VelocityMotor<A> {
-    /// Builds a motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s or m/s].
-    /// The actuator has this `gain` [N m s/rad or N s/m].
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` [rad/s or m/s]. The
+    /// `gain` must be that of the actuator [N m s/rad or N s/m].
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if a number is not finite.
+    /// Returns [`ChannelError::Value`] if a number is not finite.
     pub fn new(motor: A, largest: f32, gain: f32) -> Result<Self, ChannelError> {
         Ok(Self { motor, largest: finite("largest", largest)?, gain: finite("gain", gain)? })
     }

@@ -1,21 +1,21 @@
-//! LEDs and signals of robots.
+//! Motors for the LEDs and the signals of robots.
 //!
-//! As for all motors, a value outside [0, 1] drives like the nearer end, NaN like 0.
+//! Values outside [0, 1] are clamped, and NaN is treated as 0.
 
 use crate::channel::unit;
 use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
-/// Lights LEDs, one channel each: its brightness in [0, 1].
+/// Controls LEDs. Each channel is the brightness of one LED in [0, 1].
 ///
-/// All three of a robot, or some of them: `Leds::new([leds[0], leds[2]])` are red and blue. An LED that is not driven
-/// stays as it is.
+/// It is not necessary to drive all LEDs of a robot. For example, `Leds::new([leds[0], leds[2]])` drives only red and
+/// blue. LEDs that are not driven keep their brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leds<A = ActuatorId, const N: usize = 3> {
     leds: [A; N],
 }
 
 impl<A, const N: usize> Leds<A, N> {
-    /// A motor of these LEDs.
+    /// Creates a motor for the given LEDs.
     pub fn new(leds: [A; N]) -> Self {
         Self { leds }
     }
@@ -35,7 +35,8 @@ impl<A: Copy, const N: usize, W: Actuated<Actuator = A> + ?Sized> Motor<W> for L
     }
 }
 
-/// Sets the signal of a robot for the [`crate::sensors::SignalSensor`]s of other robots, one channel in [0, 1].
+/// Sets the signal of a robot with one channel in [0, 1]. Other robots can receive it with a
+/// [`crate::sensors::SignalSensor`].
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -44,7 +45,7 @@ pub struct SignalMotor<A = ActuatorId> {
 }
 
 impl<A> SignalMotor<A> {
-    /// A motor of this signal.
+    /// Creates a motor for the given signal.
     pub fn new(signal: A) -> Self {
         Self { signal }
     }

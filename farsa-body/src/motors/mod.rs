@@ -1,6 +1,6 @@
-//! Motors: from values in [0, 1] to the commands of actuators. Which one do I need?
+//! Motors, which convert values in [0, 1] to the commands of actuators.
 //!
-//! | to drive | take | channels |
+//! | to drive | use | channels |
 //! |---|---|---|
 //! | a pair of muscles | [`Muscles`] | 2 |
 //! | one or several servos together | [`ServoGroup`] of [`ServoRange`]s | 1 |
@@ -9,12 +9,13 @@
 //! | two wheels, each by itself | [`WheelVelocity`] | 2 |
 //! | two wheels, by speed and turn | [`SpeedAndTurn`] | 2 |
 //! | LEDs | [`Leds`] | 1 each |
-//! | a signal that other robots hear | [`SignalMotor`] | 1 |
+//! | a signal for other robots | [`SignalMotor`] | 1 |
 //! | a gripper or another attachment device | [`AttachmentMotor`] | 1 |
 //!
-//! All implement [`Motor`](crate::ports::Motor) for any world with the ports that they name. Tuples, arrays and `Vec`s of motors
-//! are motors. A value outside [0, 1] drives like the nearer end, NaN like 0. For noise, delay or damage put a
-//! [wrapper](crate::wrappers) around one. [`HeadTracking`] is no motor but a reflex: it moves two servos by itself.
+//! All motors implement [`Motor`](crate::ports::Motor) for any world that supports the required ports. Tuples, arrays
+//! and `Vec`s of motors are motors, too. Values outside [0, 1] are clamped, and NaN is treated as 0. Use a
+//! [wrapper](crate::wrappers) to add noise, delay or damage. Note that [`HeadTracking`] is a reflex and not a motor,
+//! since it moves two servos without a controller.
 
 /// Devices that hold on to things: the motor that switches one and the sensor that reads whether it holds.
 pub(crate) mod attachment;

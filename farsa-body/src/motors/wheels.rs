@@ -1,15 +1,16 @@
-//! Motors of robots on two wheels.
+//! Motors for robots with two wheels.
 //!
-//! As for all motors, a value outside [0, 1] drives like the nearer end, NaN like 0.
+//! Values outside [0, 1] are clamped, and NaN is treated as 0.
 
 use farsa_num::Scalar;
 
 use crate::channel::{ChannelError, positive, unit};
 use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
-/// Drives the left and the right wheel, one channel each: the speed is (2 y - 1) times the largest.
+/// Drives the left and the right wheel with one channel each. A value y results in 2 y - 1 times the largest speed.
 ///
-/// A shorter slice drives the left wheel only. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// If only one value is provided, only the left wheel is driven. Wrap the motor in [`crate::wrappers::Noisy`] to add
+/// noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelVelocity<A = ActuatorId> {
     wheels: [A; 2],
@@ -17,11 +18,11 @@ pub struct WheelVelocity<A = ActuatorId> {
 }
 
 impl<A> WheelVelocity<A> {
-    /// A motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s]. `wheels` left
-    /// and right.
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` [rad/s]. The left
+    /// wheel comes first.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `largest` is not a finite number > 0.
+    /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.
     pub fn new(wheels: [A; 2], largest: f32) -> Result<Self, ChannelError> {
         Ok(Self { wheels, largest: positive("largest speed", largest)? })
     }
@@ -42,16 +43,16 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for WheelVelocity<A> 
     }
 }
 
-/// Drives both wheels by a speed and a turn, two channels.
+/// Drives both wheels with two channels, which control the speed and the turn.
 ///
-/// With s = 2 y - 1 of the first channel and t = 2 y - 1 of the second, the left wheel turns at (s - t) and the right
-/// at (s + t) times the largest speed. The first channel drives backwards at 0 and forwards at 1, or has s = y after
-/// [`SpeedAndTurn::forwards`]. The second turns right at 0 and left at 1.
+/// Let s = 2 y - 1 for the first channel and t = 2 y - 1 for the second one. The left wheel turns at (s - t) and the
+/// right wheel at (s + t) times the largest speed. The robot drives backwards if the first channel is 0 and forwards if
+/// it is 1. After [`SpeedAndTurn::forwards`], s = y is used instead. The robot turns right if the second channel is 0
+/// and left if it is 1.
 ///
-/// If a wheel would exceed the largest speed, both are slowed down by the same factor, so that the robot keeps its
-/// curve. A slice with one value drives straight ahead.
-///
-/// Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// If a wheel would exceed the largest speed, both wheels are slowed down by the same factor, so that the curvature of
+/// the path is preserved. If only one value is provided, the robot drives straight ahead. Wrap the motor in
+/// [`crate::wrappers::Noisy`] to add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedAndTurn<A = ActuatorId> {
     wheels: [A; 2],
@@ -60,15 +61,15 @@ pub struct SpeedAndTurn<A = ActuatorId> {
 }
 
 impl<A> SpeedAndTurn<A> {
-    /// A motor of these wheels, left and right, which turn at most at `largest` [rad/s] either way.
+    /// Creates a motor for the left and the right wheel. Their largest speed in both directions is `largest` [rad/s].
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `largest` is not a finite number > 0.
+    /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.
     pub fn new(wheels: [A; 2], largest: f32) -> Result<Self, ChannelError> {
         Ok(Self { wheels, largest: positive("largest speed", largest)?, forwards: false })
     }
 
-    /// Makes a robot that never drives backwards and rests at 0 of the first channel.
+    /// Changes the first channel such that the robot never drives backwards. It stops at 0.
     pub fn forwards(self) -> Self {
         Self { forwards: true, ..self }
     }

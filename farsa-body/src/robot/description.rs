@@ -1,4 +1,4 @@
-//! A robot as data: segments and their joints, shapes, actuators and the pairs that may touch.
+//! The description of a robot, which consists of segments, joints, shapes, actuators and pairs that may touch.
 
 use alloc::format;
 use alloc::string::String;
@@ -11,196 +11,197 @@ use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robot::visual::Visual;
 
-/// The motion of a segment relative to its parent.
+/// The kind of motion between a segment and its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum JointKind {
-    /// Turns about the joint's axis.
+    /// The segment turns about the axis of the joint.
     Revolute,
-    /// Slides along the joint's axis.
+    /// The segment slides along the axis of the joint.
     Prismatic,
-    /// Does not move.
+    /// The segment cannot move.
     Fixed,
-    /// Moves freely in the world. Only for a segment without parent.
+    /// The segment moves freely in the world. It must not have a parent.
     Floating,
 }
 
-/// The joint that carries a segment.
+/// The joint that connects a segment to its parent.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// The joint's name, unique in the robot. May be empty for fixed and floating joints.
+    /// The name of the joint, unique in the robot. It may be empty for fixed and floating joints.
     pub name: String,
-    /// The kind of motion.
+    /// The kind of motion that the joint permits.
     pub kind: JointKind,
-    /// Axis in the joint's frame, normalized by the reader.
+    /// The axis in the frame of the joint. It is normalized by the reader.
     pub axis: [f64; 3],
-    /// The joint's frame in the parent's frame (the world's without parent), at joint position 0.
+    /// The frame of the joint at position 0, relative to the parent or the world.
     pub placement: Pose<f64>,
-    /// Lowest and highest position [rad or m], or infinite for none.
+    /// The lowest and the highest position [rad or m]. They may be infinite.
     pub range: [f64; 2],
-    /// Inertia of the drive, added to the joint's own [kg m2 or kg].
+    /// The inertia of the drive [kg m2 or kg], which is added to that of the segment.
     pub armature: f64,
-    /// Viscous damping [N m s/rad or N s/m].
+    /// The viscous damping [N m s/rad or N s/m].
     pub damping: f64,
 }
 
-/// A rigid part of the robot with the joint that carries it. Its frame is the joint's frame after the motion.
+/// A rigid part of the robot, together with its joint. Its frame moves with the joint.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Segment {
-    /// The segment's name, unique in the robot.
+    /// The name of the segment, unique in the robot.
     pub name: String,
-    /// The segment that it hangs on, earlier in the list, or `None` for the world.
+    /// The parent, which must be earlier in the list, or `None` for the world.
     pub parent: Option<BodyId>,
-    /// The joint to the parent.
+    /// The joint that connects the segment to its parent.
     pub joint: Joint,
-    /// Mass [kg].
+    /// The mass of the segment [kg].
     pub mass: f64,
-    /// Center of mass in the segment's frame [m].
+    /// The center of mass in the frame of the segment [m].
     pub centre: [f64; 3],
-    /// Inertia about the center of mass in the segment's axes [xx, yy, zz, xy, xz, yz, kg m2].
+    /// The inertia about the center of mass in the axes of the segment [xx, yy, zz, xy, xz, yz, kg m2].
     pub inertia: [f64; 6],
 }
 
-/// A shape fixed to a segment or to the world.
+/// A shape that is attached to a segment or to the world.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Collider {
-    /// The collider's name, unique in the robot.
+    /// The name of the collider, unique in the robot.
     pub name: String,
-    /// The segment it moves with, or `None` for the world.
+    /// The segment to which the collider is attached, or `None` for the world.
     pub body: Option<BodyId>,
-    /// Its form.
+    /// The shape of the collider.
     pub shape: Shape,
-    /// Its frame in the segment's frame.
+    /// The pose of the collider in the frame of the segment.
     pub placement: Pose<f64>,
-    /// The color it shows to cameras, red, green and blue [0..1]. Without one it is not there for cameras of a plane
-    /// ([`Sight`](crate::ports::Sight)), and hides what is behind it from eyes with an image
-    /// ([`Vision`](crate::ports::Vision)).
+    /// The red, green and blue components of the color that cameras see [0..1]. A collider without a color is invisible
+    /// for cameras in a plane ([`Sight`](crate::ports::Sight)). In images ([`Vision`](crate::ports::Vision)) it hides
+    /// everything behind it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }
 
-/// The interaction of two surfaces.
+/// The properties of a contact between two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
-    /// Coefficient of sliding friction.
+    /// The coefficient of sliding friction.
     pub friction: f64,
-    /// Rolling and spinning resistance: largest torque over normal force [m].
+    /// The resistance to rolling and spinning, as the ratio of the largest torque and the normal force [m].
     pub rolling_friction: f64,
-    /// Normal stiffness of one contact point [N/m].
+    /// The normal stiffness of a contact point [N/m].
     pub stiffness: f64,
-    /// Normal damping of one contact point [N s/m].
+    /// The normal damping of a contact point [N s/m].
     pub damping: f64,
 }
 
-/// Two colliders that may touch.
+/// A pair of colliders that may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pair {
-    /// Indices of the two colliders.
+    /// The indices of the two colliders.
     pub colliders: [usize; 2],
-    /// The interaction of their surfaces.
+    /// The properties of the contact.
     pub surface: Surface,
-    /// Consecutive pairs with the same number may be searched together. They are searched only while the spheres around
-    /// their first and around their second colliders are near each other. Grouping changes no motion.
+    /// Consecutive pairs with the same number can be skipped together. This happens while the spheres around all first
+    /// and all second colliders are far apart. Groups do not change the motion.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u16>,
 }
 
-/// An actuator on a joint.
+/// An actuator that drives a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Actuator {
-    /// The actuator's name, unique in the robot.
+    /// The name of the actuator, unique in the robot.
     pub name: String,
-    /// The joint it acts on.
+    /// The joint that is driven.
     pub joint: JointId,
-    /// Its law.
+    /// The law that determines the torque.
     pub law: Law<f64>,
 }
 
-/// The ground below a body that slides in a plane, and rubs on it.
+/// The ground below a body that slides in a plane. It exerts friction on the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ground {
-    /// The body, as [`Robot::add_sliding_body`] makes it.
+    /// The body, which must be created by [`Robot::add_sliding_body`].
     pub body: BodyId,
-    /// Coefficient of friction.
+    /// The coefficient of friction.
     pub friction: f64,
-    /// The force that presses the body on the ground, such as its weight [N].
+    /// The force that presses the body on the ground [N], for example its weight.
     pub load: f64,
-    /// At which radius the ground acts on a body that turns: two thirds of that of a disc with even pressure [m].
+    /// The effective radius for the friction of a rotating body [m]. For a disc with uniform pressure it is two thirds
+    /// of its radius.
     pub radius: f64,
 }
 
-/// A robot, or a scene of robots and things, as data. Every world is built from one.
+/// The description of a robot or of a scene with robots and objects. All worlds are built from it.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Robot {
-    /// The robot's name.
+    /// The name of the robot.
     pub name: String,
-    /// The segments, parents before children.
+    /// The segments. Parents must come before their children.
     pub segments: Vec<Segment>,
-    /// The shapes.
+    /// The shapes that are used for contacts and sensors.
     pub colliders: Vec<Collider>,
-    /// The pairs of colliders that may touch, in a fixed order.
+    /// The pairs of colliders that may touch.
     pub pairs: Vec<Pair>,
-    /// The actuators.
+    /// The actuators of all joints.
     pub actuators: Vec<Actuator>,
-    /// The ground below bodies that slide.
+    /// The ground below sliding bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub grounds: Vec<Ground>,
-    /// Shapes that views draw instead of the colliders of their segments. Worlds ignore them.
+    /// Shapes that are drawn instead of the colliders. They are ignored by worlds.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub visuals: Vec<Visual>,
 }
 
-/// Where the parts of a merged robot begin in the lists of the one that took them in, from [`Robot::merge`].
+/// The indices at which the parts of a merged robot start. It is returned by [`Robot::merge`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Offsets {
-    /// Index of its first segment.
+    /// The index of the first segment.
     pub segments: usize,
-    /// Index of its first collider.
+    /// The index of the first collider.
     pub colliders: usize,
-    /// Index of its first pair.
+    /// The index of the first pair.
     pub pairs: usize,
-    /// Index of its first actuator.
+    /// The index of the first actuator.
     pub actuators: usize,
 }
 
 impl Offsets {
-    /// A body of the merged robot, by its new index.
+    /// Returns the new identifier of a body.
     pub fn body(&self, body: BodyId) -> BodyId {
         BodyId((self.segments + body.index()) as u16)
     }
 
-    /// A joint of the merged robot, by its new index.
+    /// Returns the new identifier of a joint.
     pub fn joint(&self, joint: JointId) -> JointId {
         JointId((self.segments + joint.index()) as u16)
     }
 
-    /// An actuator of the merged robot, by its new index.
+    /// Returns the new identifier of an actuator.
     pub fn actuator(&self, actuator: ActuatorId) -> ActuatorId {
         ActuatorId((self.actuators + actuator.index()) as u16)
     }
 
-    /// A pair of the merged robot, by its new index.
+    /// Returns the new identifier of a pair.
     pub fn pair(&self, pair: PairId) -> PairId {
         PairId((self.pairs + pair.index()) as u16)
     }
 
-    /// A collider of the merged robot, by its new index.
+    /// Returns the new index of a collider.
     pub fn collider(&self, collider: usize) -> usize {
         self.colliders + collider
     }
 }
 
 impl JointKind {
-    /// Returns whether the joint has one degree of freedom: a position, a speed, a range.
+    /// Returns true if the joint has exactly one degree of freedom.
     pub fn is_single(self) -> bool {
         matches!(self, Self::Revolute | Self::Prismatic)
     }
@@ -211,34 +212,34 @@ impl Joint {
         Self { name: name.into(), kind, axis, placement, range, armature: 0.0, damping: 0.0 }
     }
 
-    /// A joint that turns about `axis` within `range` [rad], without armature and damping.
+    /// Creates a joint that turns about `axis` within `range` [rad]. It has no armature and no damping.
     pub fn revolute(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
         Self::new(name, JointKind::Revolute, axis, placement, range)
     }
 
-    /// A joint that slides along `axis` within `range` [m], without armature and damping.
+    /// Creates a joint that slides along `axis` within `range` [m]. It has no armature and no damping.
     pub fn prismatic(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
         Self::new(name, JointKind::Prismatic, axis, placement, range)
     }
 
-    /// A nameless joint that does not move.
+    /// Creates a joint that cannot move. Its name is empty.
     pub fn fixed(placement: Pose<f64>) -> Self {
         Self::new("", JointKind::Fixed, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
     }
 
-    /// A nameless joint that lets its segment move freely in the world, from `placement`.
+    /// Creates a joint for a segment that moves freely in the world and starts at `placement`. Its name is empty.
     pub fn floating(placement: Pose<f64>) -> Self {
         Self::new("", JointKind::Floating, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
     }
 
-    /// Returns the joint with this armature [kg m2 or kg].
+    /// Sets the armature [kg m2 or kg].
     #[must_use]
     pub fn with_armature(mut self, armature: f64) -> Self {
         self.armature = armature;
         self
     }
 
-    /// Returns the joint with this viscous damping [N m s/rad or N s/m].
+    /// Sets the viscous damping [N m s/rad or N s/m].
     #[must_use]
     pub fn with_damping(mut self, damping: f64) -> Self {
         self.damping = damping;
@@ -247,32 +248,32 @@ impl Joint {
 }
 
 impl Segment {
-    /// A segment on `parent` (`None` for the world) with these mass properties.
+    /// Creates a segment with the given mass properties. The parent is `None` for the world.
     pub fn new(name: &str, parent: Option<BodyId>, joint: Joint, body: MassProperties) -> Self {
         let MassProperties { mass, centre, inertia } = body;
         Self { name: name.into(), parent, joint, mass, centre, inertia }
     }
 
-    /// Mass, center of mass and inertia in the segment's frame.
+    /// Returns the mass, the center of mass and the inertia in the frame of the segment.
     pub fn mass_properties(&self) -> MassProperties {
         MassProperties { mass: self.mass, centre: self.centre, inertia: self.inertia }
     }
 }
 
 impl Collider {
-    /// A shape on `body` (`None` for the world) at `placement` in its frame.
+    /// Creates a collider at the given pose in the frame of `body`, or in the world for `None`.
     pub fn new(name: &str, body: Option<BodyId>, shape: Shape, placement: Pose<f64>) -> Self {
         Self { name: name.into(), body, shape, placement, color: None }
     }
 
-    /// Returns the collider with a color that cameras see, red, green and blue [0..1].
+    /// Sets the color that cameras see, with red, green and blue in [0..1].
     #[must_use]
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// Builds a capsule whose axis runs from point `a` to point `b` of the body's frame [m], of `radius` [m]. It is a
-    /// ball where the points coincide.
+    /// Creates a capsule whose axis extends from point `a` to point `b` in the frame of the body [m]. If the points
+    /// coincide, the result is a sphere.
     pub fn capsule_between(name: &str, body: Option<BodyId>, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let length = norm(&d);
@@ -286,39 +287,39 @@ impl Collider {
         Self::new(name, body, Shape::Capsule { radius, half_length: length / 2.0 }, Pose { position, rotation })
     }
 
-    /// The mass properties of a solid of this shape and place with `mass` [kg], in the body's frame.
+    /// Computes the mass properties of a solid with this shape and the given mass [kg] in the frame of the body.
     pub fn mass_properties(&self, mass: f64) -> MassProperties {
         MassProperties::from_shape(&self.shape, mass).placed(&self.placement)
     }
 }
 
 impl Robot {
-    /// A robot without parts.
+    /// Creates a robot without any parts.
     pub fn new(name: &str) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// Appends a segment. Its parent must be there already.
+    /// Adds a segment. Its parent must have been added before.
     pub fn add_segment(&mut self, segment: Segment) -> BodyId {
         self.segments.push(segment);
         BodyId((self.segments.len() - 1) as u16)
     }
 
-    /// Appends a collider and returns its index.
+    /// Adds a collider and returns its index.
     pub fn add_collider(&mut self, collider: Collider) -> usize {
         self.colliders.push(collider);
         self.colliders.len() - 1
     }
 
-    /// Appends a pair of colliders, given by their indices, that may touch.
+    /// Adds a pair of colliders that may touch. They are given by their indices.
     pub fn add_pair(&mut self, colliders: [usize; 2], surface: Surface) -> PairId {
         self.pairs.push(Pair { colliders, surface, group: None });
         PairId((self.pairs.len() - 1) as u16)
     }
 
-    /// Appends a group of pairs, given by the indices of their colliders. The group costs almost nothing while its
-    /// first and its second colliders are apart. This pays for colliders that keep together, such as the parts of a
-    /// hand.
+    /// Adds a group of pairs, which are given by the indices of their colliders. The group needs almost no time as long
+    /// as its first and its second colliders are far apart. This is useful for colliders that move together, such as
+    /// the parts of a hand.
     pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {
         let group = Some(self.first_group());
         self.pairs.extend(pairs.into_iter().map(|colliders| Pair { colliders, surface, group }));
@@ -329,16 +330,16 @@ impl Robot {
         self.pairs.iter().filter_map(|pair| pair.group).max().map_or(0, |group| group.saturating_add(1))
     }
 
-    /// Appends an actuator on `joint`.
+    /// Adds an actuator that drives `joint`.
     pub fn add_actuator(&mut self, name: &str, joint: JointId, law: Law<f64>) -> ActuatorId {
         self.actuators.push(Actuator { name: name.into(), joint, law });
         ActuatorId((self.actuators.len() - 1) as u16)
     }
 
-    /// Appends all parts of `other` and returns where they begin.
+    /// Adds all parts of another robot and returns their offsets.
     ///
-    /// No pair between the two is made. Names are kept: [`Robot::validate`] finds clashes, [`Robot::prefixed`] avoids
-    /// them.
+    /// No pairs between the two robots are added. Names are not changed. Use [`Robot::prefixed`] to avoid duplicates,
+    /// which are detected by [`Robot::validate`].
     pub fn merge(&mut self, other: &Robot) -> Offsets {
         let offsets = Offsets {
             segments: self.segments.len(),
@@ -372,7 +373,7 @@ impl Robot {
         offsets
     }
 
-    /// Returns the robot with `prefix` before every name but its own. Empty names stay empty.
+    /// Returns a copy in which `prefix` is added to all names except that of the robot. Empty names stay empty.
     #[must_use]
     pub fn prefixed(&self, prefix: &str) -> Self {
         let mut robot = self.clone();
@@ -385,13 +386,13 @@ impl Robot {
         robot
     }
 
-    /// The joints with one degree of freedom, in the order of their segments.
+    /// Returns an iterator over the joints with one degree of freedom, in the order of their segments.
     pub fn joints(&self) -> impl Iterator<Item = JointId> + '_ {
         let single = |(i, s): (usize, &Segment)| s.joint.kind.is_single().then_some(JointId(i as u16));
         self.segments.iter().enumerate().filter_map(single)
     }
 
-    /// The bodies that have a collider or a visual, in the order of their segments.
+    /// Returns an iterator over the bodies that have a collider or a visual, in the order of their segments.
     pub fn shaped_bodies(&self) -> impl Iterator<Item = BodyId> + '_ {
         let bodies = (0..self.segments.len()).map(|i| BodyId(i as u16));
         bodies.filter(|body| {
@@ -400,27 +401,27 @@ impl Robot {
         })
     }
 
-    /// The body with this name.
+    /// Returns the body with the given name.
     pub fn body(&self, name: &str) -> Option<BodyId> {
         self.segments.iter().position(|s| s.name == name).map(|i| BodyId(i as u16))
     }
 
-    /// The joint with this name.
+    /// Returns the joint with the given name.
     pub fn joint(&self, name: &str) -> Option<JointId> {
         self.segments.iter().position(|s| s.joint.name == name).map(|i| JointId(i as u16))
     }
 
-    /// The actuator with this name.
+    /// Returns the actuator with the given name.
     pub fn actuator(&self, name: &str) -> Option<ActuatorId> {
         self.actuators.iter().position(|a| a.name == name).map(|i| ActuatorId(i as u16))
     }
 
-    /// The index of the collider with this name.
+    /// Returns the index of the collider with the given name.
     pub fn collider(&self, name: &str) -> Option<usize> {
         self.colliders.iter().position(|c| c.name == name)
     }
 
-    /// The pair of the colliders with these names, in either order.
+    /// Returns the pair of the colliders with the given names, in either order.
     pub fn pair(&self, a: &str, b: &str) -> Option<PairId> {
         let (a, b) = (self.collider(a)?, self.collider(b)?);
         self.pairs.iter().position(|p| p.colliders == [a, b] || p.colliders == [b, a]).map(|i| PairId(i as u16))

@@ -1,4 +1,4 @@
-//! Shapes that views draw: visuals, and colliders without a visual.
+//! The shapes that are drawn, which are visuals and colliders of segments without visuals.
 
 use alloc::format;
 
@@ -15,12 +15,13 @@ impl From<&Collider> for Visual {
 }
 
 impl Robot {
-    /// Appends a shape that is drawn.
+    /// Adds a shape that is drawn.
     pub fn add_visual(&mut self, visual: Visual) {
         self.visuals.push(visual);
     }
 
-    /// The colliders that are drawn: those of the world, and of segments without a visual.
+    /// Returns an iterator over the colliders that are drawn. These are the colliders of the world and of segments that
+    /// have no visual.
     pub fn drawn_colliders(&self) -> impl Iterator<Item = &Collider> + '_ {
         let replaced = |body| self.visuals.iter().any(|visual| visual.body == Some(body));
         self.colliders.iter().filter(move |collider| !collider.body.is_some_and(replaced))

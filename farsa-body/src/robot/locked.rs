@@ -1,4 +1,4 @@
-//! Joints that are held for good: what moves together is one body to a world.
+//! Joints that are permanently locked. Worlds treat the connected segments as one body.
 
 use farsa_num::sin_cos;
 
@@ -6,9 +6,10 @@ use crate::pose::{Pose, norm};
 use crate::robot::description::{Joint, JointKind};
 
 impl Joint {
-    /// The joint that takes the place of this one where it is fixed at a position [rad or m], without name, armature and damping.
+    /// Returns a fixed joint that replaces this joint at the given position [rad or m]. It has no name, no armature and
+    /// no damping.
     ///
-    /// A fixed joint and a floating one, which have no position, are fixed at their placement.
+    /// Fixed and floating joints do not have a position. They are fixed at their placement.
     #[must_use]
     pub fn locked(&self, position: f64) -> Self {
         let scaled = |by: f64| {

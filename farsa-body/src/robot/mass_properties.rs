@@ -3,17 +3,17 @@
 use crate::pose::{Pose, cross};
 use crate::robot::shape::Shape;
 
-/// Mass, center of mass and inertia of a rigid body.
+/// The mass, the center of mass and the inertia of a rigid body.
 ///
-/// The shapes are solid and homogeneous, centerd at the origin, with their axis along z.
+/// The constructors assume homogeneous solids that are centered at the origin, with their axis along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
-    /// Mass [kg].
+    /// The mass of the body [kg].
     pub mass: f64,
-    /// Center of mass [m].
+    /// The center of mass [m].
     pub centre: [f64; 3],
-    /// Inertia about the center of mass, matrix elements [xx, yy, zz, xy, xz, yz, kg m2].
+    /// The elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass [kg m2].
     pub inertia: [f64; 6],
 }
 
@@ -22,26 +22,29 @@ impl MassProperties {
         Self { mass, centre: [0.0; 3], inertia: [xx, yy, zz, 0.0, 0.0, 0.0] }
     }
 
-    /// A ball of `mass` [kg] and `radius` [m]: 2/5 m r2 about every axis.
+    /// Creates a sphere with the given mass [kg] and radius [m]. Its inertia is 2/5 m r2 about every axis.
     pub fn sphere(mass: f64, radius: f64) -> Self {
         Self::diagonal(mass, [0.4 * mass * radius * radius; 3])
     }
 
-    /// A box of `mass` [kg] with half edge lengths `half` [m]: m (b2 + c2) / 3 about the axis along a.
+    /// Creates a box with the given mass [kg] and half edge lengths [m]. Its inertia about the axis along a is m (b2 +
+    /// c2) / 3.
     pub fn cuboid(mass: f64, half: [f64; 3]) -> Self {
         let [a, b, c] = half.map(|x| x * x);
         Self::diagonal(mass, [b + c, a + c, a + b].map(|sum| mass * sum / 3.0))
     }
 
-    /// A cylinder of `mass` [kg], `radius` and `half_length` [m]: m r2 / 2 about its axis, m (r2 / 4 + h2 / 3) across.
+    /// Creates a cylinder with the given mass [kg], radius and half length [m]. Its inertia is m r2 / 2 about its axis
+    /// and m (r2 / 4 + h2 / 3) about the others.
     pub fn cylinder(mass: f64, radius: f64, half_length: f64) -> Self {
         let r2 = radius * radius;
         let across = mass * (r2 / 4.0 + half_length * half_length / 3.0);
         Self::diagonal(mass, [across, across, mass * r2 / 2.0])
     }
 
-    /// A capsule of `mass` [kg] and `radius` [m] about an axis of `half_length` h [m]: a cylinder and two half balls,
-    /// their masses as their volumes. The half balls have 2/5 m r2 about the axis and m (2/5 r2 + h2 + 3/4 h r) across.
+    /// Creates a capsule with the given mass [kg], radius and half length h of its axis [m]. It consists of a cylinder
+    /// and two half spheres of the same density. The half spheres contribute 2/5 m r2 about the axis and m (2/5 r2 + h2
+    /// + 3/4 h r) about the others.
     pub fn capsule(mass: f64, radius: f64, half_length: f64) -> Self {
         let (r2, h) = (radius * radius, half_length);
         let tube = mass * h / (h + 2.0 / 3.0 * radius);
@@ -50,7 +53,7 @@ impl MassProperties {
         Self::diagonal(mass, [across, across, tube * r2 / 2.0 + caps * 0.4 * r2])
     }
 
-    /// A solid of this shape with `mass` [kg]. A plane, which has no volume, gets a mass without inertia.
+    /// Creates a solid with the given shape and mass [kg]. Since a plane has no volume, its inertia is zero.
     pub fn from_shape(shape: &Shape, mass: f64) -> Self {
         match *shape {
             Shape::Sphere { radius } => Self::sphere(mass, radius),
@@ -60,7 +63,7 @@ impl MassProperties {
         }
     }
 
-    /// Returns the body seen from a frame in which its own frame is at `placement`.
+    /// Transforms the mass properties to a frame in which the current frame has the pose `placement`.
     #[must_use]
     pub fn placed(&self, placement: &Pose<f64>) -> Self {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
@@ -75,7 +78,8 @@ impl MassProperties {
         }
     }
 
-    /// The two bodies fixed to each other, both given in the same frame. Two massless parts have the first's center.
+    /// Combines two bodies that are rigidly connected. Both must be given in the same frame. If both masses are zero,
+    /// the center of the first body is used.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
@@ -95,10 +99,11 @@ impl MassProperties {
         Self { mass, centre, inertia }
     }
 
-    /// Returns whether mass and inertia can be those of a body: finite, mass >= 0, no principal moment negative or
-    /// larger than the sum of the other two. Moments may miss by 1e-7 of their sum.
+    /// Returns true if a body with this mass and inertia can exist. The mass must be finite and not negative, and no
+    /// principal moment may be negative or larger than the sum of the other two. The tolerance is 1e-7 of the sum of
+    /// the moments.
     ///
-    /// With `moving`, mass and all principal moments must be > 0, so that forces give finite accelerations.
+    /// If `moving` is true, the mass and all principal moments must also be > 0, so that accelerations are finite.
     pub fn is_physical(&self, moving: bool) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
         let finite = self.mass.is_finite() && self.centre.iter().chain(&self.inertia).all(|x| x.is_finite());

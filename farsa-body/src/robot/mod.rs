@@ -1,16 +1,17 @@
-//! A robot, or a whole scene, as data: what every world is built from and every model file is read into.
+//! Descriptions of robots and scenes. Worlds are built from them, and model files are converted to them.
 //!
-//! Begin with [`Robot::new`] and add [`Segment`]s with their [`Joint`]s, [`Collider`]s and [`Actuator`]s. List the
-//! [`Pair`]s that may touch, and call [`Robot::validate`]. All numbers are `f64`. A world rounds them once.
+//! Start with [`Robot::new`] and add [`Segment`]s with their [`Joint`]s, [`Collider`]s and [`Actuator`]s. Add the
+//! [`Pair`]s of colliders that may touch, and call [`Robot::validate`]. All numbers are `f64` and are rounded once when
+//! a world is built.
 //!
-//! | you have | take |
+//! | you have | use |
 //! |---|---|
 //! | the size and mass of a solid part | [`MassProperties`]: `sphere`, `capsule`, `cylinder`, `cuboid`; `placed` and `with` move and join them |
 //! | two points and a radius | [`Collider::capsule_between`] |
 //! | a thing that is pushed over a table | [`Robot::add_sliding_body`], and [`Ground`] below it |
 //! | a joint that shall not move | [`Joint::locked`] |
-//! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], whose [`Offsets`] say where the parts went |
-//! | looks of its own | [`Visual`]s, which views draw in place of colliders |
+//! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], which returns the [`Offsets`] of the parts |
+//! | a different look | [`Visual`]s, which views draw instead of colliders |
 //! | a file | the crate `farsa-models`, which reads and writes URDF and MJCF |
 
 /// The robot, its segments, joints, colliders, pairs and actuators.

@@ -1,4 +1,4 @@
-//! Pairs of colliders that may touch.
+//! Checks of the pairs of colliders that may touch.
 
 use alloc::collections::BTreeSet;
 

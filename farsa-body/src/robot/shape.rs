@@ -1,24 +1,25 @@
-//! The forms of colliders.
+//! The shapes of colliders.
 
-/// The form of a collider, in its own frame.
+/// The shape of a collider in its local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Shape {
-    /// A ball about the origin.
+    /// A sphere with its center at the origin.
     Sphere {
-        /// Radius [m].
+        /// The radius of the sphere [m].
         radius: f64,
     },
-    /// All points within `radius` of the piece of the z axis from `-half_length` to `half_length`.
+    /// A capsule that contains all points with a distance of at most `radius` from the part of the z axis between
+    /// `-half_length` and `half_length`.
     Capsule {
-        /// Radius [m].
+        /// The radius of the capsule [m].
         radius: f64,
-        /// Half the length of the axis [m].
+        /// Half the length of its axis [m].
         half_length: f64,
     },
-    /// A box about the origin.
+    /// A box with its center at the origin.
     Box {
-        /// Half the edge lengths along x, y, z [m].
+        /// Half the edge lengths along x, y and z [m].
         half: [f64; 3],
     },
     /// The half space z <= 0.

@@ -9,11 +9,13 @@ use crate::robot::mass_properties::MassProperties;
 use crate::robot::validation::{Part, RobotError, index};
 
 impl Robot {
-    /// Appends a body that slides in the plane of x and y of `placement` and, if `turns`, about its z axis.
+    /// Adds a body that slides in the x-y plane of `placement`. If `turns` is true, it can also rotate about the z
+    /// axis.
     ///
-    /// It hangs on the sliding joints `NAME.x` and `NAME.y` without limits, the first on the world, and turns about the joint
-    /// `NAME.turn`. The segments between carry a billionth of its mass each, because no moving segment is without mass.
-    /// It is put somewhere by placing these joints, which come right before it: [`Robot::sliders`].
+    /// The body is connected to the world by the sliding joints `NAME.x` and `NAME.y` without limits, and by the joint
+    /// `NAME.turn` if it can rotate. Since every moving segment needs a mass, the segments between them have a
+    /// billionth of the mass of the body. To move the body, place these joints, which precede it in the list (see
+    /// [`Robot::sliders`]).
     pub fn add_sliding_body(&mut self, name: &str, placement: Pose<f64>, body: MassProperties, turns: bool) -> BodyId {
         const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let slight = MassProperties::sphere(1e-9 * body.mass, 0.01);
@@ -29,13 +31,13 @@ impl Robot {
         self.add_segment(Segment::new(name, Some(second), turn, body))
     }
 
-    /// Lets a body that slides rub on the ground.
+    /// Adds ground that exerts friction on a sliding body.
     pub fn add_ground(&mut self, ground: Ground) {
         self.grounds.push(ground);
     }
 
-    /// Returns the joints of a body that slides in a plane of the world: two crosswise sliding joints, and at most one
-    /// turn on them.
+    /// Returns the joints of a body that slides in a plane. These are two perpendicular sliding joints and, if the body
+    /// can rotate, a revolute joint.
     pub fn sliders(&self, body: BodyId) -> Option<([JointId; 2], Option<JointId>)> {
         let segment = |body: BodyId| self.segments.get(body.index());
         let turn = (segment(body)?.joint.kind == JointKind::Revolute).then_some(JointId(body.0));

@@ -1,4 +1,4 @@
-//! Errors of a robot's description, and their search.
+//! Validation of a robot's description.
 
 use alloc::collections::BTreeSet;
 use alloc::format;
@@ -10,71 +10,72 @@ use crate::pose::{Pose, norm};
 use crate::robot::description::{JointKind, Robot, Segment, Surface};
 use crate::robot::shape::Shape;
 
-/// The fault of a robot's description.
+/// An error in the description of a robot.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RobotError {
-    /// A number that is NaN, infinite or out of its range.
+    /// A number is NaN, infinite or out of its range.
     Value {
-        /// The part's name.
+        /// The name of the part.
         part: String,
-        /// The field.
+        /// The name of the field.
         field: &'static str,
-        /// The value.
+        /// The invalid value.
         value: f64,
     },
-    /// A joint's range that contains NaN or ends before it begins.
+    /// The range of a joint contains NaN or ends before it begins.
     Range {
-        /// The joint's name.
+        /// The name of the joint.
         joint: String,
-        /// The range [rad or m].
+        /// The invalid range [rad or m].
         range: [f64; 2],
     },
-    /// A mass or inertia that no moving body can have.
+    /// A moving body cannot have this mass or inertia.
     Inertia {
-        /// The segment's name.
+        /// The name of the segment.
         segment: String,
-        /// The mass [kg].
+        /// The mass of the segment [kg].
         mass: f64,
         /// The inertia [xx, yy, zz, xy, xz, yz, kg m2].
         inertia: [f64; 6],
     },
-    /// An index beyond the end of its list.
+    /// An index is beyond the end of its list.
     Index {
-        /// The part's name.
+        /// The name of the part.
         part: String,
-        /// The field.
+        /// The name of the field.
         field: &'static str,
-        /// The index.
+        /// The invalid index.
         index: usize,
         /// The length of the list.
         count: usize,
     },
-    /// More parts of one kind than an index can number, which is 65535.
+    /// There are more than 65535 parts of one kind, so they cannot be numbered.
     Count {
         /// The kind of parts.
         parts: &'static str,
         /// The number of parts.
         count: usize,
     },
-    /// A name that two parts of one kind have.
+    /// Two parts of the same kind have the same name.
     Name {
-        /// The name.
+        /// The duplicate name.
         name: String,
     },
-    /// A part at an impossible place in the description.
+    /// A part has an invalid position in the description.
     ///
     /// Examples are a parent that follows its child, a floating joint below another segment, and an actuator on a fixed
-    /// joint. Others are a part without a name, and ground below a body that does not slide in a plane.
+    /// joint. Another example is ground below a body that does not slide in a plane. Parts without a name are also
+    /// reported with this variant.
     Structure {
-        /// The part and its fault.
+        /// A description of the part and the problem.
         why: String,
     },
-    /// A pair of colliders that cannot touch.
+    /// Two colliders of a pair cannot touch.
     Pair {
-        /// The two colliders' names.
+        /// The names of the two colliders.
         colliders: [String; 2],
-        /// The fault.
+        /// The reason why they cannot touch.
         fault: PairFault,
     },
 }
@@ -82,11 +83,11 @@ pub enum RobotError {
 /// The reason why a pair of colliders cannot touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairFault {
-    /// No world has contacts between these shapes.
+    /// Contacts between these shapes are not supported by any world.
     Shapes,
-    /// Both colliders are on one body, or both are fixed to the world.
+    /// Both colliders belong to the same body or to the world.
     SameBody,
-    /// The pair is in the list twice.
+    /// The pair is already in the list.
     Twice,
 }
 
@@ -263,17 +264,18 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
 }
 
 impl Robot {
-    /// Looks for anything that keeps a world from being built, and returns the first error.
+    /// Checks that a world can be built from the description, and returns the first error.
     ///
-    /// Structure: indices and the order of parents, at most 65535 parts of a kind, names present and unique within
-    /// their kind, floating joints only in the world. Pairs have different bodies, are listed once and have at most one
-    /// plane.
+    /// The structure must be valid. Indices exist, parents precede their children, and there are at most 65535 parts of
+    /// a kind. Names are not empty and are unique within their kind. Only segments without a parent may have a floating
+    /// joint. Each pair has two different bodies, contains at most one plane and is listed once.
     ///
-    /// Numbers: finite numbers, unit quaternions (to 1e-6), axes longer than 1e-6, ordered ranges. Masses and inertias
-    /// of moving bodies are > 0 and possible. Shapes, laws and surfaces are positive.
+    /// All numbers must be finite. Quaternions are normalized to 1e-6, axes are longer than 1e-6, and ranges are
+    /// ordered. Moving bodies have positive masses and inertias that can exist. The values of shapes, laws and surfaces
+    /// are positive.
     ///
     /// # Errors
-    /// The first fault, as a [`RobotError`].
+    /// Returns the first [`RobotError`] that is found.
     pub fn validate(&self) -> Result<(), RobotError> {
         let counts = [
             ("segments", self.segments.len()),

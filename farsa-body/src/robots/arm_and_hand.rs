@@ -1,4 +1,5 @@
-//! The arm and hand of the experiment `reach-grasp-lift`: seven muscle-driven joints, twenty in the hand.
+//! The arm and hand of the experiment `reach-grasp-lift`. The arm has seven joints with muscles, and the hand has
+//! twenty joints.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -53,83 +54,85 @@ const MUSCLE_LABELS: [[&str; 2]; 7] = [
     ["wrist adductor", "wrist abductor"],
 ];
 
-/// The right arm and hand of [Ferrauto2010] with the sizes of the iCub, every number a field.
+/// The right arm and hand of [Ferrauto2010] with the dimensions of the iCub. All values can be changed.
 ///
-/// At joint positions 0 the arm points straight forward (+X of the world), horizontal, palm down, thumb to the left
-/// (+Y). All segments' axes are then those of the world. The palm's frame lies in the wrist: x to the fingertips, y to
-/// the thumb, z out of the *back* of the hand. The arm hangs in the world, not on a torso.
+/// At joint position 0, the arm points horizontally forward along +X of the world. The palm points down and the thumb
+/// to the left (+Y). In this posture all frames are parallel to that of the world. The frame of the palm is located in
+/// the wrist, with x towards the fingertips, y towards the thumb, and z out of the *back* of the hand. The arm is
+/// attached to the world and not to a torso.
 ///
-/// Joints, segments and actuators have the same numbers: joint Jn carries segment n - 1 and is driven by actuator n -
-/// 1.
+/// Joints, segments and actuators are numbered consistently. The joint Jn carries segment n - 1 and is driven by
+/// actuator n - 1.
 ///
-/// Deviations: the source does not give the axes' places. The geometry, the masses, the limits of the arm except the
-/// elbow's, joint damping and armature are our own choice, found by trial in another simulator.
+/// Deviations: the source does not specify the positions of the axes. The geometry, the masses, joint damping, armature
+/// and the limits of the arm except for the elbow were chosen by experiments in another simulator.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArmAndHand {
-    /// The point in which the axes of J1 to J3 cross, in the world [m].
+    /// The position in the world at which the axes of J1 to J3 intersect [m].
     pub shoulder: [f64; 3],
-    /// From the shoulder to the elbow [m].
+    /// The distance from the shoulder to the elbow [m].
     pub upper_arm_length: f64,
-    /// From the elbow to the wrist [m].
+    /// The distance from the elbow to the wrist [m].
     pub forearm_length: f64,
-    /// Ranges of J1 to J7 [rad].
+    /// The ranges of J1 to J7 [rad].
     pub arm_ranges: [[f64; 2]; 7],
-    /// Largest active tension of the muscles of J1 to J7, Tmax [N].
+    /// The largest active tension Tmax of the muscles of J1 to J7 [N].
     pub tensions: [f64; 7],
-    /// Moment arm of all muscles [m].
+    /// The moment arm of all muscles [m].
     pub moment_arm: f64,
-    /// Which reading of the muscle model.
+    /// The variant of the muscle model.
     pub muscle_variant: MuscleVariant,
-    /// The reduction factor of [`MuscleVariant::Original`] on the passive tension, in addition to its 0.5. The other
-    /// variant ignores it.
+    /// The factor that reduces the passive tension of [`MuscleVariant::Original`] in addition to 0.5. The other variant
+    /// ignores it.
     pub passive_reduction: f64,
-    /// Viscous damping of the arm's joints divided by the muscles' largest active torque, r Tmax [s/rad], or 0 for
-    /// none.
+    /// The viscous damping of the arm joints, relative to the largest active torque r Tmax of the muscles [s/rad].
     pub damping_per_torque: f64,
-    /// Armature of the arm's joints [kg m2].
+    /// The armature of the arm joints [kg m2].
     pub arm_armature: f64,
-    /// Armature of the hand's joints [kg m2].
+    /// The armature of the hand joints [kg m2].
     pub finger_armature: f64,
-    /// The servo on each joint of the hand.
+    /// The servo of each joint of the hand.
     pub servo: Servo<f64>,
-    /// Passive viscous damping of the hand's joints [N m s/rad].
+    /// The passive viscous damping of the hand joints [N m s/rad].
     pub finger_damping: f64,
-    /// Masses of the segments on J1 to J7: two of the shoulder, upper arm, elbow, forearm, wrist, palm [kg].
+    /// The masses of the segments of J1 to J7 [kg]. These are two shoulder segments, the upper arm, the elbow, the
+    /// forearm, the wrist and the palm.
     pub arm_masses: [f64; 7],
-    /// Mass of each finger's segment on its first joint [kg].
+    /// The mass of the first segment of each finger [kg].
     pub knuckle_mass: f64,
-    /// Masses of the phalanges, from the palm outwards [kg].
+    /// The masses of the phalanges, starting at the palm [kg].
     pub phalange_masses: [f64; 3],
-    /// Radius of the upper arm's capsule, as long as the upper arm [m].
+    /// The radius of the upper arm's capsule [m]. The capsule is as long as the upper arm.
     pub upper_arm_radius: f64,
-    /// Radius of the forearm's capsule [m].
+    /// The radius of the forearm's capsule [m].
     pub forearm_radius: f64,
-    /// Length of the axis of the forearm's capsule, from the elbow [m].
+    /// The length of the axis of the forearm's capsule, which starts at the elbow [m].
     pub forearm_axis: f64,
-    /// Half the palm's edge lengths [m].
+    /// Half the edge lengths of the palm [m].
     pub palm_half: [f64; 3],
-    /// Center of the palm's box in the palm's frame [m].
+    /// The center of the palm's box in the frame of the palm [m].
     pub palm_box: [f64; 3],
-    /// The point on the palm's inner face that counts as its center, in the palm's frame [m].
+    /// The point on the inner side of the palm that is used as its center, in the frame of the palm [m].
     pub palm_centre: [f64; 3],
-    /// Radii of the phalanges' capsules, from the palm outwards. Their axes run from joint to joint, or to the tip [m].
+    /// The radii of the capsules of the phalanges, starting at the palm [m]. Each axis extends to the next joint or to
+    /// the tip.
     pub phalange_radii: [f64; 3],
-    /// Lengths of the phalanges, from the palm outwards, for the fingers from the thumb to the little one [m].
+    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger [m].
     pub phalange_lengths: [[f64; 3]; 5],
-    /// Bases of index, middle, ring and little finger in the palm's frame [m].
+    /// The positions of the index, middle, ring and little finger in the frame of the palm [m].
     pub finger_bases: [[f64; 3]; 4],
-    /// Ranges of their abduction joints J12, J16, J20, J24 [rad].
+    /// The ranges of the abduction joints J12, J16, J20 and J24 [rad].
     pub abduction_ranges: [[f64; 2]; 4],
-    /// Base of the thumb in the palm's frame [m].
+    /// The position of the thumb in the frame of the palm [m].
     pub thumb_base: [f64; 3],
-    /// From the thumb's base to its first flexion joint [m].
+    /// The distance from the base of the thumb to its first flexion joint [m].
     pub thumb_link: f64,
-    /// Range of the thumb's opposition J8 [rad].
+    /// The range of the opposition J8 of the thumb [rad].
     pub opposition_range: [f64; 2],
-    /// Range of the fifteen flexion joints [rad].
+    /// The range of the fifteen flexion joints [rad].
     pub flexion_range: [f64; 2],
-    /// Contact of the hand's phalanges with each other.
+    /// The properties of contacts between phalanges.
     pub surface: Surface,
 }
 
@@ -182,54 +185,55 @@ impl Default for ArmAndHand {
 }
 
 impl ArmAndHand {
-    /// The palm.
+    /// The body of the palm.
     pub const PALM: BodyId = BodyId(6);
-    /// The outward normal of the palm's inner face, in the palm's frame.
+    /// The outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = [0.0, 0.0, -1.0];
-    /// Indices of the colliders of upper arm, forearm and palm. The phalanges follow.
+    /// The indices of the colliders of the upper arm, the forearm and the palm. The phalanges follow.
     pub const ARM_COLLIDERS: [usize; 3] = [0, 1, 2];
 
-    /// J1 to J27.
+    /// Returns the joints J1 to J27.
     pub fn joints() -> [JointId; 27] {
         core::array::from_fn(|i| JointId(i as u16))
     }
 
-    /// Returns the anatomical names of J1 to J27, all different.
+    /// Returns unique anatomical names for the joints J1 to J27.
     ///
-    /// The names of the arm describe a positive rotation at joint positions 0. J1 adducts the arm in the horizontal
+    /// For the arm, the names describe a positive rotation from joint position 0. J1 adducts the arm in the horizontal
     /// plane, J2 flexes the shoulder (up), J3 rotates the humerus inwards, and J4 extends the elbow. J5 supinates the
     /// forearm, J6 flexes the wrist towards the palm, and J7 abducts it towards the thumb.
     ///
-    /// The names of the hand are the motion, or the phalange that flexes. Opposition and flexion are negative.
-    /// Abduction joints turn towards the thumb when positive: index and middle finger abduct, ring and little finger
-    /// adduct.
+    /// For the hand, the names describe the motion or the phalange that flexes. Opposition and flexion are negative.
+    /// Abduction joints turn towards the thumb for positive angles, so the index and the middle finger abduct while the
+    /// ring and the little finger adduct.
     pub const fn joint_labels() -> [&'static str; 27] {
         JOINT_LABELS
     }
 
-    /// Returns the anatomical names of the muscles of J1 to J7, each \[agonist, antagonist\]. The agonist turns its
-    /// joint in the negative direction, the antagonist in the positive one, which names the joint in
+    /// Returns the anatomical names of the agonist and the antagonist of each joint from J1 to J7. The agonist turns
+    /// its joint in the negative direction. The antagonist turns it in the positive direction, which is described by
     /// [`ArmAndHand::joint_labels`].
     pub const fn muscle_labels() -> [[&'static str; 2]; 7] {
         MUSCLE_LABELS
     }
 
-    /// The fifteen joints that flex, from the thumb's to the little finger's, each from the palm outwards.
+    /// Returns the fifteen flexion joints from the thumb to the little finger. For each finger, the joint at the palm
+    /// comes first.
     pub fn flexion_joints() -> [JointId; 15] {
         core::array::from_fn(|i| JointId(8 + i as u16 / 3 * 4 + i as u16 % 3))
     }
 
-    /// The three phalanges of a finger, from the palm outwards.
+    /// Returns the three phalanges of a finger, starting at the palm.
     pub fn phalanges(finger: Finger) -> [BodyId; 3] {
         [0, 1, 2].map(|i| BodyId(finger.first_joint() + i))
     }
 
-    /// The indices of their colliders.
+    /// Returns the indices of the colliders of a finger, starting at the palm.
     pub fn phalange_colliders(finger: Finger) -> [usize; 3] {
         [0, 1, 2].map(|i| 3 + 3 * finger as usize + i)
     }
 
-    /// The hand alone.
+    /// Returns the hand without the arm.
     pub fn hand(&self) -> Hand {
         Hand {
             palm_mass: self.arm_masses[6],
@@ -253,27 +257,31 @@ impl ArmAndHand {
         }
     }
 
-    /// The distal phalange of a finger and its tip in that frame [m]: the end of the capsule's axis, one radius within
-    /// its surface.
+    /// Returns the distal phalange of a finger and the position of its tip in this frame [m]. The tip is the end of the
+    /// capsule's axis, which is one radius below its surface.
     pub fn fingertip(&self, finger: Finger) -> (BodyId, [f64; 3]) {
         (Self::phalanges(finger)[2], self.hand().fingertip(finger))
     }
 
-    /// The nine groups of servos that each follow one output, as [`Hand::servo_groups`] describes them.
+    /// Returns nine groups of servos, each of which is controlled by one output. See [`Hand::servo_groups`] for a list.
     pub fn servo_groups(&self) -> [Vec<ServoRange>; 9] {
         self.hand().servo_groups(ActuatorId(Finger::Thumb.first_joint() - 1))
     }
 
-    /// The robot: segments `shoulder_base`, `shoulder`, `upper_arm`, `elbow`, `forearm`, `wrist`, `palm`, then per
-    /// finger `thumb_knuckle`, `thumb_proximal`, `thumb_middle`, `thumb_distal`. Colliders named as their segments.
+    /// Builds the description of the robot.
     ///
-    /// Upper arm, forearm, palm and phalanges have their collider's inertia as solids, the other segments that of balls
-    /// as thick as their neighbors. Three kinds of pairs may touch: the thumb's two outer phalanges with the other
-    /// fingers' two outer ones, neighboring fingers' distal ones, and the palm with the thumb's two outer phalanges and
-    /// the others' distal ones. Use [`crate::robots::Tabletop`] or [`Robot::add_pair`] for others.
+    /// Its segments are `shoulder_base`, `shoulder`, `upper_arm`, `elbow`, `forearm`, `wrist` and `palm`, followed by
+    /// segments such as `thumb_knuckle`, `thumb_proximal`, `thumb_middle` and `thumb_distal` for each finger. Colliders
+    /// have the same names as their segments.
+    ///
+    /// The inertias of the upper arm, the forearm, the palm and the phalanges are those of solid colliders. All other
+    /// segments have the inertia of a sphere that is as thick as their neighbors. By default, three kinds of contacts
+    /// are possible. The two outer phalanges of the thumb can touch those of the other fingers. The distal phalanges of
+    /// neighboring fingers can touch each other. The palm can touch the outer phalanges of the thumb and the distal
+    /// ones of the other fingers. Use [`crate::robots::Tabletop`] or [`Robot::add_pair`] to add other pairs.
     ///
     /// # Errors
-    /// The errors of [`Robot::validate`] for the given numbers.
+    /// Returns the errors of [`Robot::validate`].
     pub fn robot(&self) -> Result<Robot, RobotError> {
         let mut robot = Robot::new("arm_and_hand");
         let (hand, wrist) = (self.hand(), Wrist { palm: Self::PALM, prefix: "", mirrored: false });

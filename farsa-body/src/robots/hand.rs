@@ -1,4 +1,4 @@
-//! The hand of twenty joints and nine groups of servos, on any palm, right or left.
+//! A hand with twenty joints and nine groups of servos, which can be attached to any palm on either side.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -12,24 +12,24 @@ use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robots::mirror;
 
-/// One of the five fingers, in the order of their joints.
+/// The five fingers in the order of their joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Finger {
-    /// J8 (opposition), J9 to J11.
+    /// The thumb, with the opposition J8 and the joints J9 to J11.
     Thumb,
-    /// J12 (abduction), J13 to J15.
+    /// The index finger, with the abduction J12 and the joints J13 to J15.
     Index,
-    /// J16 (abduction), J17 to J19.
+    /// The middle finger, with the abduction J16 and the joints J17 to J19.
     Middle,
-    /// J20 (abduction), J21 to J23.
+    /// The ring finger, with the abduction J20 and the joints J21 to J23.
     Ring,
-    /// J24 (abduction), J25 to J27.
+    /// The little finger, with the abduction J24 and the joints J25 to J27.
     Little,
 }
 
 impl Finger {
-    /// All fingers, from the thumb to the little finger.
+    /// All fingers from the thumb to the little finger.
     pub const ALL: [Self; 5] = [Self::Thumb, Self::Index, Self::Middle, Self::Ring, Self::Little];
 
     fn name(self) -> &'static str {
@@ -73,50 +73,52 @@ impl Wrist<'_> {
     }
 }
 
-/// The hand of [Ferrauto2010]: five fingers of four joints driven by servos in nine groups, every number a field.
+/// The hand of [Ferrauto2010]. Its five fingers have four joints each, and nine groups of servos drive the joints. All
+/// values can be changed.
 ///
-/// All numbers are those of the right hand in the palm's frame. Its origin is in the wrist, x points to the fingertips,
-/// y to the thumb, and z out of the *back* of the hand. The left hand is its mirror image, y away from the thumb.
-/// Joints are named J8 to J27, with a prefix on a robot of two hands. Deviations from the source:
-/// [`crate::robots::ArmAndHand`].
+/// The values describe the right hand in the frame of the palm. The origin is in the wrist, x points to the fingertips,
+/// y to the thumb, and z out of the *back* of the hand. The left hand is the mirror image, with y pointing away from
+/// the thumb. The joints are named J8 to J27, and a robot with two hands adds a prefix. For deviations from the source,
+/// see [`crate::robots::ArmAndHand`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Hand {
-    /// Mass of the palm [kg].
+    /// The mass of the palm [kg].
     pub palm_mass: f64,
-    /// Half the palm's edge lengths [m].
+    /// Half the edge lengths of the palm [m].
     pub palm_half: [f64; 3],
-    /// Center of the palm's box in the palm's frame [m].
+    /// The center of the palm's box in the frame of the palm [m].
     pub palm_box: [f64; 3],
-    /// The point on the palm's inner face that counts as its center, in the palm's frame [m].
+    /// The point on the inner side of the palm that is used as its center, in the frame of the palm [m].
     pub palm_centre: [f64; 3],
-    /// Armature of the joints [kg m2].
+    /// The armature of the joints [kg m2].
     pub armature: f64,
-    /// Passive viscous damping of the joints [N m s/rad].
+    /// The passive viscous damping of the joints [N m s/rad].
     pub damping: f64,
-    /// The servo on each joint.
+    /// The servo of each joint.
     pub servo: Servo<f64>,
-    /// Mass of each finger's segment on its first joint [kg].
+    /// The mass of the first segment of each finger [kg].
     pub knuckle_mass: f64,
-    /// Masses of the phalanges, from the palm outwards [kg].
+    /// The masses of the phalanges, starting at the palm [kg].
     pub phalange_masses: [f64; 3],
-    /// Radii of the phalanges' capsules, from the palm outwards. Their axes run from joint to joint, or to the tip [m].
+    /// The radii of the capsules of the phalanges, starting at the palm [m]. Each axis extends to the next joint or to
+    /// the tip.
     pub phalange_radii: [f64; 3],
-    /// Lengths of the phalanges, from the palm outwards, for the fingers from the thumb to the little one [m].
+    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger [m].
     pub phalange_lengths: [[f64; 3]; 5],
-    /// Bases of index, middle, ring and little finger in the palm's frame [m].
+    /// The positions of the index, middle, ring and little finger in the frame of the palm [m].
     pub finger_bases: [[f64; 3]; 4],
-    /// Ranges of their abduction joints J12, J16, J20, J24 [rad].
+    /// The ranges of the abduction joints J12, J16, J20 and J24 [rad].
     pub abduction_ranges: [[f64; 2]; 4],
-    /// Base of the thumb in the palm's frame [m].
+    /// The position of the thumb in the frame of the palm [m].
     pub thumb_base: [f64; 3],
-    /// From the thumb's base to its first flexion joint [m].
+    /// The distance from the base of the thumb to its first flexion joint [m].
     pub thumb_link: f64,
-    /// Range of the thumb's opposition J8 [rad].
+    /// The range of the opposition J8 of the thumb [rad].
     pub opposition_range: [f64; 2],
-    /// Range of the fifteen flexion joints [rad].
+    /// The range of the fifteen flexion joints [rad].
     pub flexion_range: [f64; 2],
-    /// Contact of the hand's phalanges with each other and with the palm.
+    /// The properties of contacts between the phalanges and with the palm.
     pub surface: Surface,
 }
 
@@ -153,15 +155,15 @@ impl Default for Hand {
 }
 
 impl Hand {
-    /// The outward normal of the palm's inner face, in the palm's frame of either hand.
+    /// The outward normal of the inner side of the palm. In the frame of the palm it is the same for both hands.
     pub const PALM_NORMAL: [f64; 3] = [0.0, 0.0, -1.0];
 
-    /// Mass of palm and fingers [kg].
+    /// Returns the total mass of the palm and the fingers [kg].
     pub fn mass(&self) -> f64 {
         self.palm_mass + 5.0 * (self.knuckle_mass + self.phalange_masses.iter().sum::<f64>())
     }
 
-    /// The ranges of J8 to J27 [rad].
+    /// Returns the ranges of J8 to J27 [rad].
     pub fn ranges(&self) -> [[f64; 2]; 20] {
         core::array::from_fn(|i| match (i / 4, i % 4) {
             (0, 0) => self.opposition_range,
@@ -170,17 +172,18 @@ impl Hand {
         })
     }
 
-    /// The tip of a finger of the right hand in the frame of its distal phalange [m]: the end of the capsule's axis,
-    /// one radius within its surface. The left hand's is the same with the opposite y.
+    /// Returns the tip of a finger of the right hand in the frame of its distal phalange [m]. The tip is the end of the
+    /// capsule's axis, which is one radius below its surface. For the left hand, y has the opposite sign.
     pub fn fingertip(&self, finger: Finger) -> [f64; 3] {
         let tip = self.phalange_lengths[finger as usize][2];
         if finger == Finger::Thumb { [0.0, tip, 0.0] } else { [tip, 0.0, 0.0] }
     }
 
-    /// Returns the nine groups of servos, each for one output, of a hand whose servo on J8 is `first`. Positions at
-    /// output 0 are extended with fingers together, and at 1 flexed and spread.
+    /// Returns nine groups of servos, each of which is controlled by one output. The argument `first` is the servo of
+    /// J8. At an output of 0, the fingers are extended and close together. At an output of 1, they are flexed and
+    /// spread.
     ///
-    /// The groups in order are [Ferrauto2010, chapter 2]:
+    /// The groups have the following order [Ferrauto2010, chapter 2]:
     ///
     /// 1. J8
     /// 2. J9
@@ -189,8 +192,8 @@ impl Hand {
     /// 5. J14 and J15
     /// 6. J17
     /// 7. J18 and J19
-    /// 8. J12, J16, J20 and J24: abduction, index and middle from the lower to the upper limit, ring and little the
-    ///    other way
+    /// 8. J12, J16, J20 and J24 for abduction. The index and middle finger move from the lower to the upper limit, and
+    ///    the ring and little finger in the opposite direction
     /// 9. J21 to J23 and J25 to J27
     pub fn servo_groups(&self, first: ActuatorId) -> [Vec<ServoRange>; 9] {
         let servo = |n: u16, from: f64, to: f64| ServoRange {

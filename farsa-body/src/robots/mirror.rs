@@ -1,7 +1,7 @@
-//! The mirror image of parts at the plane y = 0: of a right arm it makes a left one.
+//! Reflection of parts in the plane y = 0, which converts a right arm to a left arm.
 //!
-//! A frame's image has the images of its x and z axes and the opposite of that of y, so that it stays right-handed.
-//! Points and axes are taken from 0 instead of negated, so that no zero becomes a negative one.
+//! The x and z axes of a frame are reflected, and the y axis is reflected and inverted, so that the frame remains
+//! right-handed. Coordinates are subtracted from 0 and not negated, so that no negative zeros occur.
 
 use crate::pose::Pose;
 use crate::robot::mass_properties::MassProperties;

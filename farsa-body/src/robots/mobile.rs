@@ -1,4 +1,4 @@
-//! Wheeled robots as data, and the numbers of their parts in a planar world.
+//! Wheeled robots, and the identifiers of their parts in a planar world.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -6,48 +6,50 @@ use core::f64::consts::PI;
 
 use crate::ports::{ActuatorId, BodyId, JointId};
 
-/// A ring of infrared sensors.
+/// A ring of infrared sensors around the hull of a robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InfraredRing {
-    /// Where the sensors sit on the hull and look to, counter-clockwise from ahead [rad].
+    /// The directions of the sensors, counter-clockwise from straight ahead [rad]. They also determine the positions of
+    /// the sensors on the hull.
     pub angles: Vec<f64>,
-    /// The range of the sensors from the hull [m].
+    /// The range of the sensors, measured from the hull [m].
     pub range: f64,
-    /// Half the angle of the cone that each sees [rad].
+    /// Half the opening angle of the cone in which a sensor detects objects [rad].
     pub aperture: f64,
-    /// Rays by which a cone is sampled.
+    /// The number of rays that sample the cone of each sensor.
     pub rays: usize,
 }
 
-/// A round robot on two wheels as data. Frame: x ahead, y to the left, z up, the origin on the ground between the
-/// wheels.
+/// A round robot with two wheels. The origin of its frame is on the ground between the wheels, with x pointing ahead, y
+/// to the left and z up.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileRobot {
-    /// The name.
+    /// The name of the robot.
     pub name: String,
-    /// Radius of the hull [m].
+    /// The radius of the hull [m].
     pub radius: f64,
-    /// Height [m].
+    /// The height of the robot [m].
     pub height: f64,
-    /// Radius of the wheels [m].
+    /// The radius of the wheels [m].
     pub wheel_radius: f64,
-    /// Distance between the wheels [m].
+    /// The distance between the wheels [m].
     pub track: f64,
-    /// The fastest that a wheel turns, either way [rad/s].
+    /// The largest angular speed of a wheel in both directions [rad/s].
     pub max_wheel_speed: f64,
-    /// The infrared sensors around it.
+    /// The ring of infrared sensors.
     pub infrared: InfraredRing,
-    /// Where the sensors of the ground's color are, in the robot's frame [m].
+    /// The positions of the ground color sensors in the frame of the robot [m].
     pub ground: Vec<[f64; 2]>,
-    /// Color of the hull, where no LED shines: red, green and blue [0..1].
+    /// The red, green and blue components of the hull's color [0..1], which is visible when no LED is on.
     pub color: [f64; 3],
-    /// True if it has LEDs: three actuators, red, green and blue.
+    /// True if the robot has LEDs. They are three actuators for red, green and blue.
     pub leds: bool,
-    /// True if it can signal: an actuator.
+    /// True if the robot can send a signal. The signal is an actuator.
     pub signal: bool,
-    /// The reach of its attachment device from the hull [m], if it has one. The device is an actuator.
+    /// The reach of the attachment device, measured from the hull [m], or `None` if there is no such device. The device
+    /// is an actuator.
     pub attachment: Option<f64>,
 }
 
@@ -56,9 +58,11 @@ fn degrees(angles: &[f64]) -> Vec<f64> {
 }
 
 impl MobileRobot {
-    /// The Khepera: 35 mm, wheels of 15 mm 55 mm apart, 1.1 turns/s, eight infrared sensors.
+    /// Returns the Khepera. It has a radius of 35 mm, wheels of 15 mm at a distance of 55 mm that turn at up to 1.1
+    /// turns/s, and eight infrared sensors.
     ///
-    /// Numbers: FARSA2's. Ours: height, color, aperture as half the cone's angle.
+    /// The values are those of FARSA2, except for the height, the color and the aperture, which is interpreted as half
+    /// the angle of the cone.
     pub fn khepera() -> Self {
         Self {
             name: "Khepera".into(),
@@ -82,9 +86,11 @@ impl MobileRobot {
         }
     }
 
-    /// The e-puck: hull of 35 mm, wheels of 20.5 mm 53 mm apart, 144 mm/s, eight infrared sensors, three of the ground, LEDs.
+    /// Returns the e-puck. It has a hull of 35 mm, wheels of 20.5 mm at a distance of 53 mm, and a speed of up to 144
+    /// mm/s. It has eight infrared sensors, three ground sensors and LEDs.
     ///
-    /// Numbers: FARSA2's. Ours: height, color, aperture and rays of the infrared sensors, places of the ground sensors.
+    /// The values are those of FARSA2. The height, the color, the aperture and rays of the infrared sensors, and the
+    /// positions of the ground sensors were chosen.
     pub fn e_puck() -> Self {
         Self {
             name: "e-puck".into(),
@@ -107,11 +113,11 @@ impl MobileRobot {
         }
     }
 
-    /// The `MarXbot`: 85 mm, wheels of 27 mm 126.5 mm apart, 10 rad/s, 24 infrared sensors, twelve of the ground, LEDs, an
-    /// attachment device.
+    /// Returns the `MarXbot`. It has a radius of 85 mm, and wheels of 27 mm at a distance of 126.5 mm that turn at up
+    /// to 10 rad/s. It has 24 infrared sensors, twelve ground sensors, LEDs and an attachment device.
     ///
-    /// Numbers: FARSA2's. Ours: height, color, places of the ground sensors (four within, eight around), reach of the
-    /// attachment device.
+    /// The values are those of FARSA2. The height, the color, the positions of the ground sensors (four in the inner
+    /// and eight in the outer ring), and the reach of the attachment device were chosen.
     pub fn marxbot() -> Self {
         let around = |count: usize, radius: f64, first: f64| {
             (0..count).map(move |i| {
@@ -140,12 +146,13 @@ impl MobileRobot {
         }
     }
 
-    /// Number of its actuators: two wheels, then LEDs (three), signal and attachment device as far as it has them.
+    /// Returns the number of actuators. They are the two wheels, followed by the three LEDs, the signal and the
+    /// attachment device if the robot has them.
     pub fn actuators(&self) -> usize {
         2 + 3 * usize::from(self.leds) + usize::from(self.signal) + usize::from(self.attachment.is_some())
     }
 
-    /// Names for its parts when its body, its left wheel and its first actuator have these numbers.
+    /// Returns the identifiers of all parts, given those of the body, the left wheel and the first actuator.
     pub fn parts(&self, body: BodyId, left_wheel: JointId, first: ActuatorId) -> MobileParts {
         let mut next = first.0;
         let mut actuator = || {
@@ -163,21 +170,21 @@ impl MobileRobot {
     }
 }
 
-/// The numbers of a [`MobileRobot`]'s parts in a world.
+/// The identifiers of the parts of a [`MobileRobot`] in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileParts {
-    /// The robot.
+    /// The body of the robot.
     pub body: BodyId,
-    /// The wheels, left and right.
+    /// The left and the right wheel.
     pub wheels: [JointId; 2],
-    /// The motors of the wheels, left and right. Commands are speeds [rad/s].
+    /// The motors of the left and the right wheel. Their commands are speeds [rad/s].
     pub motors: [ActuatorId; 2],
-    /// The LEDs, red, green and blue, commands are brightnesses [0..1].
+    /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses [0..1].
     pub leds: Option<[ActuatorId; 3]>,
-    /// The signal [0..1].
+    /// The signal, whose command is its value [0..1].
     pub signal: Option<ActuatorId>,
-    /// The attachment device, which holds above 0.5.
+    /// The attachment device, which holds for commands above 0.5.
     pub attachment: Option<ActuatorId>,
 }
 

@@ -1,4 +1,4 @@
-//! Robots that are ready to use, every number a public field but those of the iCub's own links.
+//! Predefined robots. All values are public fields, except for those of the iCub's links.
 //!
 //! | robot | what it is | its world |
 //! |---|---|---|
@@ -7,7 +7,8 @@
 //! | [`Tabletop`] | a table with a sphere, the scene of the arm in `reach-grasp-lift` | articulated |
 //! | [`MobileRobot`] | a round robot on two wheels: [`khepera`](MobileRobot::khepera), [`e_puck`](MobileRobot::e_puck), [`marxbot`](MobileRobot::marxbot) | planar |
 //!
-//! To change one, change its fields before it is built: `ArmAndHand { moment_arm: 0.02, ..ArmAndHand::default() }`.
+//! To customize a robot, change its fields before you build it, for example `ArmAndHand { moment_arm: 0.02,
+//! ..ArmAndHand::default() }`.
 
 /// The arm and hand of `reach-grasp-lift`.
 pub(crate) mod arm_and_hand;

@@ -9,29 +9,30 @@ use crate::robot::validation::RobotError;
 use crate::robots::arm_and_hand::ArmAndHand;
 use crate::robots::hand::Finger;
 
-/// A table before the arm and hand, with a sphere on it. Every number a field.
+/// A table with a sphere in front of the arm and hand. All values can be changed.
 ///
-/// The table's top is at z = 0. All numbers are our own choice. The source gives the sphere's radius.
+/// The table top is at z = 0. The default values were chosen, except for the radius of the sphere, which is given by
+/// the source.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Tabletop {
-    /// Extent of the table along X [m].
+    /// The lower and upper ends of the table along X [m].
     pub table_x: [f64; 2],
-    /// Extent of the table along Y [m].
+    /// The lower and upper ends of the table along Y [m].
     pub table_y: [f64; 2],
-    /// The thickness of the solid table [m].
+    /// The thickness of the table, which is solid [m].
     pub table_depth: f64,
-    /// Radius of the sphere [m].
+    /// The radius of the sphere [m].
     pub sphere_radius: f64,
-    /// Mass of the sphere, solid [kg].
+    /// The mass of the sphere, which is solid [kg].
     pub sphere_mass: f64,
-    /// Where the sphere rests on the table at first, X and Y [m].
+    /// The initial X and Y coordinates of the sphere on the table [m].
     pub sphere_start: [f64; 2],
-    /// Contact of hand and sphere.
+    /// The properties of contacts between the hand and the sphere.
     pub hand_on_sphere: Surface,
-    /// Contact of the sphere with the table.
+    /// The properties of contacts between the sphere and the table.
     pub sphere_on_table: Surface,
-    /// Contact of arm and hand with the table.
+    /// The properties of contacts of the arm and hand with the table.
     pub arm_on_table: Surface,
 }
 
@@ -53,16 +54,17 @@ impl Default for Tabletop {
 }
 
 impl Tabletop {
-    /// The sphere in the robot that [`Tabletop::scene`] makes.
+    /// The body of the sphere in the description that is returned by [`Tabletop::scene`].
     pub const SPHERE: BodyId = BodyId(27);
 
-    /// Arm and hand, sphere and table in one robot, the arm's parts first.
+    /// Builds a description with the arm, the hand, the sphere and the table. The parts of the arm come first.
     ///
-    /// Pairs in order: the arm's own, those of the `sphere` with the palm and the fifteen phalanges (finger by finger),
-    /// those of the `table` with the sphere, forearm, palm and phalanges.
+    /// The pairs of the arm come first. They are followed by those of the `sphere` with the palm and the fifteen
+    /// phalanges, finger by finger. The last pairs are those of the `table` with the sphere, the forearm, the palm and
+    /// the phalanges.
     ///
     /// # Errors
-    /// The errors of [`Robot::validate`] for the given numbers.
+    /// Returns the errors of [`Robot::validate`].
     pub fn scene(&self, arm: &ArmAndHand) -> Result<Robot, RobotError> {
         let mut robot = arm.robot()?;
         let [x, y] = self.sphere_start;

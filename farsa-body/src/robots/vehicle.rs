@@ -1,4 +1,5 @@
-//! Wheeled robots as bodies with joints, for model files and worlds that have them.
+//! Descriptions of wheeled robots with bodies and joints, which are used for model files and for worlds that support
+//! joints.
 
 use alloc::format;
 use core::f64::consts::PI;
@@ -21,30 +22,32 @@ const CLEARANCE: f64 = 0.02;
 const SINK: f64 = 1e-4;
 
 impl MobileRobot {
-    /// Density of a robot, spread over its hull [kg/m3]: an e-puck of 150 g has 780, a Khepera of 80 g has 690 \[chosen\].
+    /// The mean density of a robot [kg/m3] \[chosen\]. For comparison, an e-puck of 150 g has
+    /// 780 and a Khepera of 80 g has 690.
     pub const DENSITY: f64 = 750.0;
 
-    /// Part of the mass that is in the two wheels together \[chosen\].
+    /// The fraction of the mass that belongs to the two wheels \[chosen\].
     pub const WHEEL_SHARE: f64 = 0.1;
 
-    /// Its mass by [`DENSITY`](Self::DENSITY) [kg].
+    /// Returns the mass that results from [`DENSITY`](Self::DENSITY) [kg].
     pub fn mass(&self) -> f64 {
         Self::DENSITY * (PI * self.radius * self.radius * self.height)
     }
 
-    /// Returns the robot as a description: a floating hull, wheels on endless joints, two skids, and the ground. A
-    /// segment without mass marks every infrared and ground sensor, and its x axis is the sensor's direction.
+    /// Builds a description of the robot with a floating hull, two wheels on unlimited joints, two skids and the
+    /// ground. Each infrared and ground sensor is represented by a massless segment whose x axis is the direction of
+    /// the sensor.
     ///
-    /// Segments are `hull`, `left wheel`, `right wheel`, `infrared 1`..., `ground 1`.... The frame of `hull` is that of
-    /// the robot, on the ground between the wheels. The hull has the inertias of a solid cylinder, whose center is at
-    /// the height of the axle, and of each wheel. A motor of a wheel has a quarter of the robot's weight times the
-    /// wheel's radius as its largest torque.
+    /// The segments are named `hull`, `left wheel`, `right wheel`, `infrared 1`..., and `ground 1`.... The frame of
+    /// `hull` is that of the robot, on the ground between the wheels. Its inertia is that of a solid cylinder whose
+    /// center is at the height of the axle. The largest torque of a wheel's motor is a quarter of the weight of the
+    /// robot, multiplied by the radius of the wheel.
     ///
-    /// Deviations from the robots of the plane: the hull is a polygon of 16 sides, since a description has no cylinder,
-    /// within 2 % of its circle. It ends above the ground at half a wheel's radius, or half its height. Wheels are
-    /// balls, which touch the ground in one point. Friction is 0.8 below the wheels and 0 below the skids, contacts are
-    /// damped critically and 0.1 mm deep under the robot's weight: all chosen. LEDs, signals and attachment devices
-    /// have no body.
+    /// Deviations from the planar robots: since descriptions have no cylinders, the hull is a polygon with 16 sides
+    /// that deviates from the circle by at most 2 %. It ends above the ground at half the radius of a wheel, or at half
+    /// its height. The wheels are spheres, which touch the ground in one point. The friction is 0.8 below the wheels
+    /// and 0 below the skids. Contacts are critically damped and 0.1 mm deep under the weight of the robot. These
+    /// values were chosen. LEDs, signals and attachment devices are not represented.
     pub fn description(&self) -> Robot {
         let mut robot = Robot::new(&self.name);
         let hull_mass = (1.0 - Self::WHEEL_SHARE) * self.mass();

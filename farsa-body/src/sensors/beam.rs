@@ -1,27 +1,27 @@
-//! Rays that a robot sends out into the plane of its sensors.
+//! Rays that start at the hull of a robot and extend in the plane of its sensors.
 
 use farsa_num::{Scalar, sin_cos};
 
 use crate::channel::{ChannelError, direction, finite};
 use crate::ports::{Kinematics, Rays};
 
-/// A ray fixed to a robot's hull, in the robot's frame.
+/// A ray that is attached to the hull of a robot. Coordinates are relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Beam {
-    /// Where it leaves the hull [m].
+    /// The point at which the ray leaves the hull [m].
     pub from: [f32; 2],
-    /// Where it goes to, a unit vector.
+    /// The direction of the ray as a unit vector.
     pub direction: [f32; 2],
 }
 
 impl Beam {
-    /// Ray number `ray` of `rays` over a cone that leaves a round hull of `radius` [m] at `angle` [rad], counter-clockwise
-    /// from ahead.
+    /// Returns one of several rays that sample a cone. The cone starts at a round hull with the given radius [m], in
+    /// the direction `angle` [rad], counter-clockwise from straight ahead.
     ///
-    /// All rays of a cone start at the same point of the hull. The first and the last lie `aperture` [rad] to the right
-    /// and to the left of `angle`, the others evenly between them. A single ray lies in the middle. Without an
-    /// allocator:
+    /// All rays of a cone start at the same point. The first ray is `aperture` [rad] to the right of `angle` and the
+    /// last one `aperture` to the left, and the others are evenly distributed between them. A single ray is in the
+    /// middle. This function does not need an allocator:
     ///
     /// ```
     /// use farsa_body::sensors::Beam;
@@ -39,11 +39,11 @@ impl Beam {
         Self { from: [(radius * out.1) as f32, (radius * out.0) as f32], direction: [along.1 as f32, along.0 as f32] }
     }
 
-    /// Ray number `ray` of `rays` over a field of view [rad] around straight ahead, from left to right, from a place in the
-    /// robot's frame [m].
+    /// Returns one of several rays that cover a field of view [rad] around straight ahead, ordered from left to right.
+    /// They start at the position `from` in the frame of the robot [m].
     ///
-    /// Each ray lies in the middle of one of `rays` equal parts of the field, so that those of a whole turn are evenly
-    /// spread, too.
+    /// The field of view is divided into equal parts, and each ray is in the middle of a part. Therefore the rays are
+    /// evenly distributed even if the field of view is a full circle.
     pub fn in_view(from: [f64; 2], field_of_view: f64, ray: usize, rays: usize) -> Self {
         let share = (rays as f64 - 1.0 - 2.0 * ray as f64) / (2.0 * rays.max(1) as f64);
         let (s, c) = sin_cos(share * field_of_view);

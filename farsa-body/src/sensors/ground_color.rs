@@ -1,14 +1,14 @@
-//! Sensors of the ground.
+//! Sensors for the color of the ground.
 
 use crate::channel::{ChannelError, finite, groups, unit};
 use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
 use crate::sensors::stance::Stance;
 
-/// Reads the color of the ground under places of a robot, in [0, 1]: one channel a place, the mean of red, green and
-/// blue.
+/// A sensor that reads the color of the ground at several points below a robot. By default there is one channel per
+/// point, which is the mean of red, green and blue in [0, 1].
 ///
-/// After [`GroundColor::rgb`] three a place, red, green and blue. The places are any list of points of the robot's frame.
-/// Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// Use [`GroundColor::rgb`] to read three channels per point. The points are given in the frame of the robot and can be
+/// stored in any list. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundColor<L, B = BodyId> {
     body: B,
@@ -17,10 +17,11 @@ pub struct GroundColor<L, B = BodyId> {
 }
 
 impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
-    /// Sensors of gray at these places [m] in the frame of `body`.
+    /// Creates a sensor with one channel for each of the given points in the frame of `body` [m].
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if there are no places, [`ChannelError::Value`] if one is not finite.
+    /// Returns [`ChannelError::Groups`] if there are no points, or [`ChannelError::Value`] if a coordinate is not
+    /// finite.
     pub fn new(body: B, places: L) -> Result<Self, ChannelError> {
         groups("places", places.as_ref().len(), 1)?;
         for &x in places.as_ref().iter().flatten() {
@@ -29,7 +30,7 @@ impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
         Ok(Self { body, places, colors: 1 })
     }
 
-    /// Reads three channels a place: red, green and blue.
+    /// Enables separate channels for red, green and blue.
     pub fn rgb(self) -> Self {
         Self { colors: 3, ..self }
     }

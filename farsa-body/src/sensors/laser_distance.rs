@@ -1,14 +1,14 @@
-//! A fan of laser range finders.
+//! Laser range finders.
 
 use crate::channel::{ChannelError, finite, groups, positive, unit};
 use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
 use crate::sensors::beam::{Beam, BeamFrame};
 
-/// Reads how far each beam of a fan reaches, one channel each in [0, 1]: distance / range, 1 where nothing is within the
-/// range.
+/// A sensor that measures distances along several beams. Each beam has one channel, which is distance / range in [0,
+/// 1]. It is 1 if nothing is within the range.
 ///
-/// Distances are from the hull. The beams are any list. [`Beam::in_cone`] makes a fan. Wrap it in
-/// [`crate::wrappers::Noisy`] for noise.
+/// Distances are measured from the hull. The beams can be stored in any list, for example one that is created with
+/// [`Beam::in_cone`]. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.
 #[doc(alias = "lidar")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserDistance<L, B = BodyId> {
@@ -19,11 +19,12 @@ pub struct LaserDistance<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> LaserDistance<L, B> {
-    /// A fan of beams at `height` [m] above the origin of `body`, which reach as far as `range` [m] from the hull.
+    /// Creates a sensor at `height` [m] above the origin of `body`. Its beams have a range of `range` [m] from the
+    /// hull.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if there are no beams, [`ChannelError::Value`] if a beam's direction is no unit vector, a
-    /// number is not finite or `range` is not > 0.
+    /// Returns [`ChannelError::Groups`] if there are no beams. Returns [`ChannelError::Value`] if a direction is not a
+    /// unit vector, if a number is not finite, or if `range` is not > 0.
     pub fn new(body: B, beams: L, height: f32, range: f32) -> Result<Self, ChannelError> {
         groups("beams", beams.as_ref().len(), 1)?;
         beams.as_ref().iter().try_for_each(Beam::check)?;

@@ -1,4 +1,4 @@
-//! Sensors of lamps.
+//! Sensors for the light of lamps.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -12,15 +12,15 @@ use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
-/// Reads how brightly lamps shine on a ring of sensors, one channel each in [0, 1].
+/// A ring of light sensors. Each sensor has one channel in [0, 1], which is the brightness of all visible lamps.
 ///
-/// Every visible lamp adds intensity cos(a) (reference / d)^2. The distance d is that from the sensor to the lamp's
-/// center, and a the angle between that way and the sensor's direction. Behind a sensor (a beyond 90 degrees) a lamp
-/// adds nothing, and the sum is cut at 1. A lamp is hidden when the first thing on the way from the sensor to its
-/// center is another body or a wall. The robot's own body hides only lamps behind the sensor, and a lamp on the robot
-/// itself is invisible.
+/// A lamp contributes intensity cos(a) (reference / d)^2, where d is the distance from the sensor to the center of the
+/// lamp. The angle a is measured between this direction and the axis of the sensor. Lamps with an angle of more than 90
+/// degrees have no effect. The sum is limited to 1. A lamp is hidden if another body or a wall is between the sensor
+/// and its center. The robot itself does not hide any lamps in front of a sensor, and a lamp on the robot is invisible.
 ///
-/// The sensors are any list of [`Beam`]s: where they sit and where they look to. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// The positions and axes of the sensors are given as a list of [`Beam`]s. Wrap the sensor in
+/// [`crate::wrappers::Noisy`] to add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSensors<L, B = BodyId> {
     body: B,
@@ -29,11 +29,12 @@ pub struct LightSensors<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> LightSensors<L, B> {
-    /// Sensors on `body` that read 1 of a lamp of intensity 1 straight ahead of them as near as `reference` [m].
+    /// Creates light sensors on `body`. A lamp of intensity 1 that is straight ahead at a distance of `reference` [m]
+    /// results in a reading of 1.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if there are no sensors, [`ChannelError::Value`] if a direction is no unit vector, a place
-    /// is not finite or `reference` is not a finite number > 0.
+    /// Returns [`ChannelError::Groups`] if there are no sensors. Returns [`ChannelError::Value`] if a direction is not
+    /// a unit vector, if a position is not finite, or if `reference` is not a finite number > 0.
     pub fn new(body: B, sensors: L, reference: f32) -> Result<Self, ChannelError> {
         groups("sensors", sensors.as_ref().len(), 1)?;
         sensors.as_ref().iter().try_for_each(Beam::check)?;
@@ -43,10 +44,11 @@ impl<L: AsRef<[Beam]>, B> LightSensors<L, B> {
 
 #[cfg(feature = "alloc")]
 impl<B> LightSensors<Vec<Beam>, B> {
-    /// Sensors where a robot has its infrared sensors, as those of the Khepera measure both.
+    /// Creates light sensors at the positions of the robot's infrared sensors. This corresponds to the Khepera, whose
+    /// sensors measure both.
     ///
     /// # Errors
-    /// The errors of [`LightSensors::new`].
+    /// Returns the errors of [`LightSensors::new`].
     pub fn for_robot(robot: &MobileRobot, body: B, reference: f32) -> Result<Self, ChannelError> {
         let sensor = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1);
         Self::new(body, robot.infrared.angles.iter().map(sensor).collect(), reference)

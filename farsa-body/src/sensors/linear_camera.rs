@@ -1,4 +1,4 @@
-//! A camera with one line of pixels.
+//! A camera with a single row of sectors.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -9,18 +9,18 @@ use crate::pose::Pose;
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
-/// The colors that a pixel answers to: those whose red, green and blue each lie in a range.
+/// A range of colors that a camera recognizes. The limits apply to red, green and blue separately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorBand {
-    /// The least of red, green and blue.
+    /// The lower limits of red, green and blue.
     pub low: [f32; 3],
-    /// The most of red, green and blue.
+    /// The upper limits of red, green and blue.
     pub high: [f32; 3],
 }
 
 impl ColorBand {
-    /// All colors whose red, green and blue each differ by at most `tolerance` from those of `color`.
+    /// Returns the range of all colors whose components differ from `color` by at most `tolerance`.
     pub fn around(color: [f32; 3], tolerance: f32) -> Self {
         Self { low: color.map(|x| x - tolerance), high: color.map(|x| x + tolerance) }
     }
@@ -33,21 +33,21 @@ impl ColorBand {
         })
     }
 
-    /// Returns whether a color is in the band.
+    /// Returns true if the color is in the range.
     pub fn shows(&self, color: [f32; 3]) -> bool {
         (0..3).all(|i| self.low[i] <= color[i] && color[i] <= self.high[i])
     }
 }
 
-/// Reads how much of each sector of a robot's view shows each of some colors, sectors x colors channels in [0, 1],
-/// those of the leftmost sector first.
+/// A sensor that measures how much of each sector of a robot's view shows each of several colors. It has sectors x
+/// colors channels in [0, 1], starting with all colors of the leftmost sector.
 ///
-/// Each sector is searched by rays. Every ray sees the nearest surface and nothing behind it, also where that hides the
-/// farther one in part only. A channel is the share of its sector's rays that see its color. Colors are never averaged:
-/// a ray that sees magenta counts for bands that hold magenta, not for red and blue. The own body is not seen.
+/// Each sector is sampled by rays. A ray detects the nearest surface, and a channel is the share of rays in its sector
+/// that detect its color. Note that colors are never mixed. A ray that detects magenta counts for bands that contain
+/// magenta, but not for red or blue. The body of the robot itself is invisible.
 ///
-/// The rays and bands are any lists. Wrap it in [`crate::wrappers::Noisy`] for noise. Red and blue robots to the left and to the
-/// right, each whether or not its other LED shines as well:
+/// The rays and the bands can be stored in any list. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise. The
+/// following example detects red and blue robots on both sides, even if the other LED of a robot is on as well:
 ///
 /// ```
 /// # #[cfg(feature = "alloc")] {
@@ -79,13 +79,14 @@ pub struct LinearCamera<R, C, B = BodyId> {
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
-    /// A camera on `body` with `per_sector` rays in each sector, which sees as far as `range` [m]. [`Beam::in_view`]
-    /// makes its rays.
+    /// Creates a camera on `body` with `per_sector` rays in each sector and a range of `range` [m]. Use
+    /// [`Beam::in_view`] to create the rays.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if the rays do not form whole sectors or there are no bands, [`ChannelError::Range`] if
-    /// a band runs backwards or is not finite. [`ChannelError::Value`] if a ray's direction is no unit vector, its
-    /// place is not finite or `range` is not a finite number > 0.
+    /// Returns [`ChannelError::Groups`] if the number of rays is not a multiple of `per_sector` or if there are no
+    /// bands. Returns [`ChannelError::Range`] if a band is not finite or its ends are in the wrong order. Returns
+    /// [`ChannelError::Value`] if a direction is not a unit vector, if a position is not finite, or if `range` is not a
+    /// finite number > 0.
     pub fn new(body: B, rays: R, per_sector: usize, bands: C, range: f32) -> Result<Self, ChannelError> {
         groups("rays", rays.as_ref().len(), per_sector)?;
         groups("colours", bands.as_ref().len(), 1)?;
@@ -98,11 +99,12 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
 
 #[cfg(feature = "alloc")]
 impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
-    /// A camera at the origin of `body` that looks ahead, with a field of view [rad] in equal sectors of `per_sector`
-    /// rays each. With 2 pi it sees all around.
+    /// Creates a camera at the origin of `body` that looks ahead. The field of view [rad] is divided into equal sectors
+    /// with `per_sector` rays each. A field of view of 2 pi covers all directions.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if the field of view is not within 0 and 2 pi, and those of [`LinearCamera::new`].
+    /// Returns [`ChannelError::Value`] if the field of view is not between 0 and 2 pi, and the errors of
+    /// [`LinearCamera::new`].
     pub fn for_view(
         body: B,
         field_of_view: f64,
@@ -139,7 +141,7 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> Channels for LinearCamera<R, C,
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B: Copy + PartialEq> LinearCamera<R, C, B> {
-    /// Reads the camera's channels from a given pose of its body. `out` [sectors x colors].
+    /// Reads the channels for a given pose of the body and writes them to `out`.
     pub fn read_from<W: Sight<Body = B> + ?Sized>(&self, world: &W, pose: &Pose, out: &mut [f32]) {
         let (stance, bands) = (Stance::from_pose(pose), self.bands.as_ref());
         let (body, wedge, range) = (self.body, &self.wedge, self.range);

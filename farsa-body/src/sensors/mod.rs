@@ -1,28 +1,29 @@
-//! Sensors: from a world to values for a network. Which one do I need?
+//! Sensors, which convert the state of a world to values for a network.
 //!
-//! | to sense | take | channels | port |
+//! | to sense | use | channels | port |
 //! |---|---|---|---|
 //! | a joint's position, as a share of its range | [`JointPosition`] | 1 | `Joints` |
 //! | a joint's speed | [`JointSpeed`] | 1 | `Joints` |
-//! | whether something touches, or how hard | [`Touch`], [`ContactForce`] | 1 | `Contacts` |
-//! | where a target is, as seen from a body | [`TargetPosition`] | 3 | `Kinematics` |
+//! | contact, or its force | [`Touch`], [`ContactForce`] | 1 | `Contacts` |
+//! | the position of a target, as seen from a body | [`TargetPosition`] | 3 | `Kinematics` |
 //! | a body's height, pose, velocity | [`Height`], [`BodyPose`], [`BodyVelocity`] | 1, 7, 6 | `Kinematics` |
-//! | how fast the wheels turn | [`WheelSpeed`] | 1 a wheel | `Joints` |
-//! | what pushes or pulls a robot on wheels | [`Traction`] | 2 | `Kinematics`, `Joints` |
-//! | what is near a wheeled robot | one of the [infrared rings](infrared) | 1 a sensor | `Rays` or `Sight` |
-//! | how far away things are, in a fan of beams | [`LaserDistance`] | 1 a beam | `Rays` |
-//! | colours around, in sectors | [`LinearCamera`] | sectors x colours | `Sight` |
+//! | the speeds of wheels | [`WheelSpeed`] | 1 per wheel | `Joints` |
+//! | forces that push or pull a robot on wheels | [`Traction`] | 2 | `Kinematics`, `Joints` |
+//! | objects near a wheeled robot | one of the [infrared rings](infrared) | 1 per sensor | `Rays` or `Sight` |
+//! | distances along several beams | [`LaserDistance`] | 1 per beam | `Rays` |
+//! | colors in the sectors of a view | [`LinearCamera`] | sectors x colors | `Sight` |
 //! | an image, by a camera on any body | [`CameraImage`] | rows x columns x 3 | `Vision` |
-//! | where a colour is in an image, and how large | [`ColorBlobs`] | 3 a colour | `Vision` |
-//! | how far apart two things are in an image | [`VisualOffset`] | 2 | `Kinematics` |
-//! | lamps | [`LightSensors`] | 1 a sensor | `Planar` |
-//! | the ground's colour | [`GroundColor`] | 1 or 3 a place | `Planar` |
-//! | what other robots signal | [`SignalSensor`] | sectors | `Sight` |
-//! | whether the attachment device holds something | [`AttachmentSensor`] | 1 | `Planar` |
+//! | the position and size of a color in an image | [`ColorBlobs`] | 3 per color | `Vision` |
+//! | the offset of two points in an image | [`VisualOffset`] | 2 | `Kinematics` |
+//! | lamps | [`LightSensors`] | 1 per sensor | `Planar` |
+//! | the ground's color | [`GroundColor`] | 1 or 3 per place | `Planar` |
+//! | the signals of other robots | [`SignalSensor`] | sectors | `Sight` |
+//! | the state of an attachment device | [`AttachmentSensor`] | 1 | `Planar` |
 //! | a label, an instruction, a bias that the experiment sets | [`Signal`] | any | none |
 //!
-//! All implement [`Sensor`](crate::ports::Sensor) for any world that has the port. Tuples, arrays and `Vec`s of sensors are
-//! sensors. For noise, delay, another scale or damage put a [wrapper](crate::wrappers) around one.
+//! All sensors implement [`Sensor`](crate::ports::Sensor) for any world that supports the required port. Tuples, arrays
+//! and `Vec`s of sensors are sensors, too. Use a [wrapper](crate::wrappers) to add noise, delay or damage, or to change
+//! the scale.
 
 /// Rays that leave a robot's hull, and fans of them.
 pub(crate) mod beam;

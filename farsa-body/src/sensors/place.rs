@@ -1,42 +1,42 @@
-//! Sensors of where bodies are and how they move.
+//! Sensors for the position and velocity of bodies.
 
 use crate::channel::{ChannelError, finite, write};
 use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 
-/// A point fixed to a body.
+/// A point that is fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point<B = BodyId> {
-    /// The body.
+    /// The body to which the point is fixed.
     pub body: B,
-    /// The point in the body's frame [m].
+    /// The position of the point in the frame of the body [m].
     pub at: [f32; 3],
 }
 
 impl<B: Copy> Point<B> {
-    /// The origin of a body's frame.
+    /// Returns the origin of a body's frame.
     pub fn origin(body: B) -> Self {
         Self { body, at: [0.0; 3] }
     }
 
-    /// Where the point is in the world [m].
+    /// Returns the position of the point in the world [m].
     pub fn position<W: Kinematics<Body = B> + ?Sized>(&self, world: &W) -> [f32; 3] {
         world.pose(self.body).transform(self.at)
     }
 }
 
-/// The axes in which a vector is read.
+/// The axes in which a vector is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Axes {
-    /// The body of the sensor.
+    /// The axes of the body that carries the sensor.
     #[default]
     Body,
-    /// The world.
+    /// The axes of the world.
     World,
 }
 
-/// Reads where a target is relative to a point of the own body, three channels (x, y, z).
+/// A sensor that measures the position of a target relative to a point of a body. Its three channels are x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetPosition<B = BodyId> {
     target: Point<B>,
@@ -46,12 +46,13 @@ pub struct TargetPosition<B = BodyId> {
 }
 
 impl<B> TargetPosition<B> {
-    /// A sensor of `scale` times the way from `from` to `target`. `scale` 1 reads meters, 100 centimeters.
+    /// Creates a sensor that measures the vector from `from` to `target`, multiplied by `scale`. A scale of 1 results
+    /// in meters and a scale of 100 in centimeters.
     ///
-    /// [`Axes::Body`] are those of the body of `from`.
+    /// With [`Axes::Body`], the vector is measured in the frame of the body of `from`.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if a number is not finite.
+    /// Returns [`ChannelError::Value`] if a number is not finite.
     pub fn new(target: Point<B>, from: Point<B>, axes: Axes, scale: f32) -> Result<Self, ChannelError> {
         for x in target.at {
             finite("target", x)?;
@@ -83,7 +84,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for TargetPosition<B> 
     }
 }
 
-/// Reads the height of a point of a body above the world's origin [m], one channel.
+/// A sensor with one channel that measures the height of a point above the origin of the world [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Height<B = BodyId> {
@@ -91,7 +92,7 @@ pub struct Height<B = BodyId> {
 }
 
 impl<B> Height<B> {
-    /// A sensor of this point's height.
+    /// Creates a sensor for the height of the given point.
     pub fn new(point: Point<B>) -> Self {
         Self { point }
     }
@@ -109,9 +110,10 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Height<B> {
     }
 }
 
-/// Reads a body's position in the world [m] and its orientation as a unit quaternion x, y, z, w: seven channels.
+/// A sensor that measures the pose of a body. Its seven channels are the position in the world [m] and the orientation
+/// as a unit quaternion x, y, z, w.
 ///
-/// The quaternion with w >= 0 is read, so that equal orientations have equal readings.
+/// The sign of the quaternion is chosen such that w >= 0. Therefore equal orientations always result in equal readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyPose<B = BodyId> {
@@ -119,7 +121,7 @@ pub struct BodyPose<B = BodyId> {
 }
 
 impl<B> BodyPose<B> {
-    /// A sensor of this body's pose.
+    /// Creates a sensor for the pose of the given body.
     pub fn new(body: B) -> Self {
         Self { body }
     }
@@ -140,7 +142,8 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for BodyPose<B> {
     }
 }
 
-/// Reads the velocity of a body's origin [m/s] and its angular velocity [rad/s]: six channels.
+/// A sensor that measures the velocity of a body. Its six channels are the velocity of the origin [m/s] and the angular
+/// velocity [rad/s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyVelocity<B = BodyId> {
@@ -149,7 +152,7 @@ pub struct BodyVelocity<B = BodyId> {
 }
 
 impl<B> BodyVelocity<B> {
-    /// A sensor of this body's velocities, both in the same axes.
+    /// Creates a sensor for the velocities of the given body. Both are measured in the same axes.
     pub fn new(body: B, axes: Axes) -> Self {
         Self { body, axes }
     }

@@ -1,13 +1,14 @@
-//! Sensors of the body's own joints.
+//! Sensors for the positions and speeds of joints.
 
 use crate::channel::{ChannelError, finite_range, write};
 use crate::ports::{Channels, JointId, Joints, Sensor};
 
-/// Reads one joint's position as a fraction of a range: (q - from) / (to - from), one channel.
+/// A sensor with one channel that measures the position of a joint relative to a range, which is (q - from) / (to -
+/// from).
 ///
-/// The value is not clamped: a joint pushed beyond its range reads below 0 or above 1. A range may run downwards: a
-/// finger that flexes towards -90 degrees reads q / (-90 degrees) with `from` 0 and `to` -pi/2. For a list of joints
-/// take an array or a `Vec` of these.
+/// The reading is not clamped. It is below 0 or above 1 if the joint is pushed beyond the range. It is also possible to
+/// use a decreasing range. For example, a finger that flexes towards -90 degrees can be measured with `from` 0 and `to`
+/// -pi/2. Use an array or a `Vec` of these sensors to measure several joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointPosition<J = JointId> {
     joint: J,
@@ -16,10 +17,10 @@ pub struct JointPosition<J = JointId> {
 }
 
 impl<J> JointPosition<J> {
-    /// A sensor that reads 0 at joint position `from` and 1 at `to` [rad or m].
+    /// Creates a sensor that reads 0 at the joint position `from` and 1 at `to` [rad or m].
     ///
     /// # Errors
-    /// [`ChannelError::Range`] if the two are equal or not finite.
+    /// Returns [`ChannelError::Range`] if the two positions are equal or not finite.
     pub fn new(joint: J, from: f32, to: f32) -> Result<Self, ChannelError> {
         finite_range(from, to)?;
         let span = to - from;
@@ -40,7 +41,8 @@ impl<J: Copy, W: Joints<Joint = J> + ?Sized> Sensor<W> for JointPosition<J> {
     }
 }
 
-/// Reads one joint's speed [rad/s or m/s], one channel. Wrap it in [`crate::wrappers::Scaled`] for other units.
+/// A sensor with one channel that measures the speed of a joint [rad/s or m/s]. Wrap it in [`crate::wrappers::Scaled`]
+/// to use other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointSpeed<J = JointId> {
@@ -48,7 +50,7 @@ pub struct JointSpeed<J = JointId> {
 }
 
 impl<J> JointSpeed<J> {
-    /// A sensor of this joint's speed.
+    /// Creates a sensor for the speed of the given joint.
     pub fn new(joint: J) -> Self {
         Self { joint }
     }

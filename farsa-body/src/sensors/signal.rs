@@ -1,11 +1,13 @@
-//! Channels that the experiment sets: labels, instructions, a bias.
+//! Channels that are set by the experiment, such as labels, instructions and biases.
 
 use crate::channel::write;
 use crate::ports::{Channels, Sensor};
 
-/// Reads what the experiment last set, `N` channels in any world: a label, an instruction, a constant bias.
+/// A sensor whose `N` channels are set by the experiment, for example a label, an instruction or a constant bias. It
+/// works in any world.
 ///
-/// A new episode does not change it: code that sets it during an episode must set it at the start, too.
+/// Note that the channels keep their values when a new episode starts. Code that changes them during an episode must
+/// also set them at the start.
 #[doc(alias = "label")]
 #[doc(alias = "bias")]
 #[doc(alias = "constant")]
@@ -15,29 +17,30 @@ pub struct Signal<const N: usize> {
 }
 
 impl<const N: usize> Signal<N> {
-    /// A signal that reads `values` until others are set.
+    /// Creates a signal that reads `values` until it is changed.
     pub fn new(values: [f32; N]) -> Self {
         Self { values }
     }
 
-    /// A label: `amplitude` on one channel and 0 on the others. 0 everywhere if there is no such channel.
+    /// Creates a signal that reads `amplitude` on one channel and 0 on all others. If the channel does not exist, all
+    /// channels are 0.
     pub fn one_hot(channel: usize, amplitude: f32) -> Self {
         let mut signal = Self { values: [0.0; N] };
         signal.set_one_hot(channel, amplitude);
         signal
     }
 
-    /// Returns the channels of the signal.
+    /// Returns the values of the channels.
     pub fn values(&self) -> [f32; N] {
         self.values
     }
 
-    /// Sets every channel.
+    /// Sets the values of all channels.
     pub fn set(&mut self, values: [f32; N]) {
         self.values = values;
     }
 
-    /// Sets one channel to `amplitude` and the others to 0. All to 0 if there is no such channel.
+    /// Sets one channel to `amplitude` and all others to 0. If the channel does not exist, all channels are set to 0.
     pub fn set_one_hot(&mut self, channel: usize, amplitude: f32) {
         self.values = [0.0; N];
         if let Some(value) = self.values.get_mut(channel) {

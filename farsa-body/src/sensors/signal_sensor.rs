@@ -1,4 +1,4 @@
-//! Signals of other robots.
+//! A sensor for the signals of other robots.
 
 use farsa_num::{Scalar, atan2};
 
@@ -6,13 +6,13 @@ use crate::channel::{ChannelError, groups, positive, unit};
 use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::sensors::stance::Stance;
 
-/// Reads what other robots signal, in `SECTORS` equal sectors around a robot, one channel each in [0, 1]: the strongest
-/// signal.
+/// A sensor that receives the signals of other robots in `SECTORS` equal sectors. Each sector has one channel in [0,
+/// 1], which is the strongest signal in the sector.
 ///
-/// After [`SignalSensor::mean`] the mean over the robots of a sector. 0 where no robot is heard. The first sector lies
-/// around straight ahead, the others follow counter-clockwise. Four sectors are ahead, left, behind and right. A robot
-/// is heard as loudly at every distance within the range, and through everything. It belongs to the sector of its
-/// center. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// Use [`SignalSensor::mean`] to read the mean signal instead. A channel is 0 if there is no robot in the sector. The
+/// first sector is centered straight ahead, and the others follow counter-clockwise. For example, four sectors are
+/// ahead, left, behind and right. A signal is not attenuated within the range and passes through all objects. A robot
+/// belongs to the sector that contains its center. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.
 #[doc(alias = "communication")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalSensor<const SECTORS: usize, B = BodyId> {
@@ -22,16 +22,18 @@ pub struct SignalSensor<const SECTORS: usize, B = BodyId> {
 }
 
 impl<const SECTORS: usize, B> SignalSensor<SECTORS, B> {
-    /// An ear of `body` for robots whose hull is within `range` [m] of its origin.
+    /// Creates a sensor on `body` that receives the signals of robots whose hull is within `range` [m] of the origin of
+    /// the body.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `range` is not a finite number > 0, [`ChannelError::Groups`] if there are no sectors.
+    /// Returns [`ChannelError::Value`] if `range` is not a finite number > 0, or [`ChannelError::Groups`] if there are
+    /// no sectors.
     pub fn new(body: B, range: f32) -> Result<Self, ChannelError> {
         groups("sectors", SECTORS, 1)?;
         Ok(Self { body, range: positive("range", range)?, mean: false })
     }
 
-    /// Reads the mean of the signals instead of the strongest.
+    /// Uses the mean of the signals in a sector instead of the strongest signal.
     pub fn mean(self) -> Self {
         Self { mean: true, ..self }
     }

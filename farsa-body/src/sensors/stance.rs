@@ -1,4 +1,4 @@
-//! The place and heading of a mobile robot in the plane.
+//! The position and heading of a mobile robot in the plane.
 
 use farsa_num::Scalar;
 

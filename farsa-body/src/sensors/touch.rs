@@ -1,12 +1,14 @@
-//! Sensors of contact.
+//! Sensors for contacts.
 
 use crate::channel::{ChannelError, positive, write};
 use crate::ports::{Channels, Contacts, PairId, Sensor};
 
-/// Reads how many pairs of a group touch: min(1, n / saturation), one channel.
+/// A sensor with one channel that counts the pairs of a group that touch. The reading is min(1, n / saturation) for n
+/// pairs.
 ///
-/// A pair counts once however many points it touches with, and only under a normal force > 0. The group is any list
-/// of pairs: an array, a borrowed slice, a `Vec`. For several patches of skin take an array or a `Vec` of these.
+/// A pair counts once, no matter how many contact points it has, and only if there is a normal force > 0. The pairs can
+/// be stored in an array, a borrowed slice or a `Vec`. Use an array or a `Vec` of these sensors for several patches of
+/// skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<L> {
     pairs: L,
@@ -14,15 +16,15 @@ pub struct Touch<L> {
 }
 
 impl<L: AsRef<[PairId]>> Touch<L> {
-    /// A sensor of these pairs that reads 1 as soon as `saturation` of them touch.
+    /// Creates a sensor that reads 1 if at least `saturation` of the given pairs touch.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `saturation` is not a finite number > 0.
+    /// Returns [`ChannelError::Value`] if `saturation` is not a finite number > 0.
     pub fn new(pairs: L, saturation: f32) -> Result<Self, ChannelError> {
         Ok(Self { pairs, saturation: positive("saturation", saturation)? })
     }
 
-    /// The pairs of the group.
+    /// Returns the pairs of the group.
     pub fn pairs(&self) -> &[PairId] {
         self.pairs.as_ref()
     }
@@ -42,15 +44,15 @@ impl<L: AsRef<[PairId]>, W: Contacts + ?Sized> Sensor<W> for Touch<L> {
     }
 }
 
-/// Reads the sum of the normal forces of a group of pairs [N], one channel. Wrap it in [`crate::wrappers::Scaled`] for
-/// other units.
+/// A sensor with one channel that measures the sum of the normal forces of several pairs [N]. Wrap it in
+/// [`crate::wrappers::Scaled`] to use other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce<L> {
     pairs: L,
 }
 
 impl<L: AsRef<[PairId]>> ContactForce<L> {
-    /// A sensor of these pairs.
+    /// Creates a sensor for the given pairs.
     pub fn new(pairs: L) -> Self {
         Self { pairs }
     }

@@ -1,12 +1,14 @@
-//! Speeds of wheels and forces on them.
+//! Sensors for the speeds of wheels and for external forces on wheeled robots.
 
 use crate::channel::{ChannelError, positive, signed_unit, unit, write};
 use crate::ports::{BodyId, Channels, JointId, Joints, Kinematics, Sensor};
 
-/// Reads how fast wheels turn, one channel each in [0, 1]: 1/2 + speed / (2 largest), 1/2 at rest.
+/// A sensor that measures the speeds of wheels. Each wheel has one channel in [0, 1], which is 1/2 + speed / (2
+/// largest). It is 1/2 at rest.
 ///
-/// After [`WheelSpeed::signed`] in [-1, 1]: speed / largest, 0 at rest. A faster wheel reads like one at its largest
-/// speed, one whose speed is NaN like one at rest. Wrap it in [`crate::wrappers::Noisy`] for noise.
+/// Use [`WheelSpeed::signed`] for readings of speed / largest in [-1, 1], which are 0 at rest. Speeds beyond the
+/// largest speed are clamped, and NaN is read like a wheel at rest. Wrap the sensor in [`crate::wrappers::Noisy`] to
+/// add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSpeed<J = JointId, const N: usize = 2> {
     wheels: [J; N],
@@ -15,15 +17,15 @@ pub struct WheelSpeed<J = JointId, const N: usize = 2> {
 }
 
 impl<J, const N: usize> WheelSpeed<J, N> {
-    /// A sensor of these wheels, whose `largest` speed [rad/s] either way reads 0 or 1.
+    /// Creates a sensor for the given wheels. Their `largest` speed [rad/s] reads 1, and 0 in the opposite direction.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `largest` is not a finite number > 0.
+    /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.
     pub fn new(wheels: [J; N], largest: f32) -> Result<Self, ChannelError> {
         Ok(Self { wheels, largest: positive("largest speed", largest)?, signed: false })
     }
 
-    /// Makes readings in [-1, 1], with 0 at rest.
+    /// Changes the readings to [-1, 1], with 0 at rest.
     pub fn signed(self) -> Self {
         Self { signed: true, ..self }
     }
@@ -44,12 +46,13 @@ impl<J: Copy, const N: usize, W: Joints<Joint = J> + ?Sized> Sensor<W> for Wheel
     }
 }
 
-/// Reads where a robot on two wheels is pulled to, two channels in [-1, 1]: ahead and to the left.
+/// A sensor that measures in which direction a robot with two wheels is pulled. Its two channels in [-1, 1] are the
+/// components ahead and to the left.
 ///
-/// It is the robot's velocity less the velocity of freely rolling wheels, in the robot's frame, over a largest speed:
-/// (v - radius (left + right) / 2) / largest and sideways / largest. It is 0 where nothing pushes the robot. A robot
-/// that drives against a wall reads -v / largest ahead. NaN reads as 0. Wrap it in [`crate::wrappers::Noisy`] for
-/// noise.
+/// The readings are computed from the difference between the velocity of the robot and the velocity of freely rolling
+/// wheels in the frame of the robot. They are (v - radius (left + right) / 2) / largest and sideways / largest. Both
+/// are 0 if nothing pushes the robot. If it drives against a wall, the first channel is -v / largest. NaN is replaced
+/// by 0. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traction<B = BodyId, J = JointId> {
     body: B,
@@ -59,11 +62,11 @@ pub struct Traction<B = BodyId, J = JointId> {
 }
 
 impl<B, J> Traction<B, J> {
-    /// A sensor of a robot with these wheels, left and right, of `wheel_radius` [m]. A difference of `largest` [m/s]
-    /// reads 1.
+    /// Creates a sensor for a robot with a left and a right wheel of the given radius [m]. A difference of `largest`
+    /// [m/s] results in a reading of 1.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if a number is not finite or not > 0.
+    /// Returns [`ChannelError::Value`] if a number is not finite or not > 0.
     pub fn new(body: B, wheels: [J; 2], wheel_radius: f32, largest: f32) -> Result<Self, ChannelError> {
         let (wheel_radius, largest) = (positive("wheel radius", wheel_radius)?, positive("largest speed", largest)?);
         Ok(Self { body, wheels, wheel_radius, largest })

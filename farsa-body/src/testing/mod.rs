@@ -1,12 +1,12 @@
-//! The conformance kit: what every world, sensor and motor promises, as functions that name the first broken promise.
+//! A conformance kit for custom worlds, sensors and motors. Each check returns the first promise that is violated.
 //!
 //! | you wrote | check it with |
 //! |---|---|
 //! | a world that steps | [`check_world`] |
-//! | one that can be set up anew | [`check_arrange`] |
-//! | one whose bodies can be pushed | [`check_external_forces`] |
-//! | one that casts rays | [`check_rays`] |
-//! | one in which is seen | [`check_sight`] |
+//! | a world that can be set up again | [`check_arrange`] |
+//! | a world whose bodies can be pushed | [`check_external_forces`] |
+//! | a world that casts rays | [`check_rays`] |
+//! | a world with cameras in a plane | [`check_sight`] |
 //! | a world of the plane | [`check_planar`] |
 //! | a sensor or a motor | [`check_sensor`], [`check_motor`], in a [`PointWorld`] or a [`PlaneWorld`] |
 //!

@@ -1,4 +1,4 @@
-//! A small world of the plane with every port of mobile robots, for tests of sensors, motors and of whatever uses them.
+//! A simple planar world that supports all ports of mobile robots. It is intended for tests of sensors and motors.
 
 use alloc::vec::Vec;
 
@@ -11,14 +11,14 @@ use crate::ports::{
 use crate::pose::{Pose, Twist};
 use crate::robots::mobile::{MobileParts, MobileRobot};
 
-/// Walls, discs, lamps, colored ground and robots, found by loops over all of them: the naive counterpart of a world
-/// that is fast.
+/// A planar world with walls, discs, lamps, colored ground and robots. All queries iterate over all objects, so it can
+/// serve as a reference for faster worlds.
 ///
-/// Bodies are numbered in the order in which they are added. The wheels of the robots, left and right, and their
-/// actuators likewise. For rays everything is infinitely high. Robots drive exact arcs through everything: nothing
-/// collides. An attachment device that is switched on holds the nearest disc or robot within its reach of the hull.
-/// Unpainted ground is black. The time step is 50 ms. A handle that does not exist reads as 0 and takes commands
-/// without effect.
+/// Bodies are numbered in the order in which they are added. The wheels and the actuators of all robots are numbered in
+/// the same way. For ray casts, all objects are infinitely high. Robots drive along exact arcs and do not collide with
+/// anything. An attachment device that is switched on holds the nearest disc or robot within its reach. The ground is
+/// black by default, and the time step is 50 ms. Identifiers that do not exist read as 0, and commands to them have no
+/// effect.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics, World};
@@ -112,10 +112,10 @@ struct Met {
 }
 
 impl PlaneWorld {
-    /// The control step [s].
+    /// The duration of a control step [s].
     pub const TIME_STEP: f32 = 0.05;
 
-    /// An empty world.
+    /// Creates an empty world.
     pub fn new() -> Self {
         Self::default()
     }
@@ -125,22 +125,22 @@ impl PlaneWorld {
         self.walls.push(Wall { ends, color });
     }
 
-    /// Adds a disc or an upright cylinder, center and radius [m].
+    /// Adds a disc or an upright cylinder with the given center and radius [m].
     pub fn add_disc(&mut self, centre: [f32; 2], radius: f32, color: [f32; 3]) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color, intensity: None, robot: None })
     }
 
-    /// Adds a white disc that shines.
+    /// Adds a lamp, which is a white disc that emits light.
     pub fn add_lamp(&mut self, centre: [f32; 2], radius: f32, intensity: f32) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color: [1.0; 3], intensity: Some(intensity), robot: None })
     }
 
-    /// Paints a circle of the ground, over what is there.
+    /// Paints a circle on the ground. It covers circles that were painted before.
     pub fn add_area(&mut self, centre: [f32; 2], radius: f32, color: [f32; 3]) {
         self.areas.push(Painted { centre, radius, color });
     }
 
-    /// Adds a robot at a place [m] with a heading [rad].
+    /// Adds a robot at the given position [m] and heading [rad].
     pub fn add_robot(&mut self, robot: &MobileRobot, at: [f32; 2], heading: f32) -> MobileParts {
         let (index, color) = (self.robots.len(), robot.color.map(|x| x as f32));
         let radius = robot.radius as f32;
@@ -167,7 +167,7 @@ impl PlaneWorld {
         parts
     }
 
-    /// Puts a body somewhere else [m], with a heading [rad].
+    /// Moves a body to the given position [m] and heading [rad].
     pub fn place(&mut self, body: BodyId, at: [f32; 2], heading: f32) {
         if let Some(round) = self.bodies.get_mut(body.index()) {
             round.centre = at;

@@ -1,4 +1,4 @@
-//! A small world with every port, for tests of sensors, motors and of whatever uses them.
+//! A simple world that supports most ports. It is intended for tests of sensors and motors.
 
 use alloc::{vec, vec::Vec};
 
@@ -10,13 +10,14 @@ use crate::ports::{
 };
 use crate::pose::{Pose, Twist};
 
-/// Points of 1 kg on vertical screws above a floor, with an explicit dynamics of a few lines.
+/// A world with points of 1 kg that move on vertical screws above a floor. Its dynamics consist of a few explicit
+/// equations.
 ///
-/// Point i is on joint i, whose position is its height q [m]. It is body i, at (0.1 i, 0, q), and turns about the
-/// vertical by 10 rad for every meter of height. Actuator i pushes it up with `command[0] - command[1]` [N]. Below
-/// height 0 the floor, pair i with the point as its first body, pushes back. Rays hit the floor and green balls of 2 cm
-/// about the points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and
-/// takes commands without effect.
+/// Point i is attached to joint i, whose position is the height q [m]. The point is body i at the position (0.1 i, 0,
+/// q) and rotates about the vertical axis by 10 rad per meter. Actuator i pushes it upwards with a force of `command[0]
+/// - command[1]` [N]. Below the height 0, the floor pushes back. Its contact is pair i, in which the point is the first
+/// body. Rays hit the floor and green spheres of 2 cm around the points. The time step is 10 ms, and there are no
+/// floating bodies. Identifiers that do not exist read as 0, and commands to them have no effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointWorld {
     points: Vec<Point>,
@@ -35,15 +36,15 @@ struct Point {
 const WORDS: usize = 4;
 
 impl PointWorld {
-    /// The control step [s].
+    /// The duration of a control step [s].
     pub const TIME_STEP: f32 = 0.01;
-    /// The turn of a point for every meter of height [rad/m].
+    /// The rotation of a point per unit of height [rad/m].
     pub const TURN: f32 = 10.0;
     /// The distance between two screws [m].
     pub const SPACING: f32 = 0.1;
-    /// Radius of the balls for rays [m].
+    /// The radius of the spheres that are hit by rays [m].
     pub const RADIUS: f32 = 0.02;
-    /// The color of the balls. The floor has none.
+    /// The color of the spheres. The floor has no color.
     pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];
     /// Acceleration downwards [m/s2].
     const GRAVITY: f32 = 9.81;
@@ -52,12 +53,12 @@ impl PointWorld {
     /// Stiffness [N/m] and damping [N s/m] of the floor.
     const FLOOR: [f32; 2] = [2000.0, 20.0];
 
-    /// A world of this many points, all on the floor and at rest.
+    /// Creates a world with the given number of points, which are at rest on the floor.
     pub fn new(points: usize) -> Self {
         Self { points: vec![Point::default(); points] }
     }
 
-    /// The command that an actuator has, or 0 for one that does not exist.
+    /// Returns the current command of an actuator, or 0 if the actuator does not exist.
     pub fn commanded(&self, actuator: ActuatorId) -> [f32; 2] {
         self.point(actuator.index()).command
     }

@@ -1,4 +1,4 @@
-//! The parts of a world that the checks read and move.
+//! The parts of a world that are used by the checks.
 
 use alloc::vec::Vec;
 
@@ -6,22 +6,23 @@ use crate::actuators::law::Law;
 use crate::ports::{ActuatorId, BodyId, JointId};
 use crate::robot::description::{Actuator, JointKind, Robot};
 
-/// The parts of a world that the kit looks at and moves, and how long and how closely.
+/// The parts of a world that the checks read and move, and the extent of the checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
-    /// All bodies.
+    /// All bodies of the world.
     pub bodies: Vec<B>,
-    /// The bodies that move freely.
+    /// The bodies that can move freely.
     pub floating: Vec<B>,
-    /// The bodies that can be put anywhere on a plane: place and heading are kept, and they are at rest.
+    /// The bodies that can be placed anywhere on a plane. They keep their position and heading as long as they are not
+    /// moved.
     pub planar: Vec<B>,
-    /// The joints with two positions [rad or m] between which they can be placed.
+    /// The joints that can be placed, each with two positions [rad or m] between which it can be placed.
     pub joints: Vec<(J, [f32; 2])>,
-    /// The actuators with the lower and upper ends of the two numbers of their commands.
+    /// The actuators, each with the lower and upper limits of both values of its command.
     pub actuators: Vec<(A, [[f32; 2]; 2])>,
-    /// Number of steps of a run, at least 16.
+    /// The number of steps in a run, which must be at least 16.
     pub steps: usize,
-    /// The tolerance of the mean speed over a step outside of the speeds at its ends [m/s or rad/s].
+    /// The tolerance for the difference between the mean speed of a step and the speeds at its ends [m/s or rad/s].
     pub slack: f32,
 }
 
@@ -31,7 +32,7 @@ impl Probe {
     /// The slack where none is asked for.
     const SLACK: f32 = 0.1;
 
-    /// A probe of a world built from this robot.
+    /// Creates a probe for a world that was built from the given robot.
     pub fn for_robot(robot: &Robot) -> Self {
         let finite = |range: [f64; 2]| {
             let [low, high] = range.map(|x| x as f32);
@@ -56,7 +57,8 @@ impl Probe {
         }
     }
 
-    /// A probe of a world whose `count` bodies, joints (placed between 0 and 1) and actuators have the same numbers.
+    /// Creates a probe for a world with `count` bodies, joints and actuators that have the same numbers. The joints are
+    /// placed between 0 and 1.
     pub fn numbered(count: u16, commands: [[f32; 2]; 2]) -> Self {
         Self {
             bodies: (0..count).map(BodyId).collect(),

@@ -1,4 +1,4 @@
-//! The promises of worlds, sensors and motors, and the error that names a broken one.
+//! The promises of worlds, sensors and motors, and the error for a violated promise.
 
 use alloc::string::String;
 use core::fmt;
@@ -75,12 +75,12 @@ pub enum Promise {
     Channels,
 }
 
-/// A broken promise, and where it was seen to break.
+/// The error that is returned when a promise is violated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConformanceError {
-    /// The promise.
+    /// The violated promise.
     pub promise: Promise,
-    /// The observation.
+    /// A description of the observation.
     pub detail: String,
 }
 

@@ -1,4 +1,4 @@
-//! Runs of a world as bits, and their comparison.
+//! Recorded runs of a world, which are compared bit by bit.
 
 use alloc::{format, string::String, vec, vec::Vec};
 use core::ops::Range;

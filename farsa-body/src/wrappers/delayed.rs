@@ -1,4 +1,4 @@
-//! The wrapper that delays.
+//! A wrapper that adds a delay.
 
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
@@ -7,10 +7,10 @@ use crate::channel::ChannelError;
 use crate::ports::{Channels, Motor, Sensor};
 use crate::wrappers::wrap::room;
 
-/// Passes values on a number of ticks later.
+/// Delays the values of a sensor or motor by a number of ticks.
 ///
-/// Until the first value of an episode has passed, a sensor repeats that first value. A motor is not driven, and the
-/// world keeps its commands.
+/// At the start of an episode, a sensor repeats its first value until the delay has passed. A motor is not driven
+/// during this time, so the world keeps its commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delayed<T, M> {
     inner: T,
@@ -26,10 +26,10 @@ pub struct Delayed<T, M> {
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Delayed<T, Vec<f32>> {
-    /// Wraps a sensor or motor. 0 ticks do not delay.
+    /// Wraps a sensor or motor. If `ticks` is 0, there is no delay.
     ///
     /// # Panics
-    /// If there is no memory for `ticks` values of every channel.
+    /// Panics if there is not enough memory for `ticks` values of each channel.
     pub fn new(inner: T, ticks: usize) -> Self {
         let channels = inner.channels();
         Self { memory: vec![0.0; ticks.saturating_mul(channels)], inner, ticks, channels, row: 0, filled: 0 }
@@ -37,10 +37,10 @@ impl<T: Channels> Delayed<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Delayed<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [ticks x channels].
+    /// Wraps a sensor or motor and uses the provided `memory`, which must have at least ticks x channels elements.
     ///
     /// # Errors
-    /// [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Memory`] if the memory is too short.
     pub fn new_in(inner: T, ticks: usize, mut memory: M) -> Result<Self, ChannelError> {
         let channels = inner.channels();
         room(&mut memory, ticks.saturating_mul(channels))?;
@@ -62,12 +62,12 @@ impl<T: Channels, M: AsMut<[f32]>> Delayed<T, M> {
 }
 
 impl<T, M> Delayed<T, M> {
-    /// The wrapped sensor or motor.
+    /// Returns the wrapped sensor or motor.
     pub fn inner(&self) -> &T {
         &self.inner
     }
 
-    /// The wrapped sensor or motor, to be changed.
+    /// Returns a mutable reference to the wrapped sensor or motor.
     pub fn inner_mut(&mut self) -> &mut T {
         &mut self.inner
     }

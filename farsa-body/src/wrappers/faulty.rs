@@ -1,4 +1,4 @@
-//! Wrappers for broken sensors and motors.
+//! Wrappers that simulate broken sensors and motors.
 
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
@@ -8,9 +8,9 @@ use crate::channel::{ChannelError, finite};
 use crate::ports::Channels;
 use crate::wrappers::wrap::{Filter, Wrapped, select, wrapper};
 
-/// Passes 0 on for some channels and the others as they are.
+/// Sets some channels to 0 and passes the others unchanged.
 ///
-/// A lesioned sensor is still read and a lesioned motor still driven: its channels get 0.
+/// Note that the wrapped sensor is still read, and a wrapped motor is still driven with 0 on these channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lesioned<T, M>(Wrapped<T, Lesion, M>);
 
@@ -31,10 +31,11 @@ wrapper!(Lesioned);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Lesioned<T, Vec<f32>> {
-    /// Wraps a sensor or motor and silences the channels `which`: `..` for all, `3..=3` for one.
+    /// Wraps a sensor or motor and silences a range of its channels. For example, `..` silences all channels and
+    /// `3..=3` a single one.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are no such channels.
+    /// Returns [`ChannelError::Selection`] if the channels do not exist.
     pub fn new(inner: T, which: impl RangeBounds<usize>) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, which, memory)
@@ -42,27 +43,29 @@ impl<T: Channels> Lesioned<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Lesioned<T, M> {
-    /// Wraps a sensor or motor and silences the channels `which`, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor like `new`, but uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are no such channels, [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Selection`] if the channels do not exist, or [`ChannelError::Memory`] if the memory is
+    /// too short.
     pub fn new_in(inner: T, which: impl RangeBounds<usize>, memory: M) -> Result<Self, ChannelError> {
         let which = select(&which, inner.channels())?;
         Wrapped::new(inner, Lesion { which }, memory).map(Self)
     }
 }
 
-/// Where a stuck channel stays.
+/// The value of a channel that is stuck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum StuckAt {
-    /// At its value in the last tick before it got stuck. At the episode's first if it is stuck from the beginning.
+    /// The last value before the channel got stuck. If it is stuck from the beginning, the first value of the episode
+    /// is used.
     Last,
-    /// At a given value.
+    /// A constant value.
     Value(f32),
 }
 
-/// Passes values on as they are until some of the channels get stuck.
+/// Passes values unchanged until some of the channels get stuck.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stuck<T, M>(Wrapped<T, Sticking, M>);
 
@@ -99,11 +102,12 @@ wrapper!(Stuck);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Stuck<T, Vec<f32>> {
-    /// Wraps a sensor or motor whose channels `which` get stuck after `after` ticks of every episode, `..` for all
-    /// channels, 0 for from the beginning, `u32::MAX` for never.
+    /// Wraps a sensor or motor. In each episode, a range of channels gets stuck after `after` ticks. Use 0 for channels
+    /// that are stuck from the beginning and `u32::MAX` for channels that never get stuck.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are no such channels, [`ChannelError::Value`] if the value is not finite.
+    /// Returns [`ChannelError::Selection`] if the channels do not exist, or [`ChannelError::Value`] if the value is not
+    /// finite.
     pub fn new(inner: T, which: impl RangeBounds<usize>, at: StuckAt, after: u32) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, which, at, after, memory)
@@ -111,11 +115,11 @@ impl<T: Channels> Stuck<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Stuck<T, M> {
-    /// Like `new`, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor like `new`, but uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are no such channels, [`ChannelError::Value`] if the value is not finite,
-    /// [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Selection`] if the channels do not exist, [`ChannelError::Value`] if the value is not
+    /// finite, or [`ChannelError::Memory`] if the memory is too short.
     pub fn new_in(
         inner: T,
         which: impl RangeBounds<usize>,
@@ -132,7 +136,7 @@ impl<T: Channels, M: AsMut<[f32]>> Stuck<T, M> {
 }
 
 impl<T, M> Stuck<T, M> {
-    /// Makes the channels stick from the next tick to the end of this episode.
+    /// Makes the channels stuck from the next tick until the end of the episode.
     pub fn stick(&mut self) {
         self.0.filter.broken = true;
     }

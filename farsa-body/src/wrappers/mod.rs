@@ -1,17 +1,17 @@
-//! Wrappers: a sensor or motor around another one, which changes its values on the way.
+//! Wrappers around sensors and motors, which modify their values.
 //!
-//! | to | take |
+//! | to | use |
 //! |---|---|
 //! | add noise | [`Noisy`] with a [`Noise`] |
 //! | pass values on some ticks later | [`Delayed`] |
 //! | convert units, or keep to a range | [`Scaled`], [`Saturated`] |
-//! | tell only whether a value is large | [`Thresholded`] |
+//! | compare a value with a threshold | [`Thresholded`] |
 //! | switch channels off | [`Lesioned`] |
 //! | let channels get stuck | [`Stuck`] at a [`StuckAt`] |
-//! | look at the last values without disturbing the sensor | [`Recorded`] |
+//! | read the last values without disturbing the sensor | [`Recorded`] |
 //!
-//! A wrapper works around sensors and motors alike, and around other wrappers. The innermost acts first on a sensor's
-//! values, last on a motor's.
+//! Wrappers can be applied to sensors, motors and other wrappers. For sensors, the innermost wrapper modifies the
+//! values first. For motors, it modifies them last.
 
 /// Values passed on later.
 pub(crate) mod delayed;

@@ -1,4 +1,4 @@
-//! The wrapper that adds noise.
+//! A wrapper that adds noise.
 
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
@@ -9,21 +9,21 @@ use crate::channel::ChannelError;
 use crate::ports::Channels;
 use crate::wrappers::wrap::{Filter, Wrapped, wrapper};
 
-/// The distribution of a noise.
+/// The distribution of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Noise {
-    /// Uniform between minus and plus this, in the channel's unit.
+    /// A uniform distribution between minus and plus this value, in the unit of the channel.
     Uniform(f32),
-    /// Normal with mean 0 and this standard deviation, in the channel's unit.
+    /// A normal distribution with mean 0 and this standard deviation, in the unit of the channel.
     Normal(f32),
 }
 
-/// Adds to every value an independent random number.
+/// Adds an independent random number to every value.
 ///
-/// The numbers come in the order of ticks and channels from one stream. A reset rewinds the stream: episodes that
-/// should differ in their noise are each given their own with [`Noisy::reseed`]. Noise is never clamped. Wrap in
-/// [`crate::wrappers::Saturated`] what has to stay in a range.
+/// All numbers are drawn from one stream in the order of ticks and channels. A reset rewinds the stream. Use
+/// [`Noisy::reseed`] if the noise should differ between episodes. The result is not clamped. Wrap it in
+/// [`crate::wrappers::Saturated`] if it must stay within a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noisy<T, M>(Wrapped<T, Source, M>);
 
@@ -58,7 +58,7 @@ impl<T: Channels> Noisy<T, Vec<f32>> {
     /// Wraps a sensor or motor.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if the noise's number is negative or not finite.
+    /// Returns [`ChannelError::Value`] if the amplitude of the noise is negative or not finite.
     pub fn new(inner: T, noise: Noise, stream: Stream) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, noise, stream, memory)
@@ -66,11 +66,11 @@ impl<T: Channels> Noisy<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Noisy<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor and uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if the noise's number is negative or not finite, [`ChannelError::Memory`] if the memory
-    /// is too short.
+    /// Returns [`ChannelError::Value`] if the amplitude of the noise is negative or not finite, or
+    /// [`ChannelError::Memory`] if the memory is too short.
     pub fn new_in(inner: T, noise: Noise, stream: Stream, memory: M) -> Result<Self, ChannelError> {
         let (field, value) = match noise {
             Noise::Uniform(amplitude) => ("noise amplitude", amplitude),
@@ -84,7 +84,7 @@ impl<T: Channels, M: AsMut<[f32]>> Noisy<T, M> {
 }
 
 impl<T, M> Noisy<T, M> {
-    /// Takes the noise from here on, and after every reset, from the beginning of this stream.
+    /// Replaces the stream of random numbers. It is used from its beginning now and after every reset.
     pub fn reseed(&mut self, stream: Stream) {
         self.0.filter.start = stream;
         self.0.filter.stream = stream;

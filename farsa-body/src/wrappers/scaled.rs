@@ -1,4 +1,4 @@
-//! Wrappers that change every value in the same way: gain and offset, saturation, a threshold, nothing at all.
+//! Wrappers that apply the same function to every value, such as a scale, a saturation or a threshold.
 
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
@@ -9,7 +9,7 @@ use crate::channel::{ChannelError, finite, finite_range};
 use crate::ports::Channels;
 use crate::wrappers::wrap::{Filter, Wrapped, wrapper};
 
-/// Passes gain * x + offset on for every value x that a sensor reads or a motor is given.
+/// Replaces each value x of a sensor or motor by gain * x + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaled<T, M>(Wrapped<T, Scale, M>);
 
@@ -34,7 +34,7 @@ impl<T: Channels> Scaled<T, Vec<f32>> {
     /// Wraps a sensor or motor.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if a number is not finite.
+    /// Returns [`ChannelError::Value`] if a number is not finite.
     pub fn new(inner: T, gain: f32, offset: f32) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, gain, offset, memory)
@@ -42,17 +42,18 @@ impl<T: Channels> Scaled<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Scaled<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor and uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if a number is not finite, [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Value`] if a number is not finite, or [`ChannelError::Memory`] if the memory is too
+    /// short.
     pub fn new_in(inner: T, gain: f32, offset: f32, memory: M) -> Result<Self, ChannelError> {
         let scale = Scale { gain: finite("gain", gain)?, offset: finite("offset", offset)? };
         Wrapped::new(inner, scale, memory).map(Self)
     }
 }
 
-/// Passes on the value in [low, high] nearest to what a sensor reads or a motor is given. `low` for NaN.
+/// Clamps each value of a sensor or motor to [low, high]. NaN is replaced by `low`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saturated<T, M>(Wrapped<T, Saturation, M>);
 
@@ -77,7 +78,7 @@ impl<T: Channels> Saturated<T, Vec<f32>> {
     /// Wraps a sensor or motor.
     ///
     /// # Errors
-    /// [`ChannelError::Range`] if `low > high` or a number is not finite.
+    /// Returns [`ChannelError::Range`] if `low > high` or a number is not finite.
     pub fn new(inner: T, low: f32, high: f32) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, low, high, memory)
@@ -85,11 +86,11 @@ impl<T: Channels> Saturated<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Saturated<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor and uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Range`] if `low > high` or a number is not finite, [`ChannelError::Memory`] if the memory is
-    /// too short.
+    /// Returns [`ChannelError::Range`] if `low > high` or a number is not finite, or [`ChannelError::Memory`] if the
+    /// memory is too short.
     pub fn new_in(inner: T, low: f32, high: f32, memory: M) -> Result<Self, ChannelError> {
         finite_range(low, high)?;
         if low > high {
@@ -99,7 +100,7 @@ impl<T: Channels, M: AsMut<[f32]>> Saturated<T, M> {
     }
 }
 
-/// Passes on 1 for every value above a threshold that a sensor reads or a motor is given, and 0 for the others and NaN.
+/// Replaces each value of a sensor or motor by 1 if it is above a threshold, and by 0 otherwise. NaN is replaced by 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholded<T, M>(Wrapped<T, Threshold, M>);
 
@@ -121,7 +122,7 @@ impl<T: Channels> Thresholded<T, Vec<f32>> {
     /// Wraps a sensor or motor.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if the threshold is not finite.
+    /// Returns [`ChannelError::Value`] if the threshold is not finite.
     pub fn new(inner: T, threshold: f32) -> Result<Self, ChannelError> {
         let memory = vec![0.0; inner.channels()];
         Self::new_in(inner, threshold, memory)
@@ -129,16 +130,18 @@ impl<T: Channels> Thresholded<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Thresholded<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor and uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if the threshold is not finite, [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Value`] if the threshold is not finite, or [`ChannelError::Memory`] if the memory is too
+    /// short.
     pub fn new_in(inner: T, threshold: f32, memory: M) -> Result<Self, ChannelError> {
         Wrapped::new(inner, Threshold(finite("threshold", threshold)?), memory).map(Self)
     }
 }
 
-/// Passes every value on as it is and keeps the last tick's: `values()` reads them without disturbing the sensor.
+/// Passes all values unchanged and stores those of the last tick. They can be read with `values()` without disturbing
+/// the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recorded<T, M>(Wrapped<T, Record, M>);
 
@@ -163,10 +166,10 @@ impl<T: Channels> Recorded<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Recorded<T, M> {
-    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    /// Wraps a sensor or motor and uses the provided `memory` with one element per channel.
     ///
     /// # Errors
-    /// [`ChannelError::Memory`] if the memory is too short.
+    /// Returns [`ChannelError::Memory`] if the memory is too short.
     pub fn new_in(inner: T, memory: M) -> Result<Self, ChannelError> {
         Wrapped::new(inner, Record, memory).map(Self)
     }

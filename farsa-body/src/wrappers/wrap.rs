@@ -1,4 +1,4 @@
-//! The values of an inner sensor or motor on their way through a filter.
+//! The common implementation of all wrappers, which passes values through a filter.
 
 use core::ops::{Bound, Range, RangeBounds};
 
@@ -97,19 +97,19 @@ pub(crate) fn select(which: &impl RangeBounds<usize>, channels: usize) -> Result
 macro_rules! wrapper {
     ($wrapper:ident) => {
         impl<T, M> $wrapper<T, M> {
-            /// The wrapped sensor or motor.
+            /// Returns the wrapped sensor or motor.
             pub fn inner(&self) -> &T {
                 &self.0.inner
             }
 
-            /// The wrapped sensor or motor, to be changed.
+            /// Returns a mutable reference to the wrapped sensor or motor.
             pub fn inner_mut(&mut self) -> &mut T {
                 &mut self.0.inner
             }
         }
 
         impl<T: $crate::ports::Channels, M: AsRef<[f32]>> $wrapper<T, M> {
-            /// The values passed on in the last tick, one per channel, 0 before the first.
+            /// Returns the values of the last tick. There is one per channel, and all are 0 before the first tick.
             pub fn values(&self) -> &[f32] {
                 self.0.values()
             }

@@ -1,4 +1,4 @@
-//! The six chains, the two sides, and which joints and bodies are theirs.
+//! The six kinematic chains of the iCub, and the joints and bodies that belong to them.
 
 use alloc::format;
 use alloc::string::String;
@@ -10,74 +10,74 @@ use crate::robots::hand::Finger;
 use crate::robots::icub::error::IcubError;
 use crate::robots::icub::table::{ARM, NECK, Part, TORSO};
 
-/// The joints of the robot that are actuated or rigid together, in the order of the robot's bodies.
+/// A group of joints that are either all actuated or all rigid. Chains are ordered like the bodies of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Chain {
-    /// Pitch, roll and yaw of the trunk.
+    /// The pitch, roll and yaw of the trunk.
     Torso,
-    /// Pitch, roll and yaw of the head.
+    /// The pitch, roll and yaw of the head.
     Neck,
-    /// The left arm's seven joints, from the shoulder to the wrist.
+    /// The seven joints of the left arm, from the shoulder to the wrist.
     LeftArm,
-    /// The right arm's seven joints.
+    /// The seven joints of the right arm, from the shoulder to the wrist.
     RightArm,
-    /// The left hand's twenty joints, J8 to J27 of [`crate::robots::Hand`].
+    /// The twenty joints of the left hand, which are J8 to J27 of [`crate::robots::Hand`].
     LeftHand,
-    /// The right hand's twenty joints.
+    /// The twenty joints of the right hand.
     RightHand,
 }
 
-/// One side of the robot, its own left or right.
+/// The left or the right side, as seen from the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Side {
-    /// The left side, y > 0.
+    /// The left side, where y > 0.
     Left,
-    /// The right side, y < 0.
+    /// The right side, where y < 0.
     Right,
 }
 
 impl Side {
-    /// Both sides, the left one first.
+    /// Both sides. The left side comes first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Returns the prefix of the names of its joints, segments and colliders.
+    /// Returns the prefix that is used in the names of joints, segments and colliders.
     pub fn prefix(self) -> &'static str {
         ["l_", "r_"][self as usize]
     }
 
-    /// Its arm.
+    /// Returns the arm on this side.
     pub fn arm(self) -> Chain {
         [Chain::LeftArm, Chain::RightArm][self as usize]
     }
 
-    /// Its hand, without the palm, which is the arm's last segment.
+    /// Returns the hand on this side. The palm is not included, because it is the last segment of the arm.
     pub fn hand(self) -> Chain {
         [Chain::LeftHand, Chain::RightHand][self as usize]
     }
 }
 
 impl Chain {
-    /// All chains, in the order of their bodies.
+    /// All chains in the order of their bodies.
     pub const ALL: [Self; 6] =
         [Self::Torso, Self::Neck, Self::LeftArm, Self::RightArm, Self::LeftHand, Self::RightHand];
 
-    /// Its name: `torso`, `neck`, `left-arm`, `right-arm`, `left-hand` or `right-hand`.
+    /// Returns the name of the chain, which is `torso`, `neck`, `left-arm`, `right-arm`, `left-hand` or `right-hand`.
     pub fn name(self) -> &'static str {
         ["torso", "neck", "left-arm", "right-arm", "left-hand", "right-hand"][self as usize]
     }
 
-    /// The chain of this name.
+    /// Returns the chain with the given name.
     ///
     /// # Errors
-    /// [`IcubError::Chain`] for an unknown name, with the list of chains.
+    /// Returns [`IcubError::Chain`], which lists all chains, if the name is unknown.
     pub fn from_name(name: &str) -> Result<Self, IcubError> {
         let found = Self::ALL.into_iter().find(|chain| chain.name() == name);
         found.ok_or_else(|| IcubError::Chain { name: name.into() })
     }
 
-    /// The side of an arm or a hand.
+    /// Returns the side of an arm or a hand, and `None` for the other chains.
     pub fn side(self) -> Option<Side> {
         match self {
             Self::Torso | Self::Neck => None,
@@ -86,12 +86,12 @@ impl Chain {
         }
     }
 
-    /// The indices of its bodies, and so of its joints.
+    /// Returns the indices of the bodies, which are also the indices of the joints.
     pub fn bodies(self) -> Range<usize> {
         [0..3, 3..6, 6..13, 13..20, 20..40, 40..60][self as usize].clone()
     }
 
-    /// The names of its joints, in the order of its bodies.
+    /// Returns the names of the joints in the order of the bodies.
     pub fn joint_names(self) -> Vec<String> {
         let prefix = self.side().map_or("", Side::prefix);
         match self.parts() {
@@ -103,7 +103,7 @@ impl Chain {
         }
     }
 
-    /// The chain that a body belongs to.
+    /// Returns the chain to which a body belongs.
     pub fn of_body(body: BodyId) -> Option<Self> {
         Self::ALL.into_iter().find(|chain| chain.bodies().contains(&body.index()))
     }

@@ -1,4 +1,4 @@
-//! Colliders, and the pairs of them that may touch.
+//! The colliders of the iCub, and the pairs that may touch.
 
 use alloc::format;
 use alloc::vec::Vec;

@@ -1,4 +1,4 @@
-//! The robot with its fields, and how it is put together.
+//! The parameters of the iCub, from which its description is built.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -21,65 +21,68 @@ use crate::robots::mirror;
 /// axis x points down, y forward and z to the right.
 const RIGHT_PALM: [f64; 4] = [0.5, 0.5, -0.5, 0.5];
 
-/// The meaning of the commands of torso, neck and arms.
+/// Defines how the commands of the torso, the neck and the arms are interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum JointControl {
-    /// Joint speeds [rad/s], by [`Law::Velocity`].
+    /// Commands are joint speeds [rad/s], which are controlled by [`Law::Velocity`].
     Velocity,
-    /// Joint positions [rad], by [`Law::Servo`].
+    /// Commands are joint positions [rad], which are controlled by [`Law::Servo`].
     #[default]
     Position,
 }
 
-/// The upper body of the iCub [Metta2010]: torso, neck, two arms and two hands on a fixed root, 60 joints in six
-/// chains.
+/// The upper body of the iCub [Metta2010]. It consists of a torso, a neck, two arms and two hands on a fixed root, with
+/// 60 joints in six chains.
 ///
-/// X is forward, Y left and Z up, the file's root frame [Gepetto2025] turned by pi about z, and the origin is its root
-/// link. At joint positions 0 (out of the elbows' limits) the robot is upright and its arms hang. All segments' axes
-/// are then those of the world but those of the palms and what they carry, whose frames [`Hand`] describes. Joints have
-/// the names, signs and limits of the file. The hands have `l_J8` to `l_J27` and `r_J8` to `r_J27`. Segments and joints
-/// are numbered alike, in the order of [`Chain::ALL`], whichever chains are actuated. Actuators are numbered in the
-/// same order without the rigid chains'.
+/// X points forward, Y to the left and Z up. The origin is the root link. This is the root frame of the file
+/// [Gepetto2025], rotated by pi about z. At joint position 0, which is outside the limits of the elbows, the robot is
+/// upright and the arms hang down. All frames are then parallel to that of the world, except for those of the hands,
+/// which are described at [`Hand`].
 ///
-/// The left side is the mirror image of the right one: at equal joint angles the robot is symmetric.
+/// Joints have the names, signs and limits of the file. The joints of the hands are named `l_J8` to `l_J27` and `r_J8`
+/// to `r_J27`. Segments and joints have the same numbers, in the order of [`Chain::ALL`]. These numbers do not depend
+/// on the actuated chains. Actuators are numbered in the same order, but rigid chains are skipped. The left side is the
+/// mirror image of the right side, so equal joint angles result in a symmetric posture.
 ///
 /// Deviations from the file:
 ///
-/// The file has no fingers, so the hands are those of [`crate::robots::ArmAndHand`], as light as the file's hand of
-/// 0.213 kg. They miss its center of mass by 7 mm.
+/// Since the file has no fingers, the hands are those of [`crate::robots::ArmAndHand`]. They are as light as the hands
+/// of the file, which have 0.213 kg, but their center of mass differs by 7 mm.
 ///
-/// The file's left side is not quite the image of its right one, which is used for both. The first shoulder segment's
-/// inertia is half of the right one's, the second one's center of mass 0.18 mm off.
+/// In the file, the left side is not exactly the mirror image of the right side, which is used for both sides here. The
+/// inertia of the first shoulder segment is half of that on the right side, and the center of mass of the second one
+/// differs by 0.18 mm.
 ///
-/// Balls of our choice have the inertia of neck, head and wrist, for which the file has none. The file's damping of 1 N
-/// m s/rad in every joint, more than the wrist's motors could overcome, is replaced by one in proportion to the effort.
-/// Armature, gains and surfaces are our choice. There are no legs.
+/// The neck, the head and the wrist, for which the file has no inertia, have the inertia of spheres whose radius was
+/// chosen. In the file, every joint has a damping of 1 N m s/rad, which the motors of the wrist could not overcome. It
+/// is replaced by a damping that is proportional to the effort. The armature, the gains and the surfaces were chosen.
+/// There are no legs.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Icub {
-    /// Where the root link is in the world [m].
+    /// The position of the root link in the world [m].
     pub root: [f64; 3],
-    /// The chains that are actuated, in any order. The joints of the others are fixed.
+    /// The chains that are actuated, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
-    /// The joint angles at which rigid chains are fixed, and a start for the others.
+    /// The angles at which rigid chains are fixed, and the initial angles of the other chains.
     pub posture: IcubPosture,
-    /// The meaning of the commands of torso, neck and arms. Hands have position servos.
+    /// The interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
     pub control: JointControl,
-    /// The error at which a position servo exerts its joint's effort [rad].
+    /// The position error at which a servo reaches the maximum effort of its joint [rad].
     pub saturation_angle: f64,
-    /// Damping of a position servo divided by its stiffness [s].
+    /// The ratio of the damping and the stiffness of a servo [s].
     pub servo_time: f64,
-    /// The lack of speed at which a velocity motor exerts its joint's effort [rad/s].
+    /// The speed error at which a velocity motor reaches the maximum effort of its joint [rad/s].
     pub saturation_speed: f64,
-    /// Viscous damping of the joints of torso, neck and arms divided by their efforts [s/rad]: one over their highest
-    /// speed.
+    /// The viscous damping of the joints of the torso, the neck and the arms, relative to their effort [s/rad]. Its
+    /// inverse is the highest speed.
     pub damping_per_effort: f64,
-    /// Armature of these joints [kg m2].
+    /// The armature of these joints [kg m2].
     pub armature: f64,
-    /// Both hands.
+    /// The parameters of both hands.
     pub hand: Hand,
-    /// Contact of arms and palms with the trunk, the head and the other arm.
+    /// The properties of contacts of the arms and palms with the trunk, the head and the other arm.
     pub skin: Surface,
 }
 
@@ -108,67 +111,70 @@ impl Default for Icub {
 }
 
 impl Icub {
-    /// The trunk with the shoulders' bases.
+    /// The body of the trunk, which includes the bases of the shoulders.
     pub const CHEST: BodyId = BodyId(2);
-    /// The head.
+    /// The body of the head.
     pub const HEAD: BodyId = BodyId(5);
-    /// The left and the right eye's center in the head's frame [m], 68 mm apart. They do not turn.
+    /// The centers of the left and the right eye in the frame of the head [m]. Their distance is 68 mm, and they cannot
+    /// move.
     ///
-    /// From neck yaw to eyes as in [Pattacini2011], whose neck is of another version than the file's.
+    /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011], which describes a different
+    /// version of the neck than the file.
     pub const EYES: [[f64; 3]; 2] = [[0.054, 0.034, 0.0825], [0.054, -0.034, 0.0825]];
-    /// The outward normal of a palm's inner face, in the palm's frame.
+    /// The outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = Hand::PALM_NORMAL;
 
-    /// The palm of a side, the last segment of its arm.
+    /// Returns the palm on the given side, which is the last segment of the arm.
     pub fn palm(side: Side) -> BodyId {
         BodyId(side.arm().bodies().end as u16 - 1)
     }
 
-    /// The point on a palm's inner face that counts as its center, in the palm's frame [m].
+    /// Returns the point on the inner side of a palm that is used as its center, in the frame of the palm [m].
     pub fn palm_centre(&self, side: Side) -> [f64; 3] {
         on_side(side, self.hand.palm_centre)
     }
 
-    /// The three phalanges of a finger, from the palm outwards.
+    /// Returns the three phalanges of a finger, starting at the palm.
     pub fn phalanges(side: Side, finger: Finger) -> [BodyId; 3] {
         [1, 2, 3].map(|i| BodyId((side.hand().bodies().start + 4 * finger as usize + i) as u16))
     }
 
-    /// The distal phalange of a finger and its tip in that frame [m]: the end of the capsule's axis.
+    /// Returns the distal phalange of a finger and the position of its tip in this frame [m]. The tip is the end of the
+    /// capsule's axis.
     pub fn fingertip(&self, side: Side, finger: Finger) -> (BodyId, [f64; 3]) {
         (Self::phalanges(side, finger)[2], on_side(side, self.hand.fingertip(finger)))
     }
 
-    /// The joint with this name, whose chain is actuated.
+    /// Returns the joint with the given name. Its chain must be actuated.
     ///
     /// # Errors
-    /// [`IcubError::Joint`] if there is no such joint, [`IcubError::Locked`] if it is rigid.
+    /// Returns [`IcubError::Joint`] if there is no such joint, or [`IcubError::Locked`] if the joint is rigid.
     pub fn joint(&self, name: &str) -> Result<JointId, IcubError> {
         let (chain, i) = find(name)?;
         self.unlocked(chain, name)?;
         Ok(JointId((chain.bodies().start + i) as u16))
     }
 
-    /// The actuator on the joint with this name, which is also its own.
+    /// Returns the actuator of the joint with the given name. Actuators and joints have the same names.
     ///
     /// # Errors
-    /// As [`Icub::joint`].
+    /// Returns the same errors as [`Icub::joint`].
     pub fn actuator(&self, name: &str) -> Result<ActuatorId, IcubError> {
         let (chain, i) = find(name)?;
         let first = self.unlocked(chain, name)?;
         Ok(ActuatorId(first + i as u16))
     }
 
-    /// The limits of the joint with this name, rigid or not [rad].
+    /// Returns the limits of the joint with the given name [rad]. Rigid joints are supported as well.
     ///
     /// # Errors
-    /// [`IcubError::Joint`] if there is no such joint.
+    /// Returns [`IcubError::Joint`] if there is no such joint.
     pub fn range(&self, name: &str) -> Result<[f64; 2], IcubError> {
         let (chain, i) = find(name)?;
         Ok(self.ranges(chain)[i])
     }
 
-    /// The limits of a chain's joints [rad].
+    /// Returns the limits of the joints of a chain [rad].
     pub fn ranges(&self, chain: Chain) -> Vec<[f64; 2]> {
         match chain.parts() {
             [] => self.hand.ranges().to_vec(),
@@ -176,42 +182,45 @@ impl Icub {
         }
     }
 
-    /// The posture's angles of the joints that are actuated, in the order of [`Robot::joints`] [rad].
+    /// Returns the initial angles of the actuated joints in the order of [`Robot::joints`] [rad].
     pub fn start(&self) -> Vec<f64> {
         let actuated = Chain::ALL.into_iter().filter(|chain| self.actuated.contains(chain));
         actuated.flat_map(|chain| self.posture.chain(chain)).copied().collect()
     }
 
-    /// The nine groups of servos of a hand that each follow one output, as [`Hand::servo_groups`] describes them.
+    /// Returns nine groups of servos of a hand, each of which is controlled by one output. See [`Hand::servo_groups`]
+    /// for a list.
     ///
     /// # Errors
-    /// [`IcubError::Locked`] if the hand is rigid.
+    /// Returns [`IcubError::Locked`] if the hand is rigid.
     pub fn servo_groups(&self, side: Side) -> Result<[Vec<ServoRange>; 9], IcubError> {
         let first = self.actuator(&format!("{}J{}", side.prefix(), Finger::Thumb.first_joint()))?;
         Ok(self.hand.servo_groups(first))
     }
 
-    /// The robot: segments `torso_1`, `torso_2`, `chest`, `neck_1`, `neck_2`, `head`. `l_shoulder_1`, `l_shoulder_2`,
-    /// `l_upper_arm`, `l_elbow_1`, `l_forearm`, `l_wrist_1`, `l_palm` and the same with `r_`. Then the fingers as those
-    /// of [`crate::robots::ArmAndHand`] with `l_`, with `r_`.
+    /// Builds the description of the robot.
     ///
-    /// Colliders have the sizes of the file's collision meshes. Capsules are `waist` (of `torso_1`, the hip belt),
-    /// `chest`, `head`, upper arms, forearms and phalanges, and the palms are boxes. The meshes of forearms and hands
-    /// are 20 mm away from their links, and those of the hands are turned by 90 degrees. Here the forearms' capsules
-    /// are on their axes, and the palms are those of [`Hand`].
+    /// The first segments are `torso_1`, `torso_2`, `chest`, `neck_1`, `neck_2` and `head`. They are followed by
+    /// `l_shoulder_1`, `l_shoulder_2`, `l_upper_arm`, `l_elbow_1`, `l_forearm`, `l_wrist_1` and `l_palm`, and by the
+    /// same segments with the prefix `r_`. The last segments are those of the fingers, as in
+    /// [`crate::robots::ArmAndHand`], first with `l_` and then with `r_`.
     ///
-    /// Views draw visuals instead, sized by eye: covers, and a face with two eyes at [`Icub::EYES`].
+    /// Colliders have the sizes of the collision meshes of the file. The waist (the hip belt of `torso_1`), the chest,
+    /// the head, the upper arms, the forearms and the phalanges are capsules, and the palms are boxes. In the file, the
+    /// meshes of the forearms and hands are displaced by 20 mm from their links, and those of the hands are rotated by
+    /// 90 degrees. Here the capsules of the forearms are on their axes, and the palms are those of [`Hand`]. Views draw
+    /// covers and a face with two eyes at [`Icub::EYES`] instead of the colliders.
     ///
-    /// Pairs that may touch: forearms and palms with waist, chest and head. Upper arms with the head. Every part of one
-    /// arm with every one of the other but their upper arms, which cannot reach each other. Within each hand, as in
-    /// [`crate::robots::ArmAndHand`]. Fingers with the trunk and the other arm, its hand included. Upper arms have no
-    /// pair with the chest, into which the shoulders are built, nor neighbors along an arm with each other. No hand
-    /// comes near its own forearm or upper arm. Pairs whose colliders cannot move relative to each other, because the
-    /// joints between are rigid, are left out.
+    /// The forearms and palms can touch the waist, the chest and the head. The upper arms can touch the head. All parts
+    /// of one arm can touch those of the other arm, except that the upper arms cannot reach each other. The pairs
+    /// within a hand are those of [`crate::robots::ArmAndHand`]. The fingers can touch the trunk and the other arm,
+    /// including its hand. The upper arms cannot touch the chest, since it contains the shoulders. Neighbors along an
+    /// arm have no contacts, and a hand cannot reach its forearm or upper arm. Pairs whose colliders cannot move
+    /// relative to each other are omitted.
     ///
     /// # Errors
-    /// [`IcubError::Twice`], [`IcubError::Posture`] and [`IcubError::Value`] for fields, [`IcubError::Robot`] for what
-    /// [`Robot::validate`] finds.
+    /// Returns [`IcubError::Twice`], [`IcubError::Posture`] or [`IcubError::Value`] if a field is invalid, or
+    /// [`IcubError::Robot`] if [`Robot::validate`] fails.
     pub fn robot(&self) -> Result<Robot, IcubError> {
         self.validate()?;
         let mut robot = Robot::new("icub");

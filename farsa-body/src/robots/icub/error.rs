@@ -1,53 +1,53 @@
-//! Errors of the robot's configuration or of a requested name.
+//! Errors in the configuration of the iCub.
 
 use alloc::string::String;
 use core::fmt;
 
 use crate::robot::validation::RobotError;
 
-/// The error of the iCub's configuration or of a requested name.
+/// An error in the configuration of the iCub, or an unknown name.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum IcubError {
-    /// No chain has this name.
+    /// There is no chain with this name.
     Chain {
-        /// The name.
+        /// The requested name.
         name: String,
     },
-    /// A chain is listed twice among those that are actuated.
+    /// A chain occurs twice in the list of actuated chains.
     Twice {
-        /// Its name.
+        /// The name of the chain.
         chain: &'static str,
     },
-    /// No joint has this name.
+    /// There is no joint with this name.
     Joint {
-        /// The name.
+        /// The requested name.
         name: String,
     },
     /// The joint is rigid, because its chain is not actuated.
     Locked {
-        /// The joint's name.
+        /// The name of the joint.
         joint: String,
-        /// The name of its chain.
+        /// The name of the chain.
         chain: &'static str,
     },
-    /// An angle of the posture is not a number within the joint's limits.
+    /// An angle of the posture is NaN or violates the limits of the joint.
     Posture {
-        /// The joint's name.
+        /// The name of the joint.
         joint: String,
-        /// The angle [rad].
+        /// The invalid angle [rad].
         angle: f64,
-        /// The joint's limits [rad].
+        /// The limits of the joint [rad].
         range: [f64; 2],
     },
     /// A number is not finite or out of its range.
     Value {
-        /// Which field.
+        /// The name of the field.
         field: &'static str,
-        /// Its value.
+        /// The invalid value.
         value: f64,
     },
-    /// An error of the description from these numbers.
+    /// The description that results from the configuration is invalid.
     Robot(RobotError),
 }
 

@@ -1,4 +1,4 @@
-//! The look of the iCub: shapes that views draw instead of its colliders, sized by eye. Nothing depends on them.
+//! The appearance of the iCub in views. It does not affect the simulation.
 
 use alloc::vec::Vec;
 

@@ -1,7 +1,7 @@
-//! The upper body of the iCub [Metta2010] as data: 60 joints in six chains.
+//! The upper body of the iCub [Metta2010] with 60 joints in six chains.
 //!
-//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::robots::ArmAndHand`].
-//! docs/icub-tables.md compares masses and limits with the file and has the Denavit-Hartenberg table.
+//! The values are taken from a URDF file [Gepetto2025], and the hands from [`crate::robots::ArmAndHand`]. The masses
+//! and limits are compared with the file in docs/icub-tables.md, which also contains the Denavit-Hartenberg parameters.
 
 /// The six chains, the two sides, and which joints and bodies are theirs.
 pub(crate) mod chain;

@@ -1,28 +1,28 @@
-//! The joint angles of all chains.
+//! The joint angles of all chains of the iCub.
 
 use crate::robots::hand::deg;
 use crate::robots::icub::chain::Chain;
 
-/// The joint angles of the iCub's chains, in the order of [`Chain::joint_names`] [rad].
+/// The joint angles of all chains in radians. Each chain is ordered like [`Chain::joint_names`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct IcubPosture {
-    /// Pitch, roll and yaw of the trunk.
+    /// The pitch, roll and yaw of the trunk.
     pub torso: [f64; 3],
-    /// Pitch, roll and yaw of the head.
+    /// The pitch, roll and yaw of the head.
     pub neck: [f64; 3],
-    /// The left arm's.
+    /// The angles of the left arm.
     pub left_arm: [f64; 7],
-    /// The right arm's.
+    /// The angles of the right arm.
     pub right_arm: [f64; 7],
-    /// The left hand's J8 to J27.
+    /// The angles of J8 to J27 of the left hand.
     pub left_hand: [f64; 20],
-    /// The right hand's J8 to J27.
+    /// The angles of J8 to J27 of the right hand.
     pub right_hand: [f64; 20],
 }
 
 impl IcubPosture {
-    /// The angles of a chain [rad].
+    /// Returns the joint angles of a chain [rad].
     pub fn chain(&self, chain: Chain) -> &[f64] {
         match chain {
             Chain::Torso => &self.torso,
@@ -34,7 +34,7 @@ impl IcubPosture {
         }
     }
 
-    /// The angles of a chain, to be changed [rad].
+    /// Returns a mutable reference to the joint angles of a chain [rad].
     pub fn chain_mut(&mut self, chain: Chain) -> &mut [f64] {
         match chain {
             Chain::Torso => &mut self.torso,
@@ -48,7 +48,7 @@ impl IcubPosture {
 }
 
 impl Default for IcubPosture {
-    /// Upright, both forearms in front of the trunk, hands open, our own choice.
+    /// Returns an upright posture with both forearms in front of the trunk and open hands. The angles were chosen.
     fn default() -> Self {
         let arm = [deg(-30.0), deg(30.0), 0.0, deg(60.0), 0.0, 0.0, 0.0];
         Self {

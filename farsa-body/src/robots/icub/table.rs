@@ -1,9 +1,10 @@
-//! Joints and masses of torso, neck and right arm: numbers of the file `icub.urdf` [Gepetto2025].
+//! Joints and masses of the torso, the neck and the right arm from the file `icub.urdf` [Gepetto2025].
 //!
-//! All axes, places and inertias are in the axes of the world at joint positions 0, which are the file's turned by pi
-//! about z. They were computed after the file's angles, which have six digits, were set to the multiples of 15 degrees
-//! that they mean. Links that the file joins without a joint are one segment: `shoulder_3`, the force sensor and the
-//! upper arm, and the chest with the neck's base of 0.1 kg. Limits are the file's radians in degrees.
+//! All axes, positions and inertias are given in the axes of the world at joint position 0, which are those of the file
+//! after a rotation by pi about z. The angles in the file have six digits. Before the conversion they were replaced by
+//! the nearest multiples of 15 degrees. Links that are rigidly connected in the file are combined. These are
+//! `shoulder_3`, the force sensor and the upper arm, and the chest with the base of the neck (0.1 kg). Limits are
+//! converted from radians to degrees.
 
 use crate::robot::mass_properties::MassProperties;
 use crate::robots::hand::deg;

@@ -1,4 +1,4 @@
-//! The table with the ball before the iCub.
+//! A table with a ball in front of the iCub.
 
 use crate::ports::BodyId;
 use crate::pose::Pose;
@@ -10,35 +10,35 @@ use crate::robots::icub::colliders;
 use crate::robots::icub::description::Icub;
 use crate::robots::icub::error::IcubError;
 
-/// A table before the iCub, with a ball on it. Every number a field.
+/// A table with a ball in front of the iCub. All values can be changed.
 ///
-/// All numbers are our own choice.
+/// The default values were chosen for this crate.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct IcubTabletop {
-    /// Extent of the table along X [m].
+    /// The lower and upper ends of the table along X [m].
     pub table_x: [f64; 2],
-    /// Extent of the table along Y [m].
+    /// The lower and upper ends of the table along Y [m].
     pub table_y: [f64; 2],
-    /// Height of the table's top [m].
+    /// The height of the table top [m].
     pub table_top: f64,
-    /// The thickness of the solid table [m].
+    /// The thickness of the table, which is solid [m].
     pub table_depth: f64,
-    /// Color of the table, red, green and blue [0..1].
+    /// The red, green and blue components of the color of the table [0..1].
     pub table_color: [f64; 3],
-    /// Radius of the ball [m].
+    /// The radius of the ball [m].
     pub ball_radius: f64,
-    /// Mass of the ball, solid [kg].
+    /// The mass of the ball, which is solid [kg].
     pub ball_mass: f64,
-    /// Color of the ball, red, green and blue [0..1].
+    /// The red, green and blue components of the color of the ball [0..1].
     pub ball_color: [f64; 3],
-    /// Where the ball rests on the table at first, X and Y [m].
+    /// The initial X and Y coordinates of the ball on the table [m].
     pub ball_start: [f64; 2],
-    /// Contact of the robot with the ball.
+    /// The properties of contacts between the robot and the ball.
     pub robot_on_ball: Surface,
-    /// Contact of the ball with the table.
+    /// The properties of contacts between the ball and the table.
     pub ball_on_table: Surface,
-    /// Contact of the robot with the table.
+    /// The properties of contacts between the robot and the table.
     pub robot_on_table: Surface,
 }
 
@@ -63,17 +63,18 @@ impl Default for IcubTabletop {
 }
 
 impl IcubTabletop {
-    /// The ball in the robot that [`IcubTabletop::scene`] makes.
+    /// The body of the ball in the description that is returned by [`IcubTabletop::scene`].
     pub const BALL: BodyId = BodyId(60);
 
-    /// Robot, ball and table in one description, the robot's parts first.
+    /// Builds a description with the robot, the ball and the table. The parts of the robot come first.
     ///
-    /// Pairs in order: the robot's own, those of the `ball` with waist, chest and head, and with forearm, palm and
-    /// phalanges of the left side and of the right. The last are those of the `table` with the ball, chest and head,
-    /// and with upper arm, forearm, palm and phalanges of either side.
+    /// The pairs of the robot come first. They are followed by those of the `ball`. It can touch the waist, the chest
+    /// and the head, and the forearm, the palm and the phalanges of the left and then the right side. The last pairs
+    /// are those of the `table`. It can touch the ball, the chest, the head, and the upper arm, the forearm, the palm
+    /// and the phalanges of both sides.
     ///
     /// # Errors
-    /// The errors of [`Icub::robot`], and of [`Robot::validate`] for the given numbers.
+    /// Returns the errors of [`Icub::robot`] and of [`Robot::validate`].
     pub fn scene(&self, icub: &Icub) -> Result<Robot, IcubError> {
         let mut robot = icub.robot()?;
         let [x, y] = self.ball_start;

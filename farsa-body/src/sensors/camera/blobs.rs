@@ -1,4 +1,4 @@
-//! Where colors are in a camera's image, and how large.
+//! Detection of the positions and sizes of colors in the image of a camera.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,11 +8,12 @@ use crate::ports::{BodyId, Channels, Kinematics, Sensor, Vision};
 use crate::sensors::camera::Camera;
 use crate::sensors::linear_camera::ColorBand;
 
-/// Reads the places of some colors in a camera's image, 3 channels a color. They are the middle of the color's pixels,
-/// to the left and upwards, in halves of the image's width, and the share of all pixels in [0, 1]. All three are zero
-/// where no pixel has the color.
+/// A sensor that detects colors in the image of a camera, with 3 channels per color.
 ///
-/// A hidden part of a thing moves the middle of the rest, as in a real image.
+/// The first two channels are the mean position of all pixels that show the color, to the left and upwards, in units of
+/// half the image's width. The third channel is the share of these pixels in the image, in [0, 1]. All three channels
+/// are zero if no pixel shows the color. If an object is partly hidden, the mean position refers to its visible part,
+/// as in the image of a real camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorBlobs<B = BodyId> {
     camera: Camera<B>,
@@ -22,10 +23,11 @@ pub struct ColorBlobs<B = BodyId> {
 }
 
 impl<B: Copy> ColorBlobs<B> {
-    /// The blobs of these colors.
+    /// Creates a sensor for the given colors.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for no colors, [`ChannelError::Range`] for a band that is not finite or runs backwards.
+    /// Returns [`ChannelError::Groups`] if there are no colors, or [`ChannelError::Range`] if a band is not finite or
+    /// its ends are in the wrong order.
     pub fn new(camera: Camera<B>, bands: Vec<ColorBand>) -> Result<Self, ChannelError> {
         groups("colours", bands.len(), 1)?;
         bands.iter().try_for_each(ColorBand::check)?;
@@ -33,7 +35,7 @@ impl<B: Copy> ColorBlobs<B> {
         Ok(Self { camera, bands, sums })
     }
 
-    /// The camera.
+    /// Returns the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

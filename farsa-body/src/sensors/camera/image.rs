@@ -1,12 +1,12 @@
-//! The image of a camera as channels.
+//! A sensor that provides the pixels of a camera as channels.
 
 use crate::ports::{BodyId, Channels, Kinematics, Sensor, Vision};
 use crate::sensors::camera::Camera;
 
-/// Reads a camera's image, rows x columns x 3 channels in [0, 1]. The order is red, green and blue of the upper left
-/// pixel first, row by row. A pixel is 0 where there is no surface, or one without a color.
+/// A sensor that reads all pixels of a camera. It has rows x columns x 3 channels in [0, 1].
 ///
-/// The cost is that of one ray a pixel.
+/// The channels contain red, green and blue of each pixel, row by row from the upper left corner. A pixel is 0 if no
+/// surface is in range or if the surface has no color. Note that every pixel requires a ray cast.
 ///
 /// ```
 /// use farsa_body::Pose;
@@ -29,12 +29,12 @@ pub struct CameraImage<B = BodyId> {
 }
 
 impl<B: Copy> CameraImage<B> {
-    /// The image of a camera.
+    /// Creates a sensor for the image of a camera.
     pub fn new(camera: Camera<B>) -> Self {
         Self { camera }
     }
 
-    /// The camera.
+    /// Returns the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

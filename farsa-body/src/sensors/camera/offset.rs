@@ -1,13 +1,14 @@
-//! The distance of two things in a camera's image.
+//! The offset between two objects in the image of a camera.
 
 use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 use crate::sensors::camera::Camera;
 
-/// Reads the distance between two things in a camera's image, 2 channels in [-1, 1]: to the left and upwards, in widths
-/// of the image. Both are 0 where a thing is behind the camera.
+/// A sensor that measures the offset between two points in the image of a camera. Its two channels are the offsets to
+/// the left and upwards in units of the image's width, in [-1, 1]. Both are 0 if one of the points is behind the
+/// camera.
 ///
-/// Both are points of bodies and count as seen whether or not something hides them. Only the place and the field of
-/// view of the camera matter, so one pixel is enough.
+/// The points are attached to bodies and are visible even if something is in front of them. Since only the pose and the
+/// field of view of the camera are used, an image of one pixel is sufficient.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisualOffset<B = BodyId> {
     camera: Camera<B>,
@@ -16,12 +17,13 @@ pub struct VisualOffset<B = BodyId> {
 }
 
 impl<B: Copy> VisualOffset<B> {
-    /// The offset of a point [m] of one body from a point of another, each in its body's frame.
+    /// Creates a sensor for the offset of the point `of` from the point `from`. Each point is given in the frame of its
+    /// body [m].
     pub fn new(camera: Camera<B>, of: (B, [f32; 3]), from: (B, [f32; 3])) -> Self {
         Self { camera, of, from }
     }
 
-    /// The camera.
+    /// Returns the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

@@ -1,4 +1,4 @@
-//! A pinhole camera: where it is, where its pixels look to, and where a point is in its image.
+//! A pinhole camera, with the geometry of its pixels and its projection.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,11 +13,11 @@ use crate::recorder::Recorder;
 /// More pixels than this are not needed, and a mistake could run out of memory.
 const MAX_PIXELS: usize = 1 << 20;
 
-/// A pinhole camera on a body. Its own frame looks along x, with y to the left and z up. Its pixels are squares,
-/// numbered row by row from the upper left.
+/// A pinhole camera that is attached to a body. In its frame, x is the viewing direction, y points to the left and z
+/// up. Pixels are square and numbered row by row, starting at the upper left corner.
 ///
-/// A place (x, y, z) of its frame appears at (y, z) / (x w) in the image, with w the tangent of half the field of view.
-/// The left edge is at 1, the right one at -1, and the vertical axis has the same unit.
+/// A point (x, y, z) in this frame is projected to (y, z) / (x w) in the image, where w is the tangent of half the
+/// field of view. The left edge of the image is at 1 and the right edge at -1. The vertical axis has the same scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera<B = BodyId> {
     body: B,
@@ -33,13 +33,13 @@ pub struct Camera<B = BodyId> {
 }
 
 impl<B: Copy> Camera<B> {
-    /// Builds a camera on `body` at `placement` in that body's frame. The image has `size` [columns, rows], a
-    /// horizontal field of view [rad] and a `range` [m].
+    /// Creates a camera on `body`, at `placement` in the frame of the body. The `size` contains the number of columns
+    /// and rows. The horizontal field of view is given in radians and the `range` in meters.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for an image without pixels or of more than 2^20. [`ChannelError::Value`] for a field
-    /// of view outside (0, pi), a `range` that is not a finite number > 0, or a placement that is not finite or has no
-    /// unit quaternion.
+    /// Returns [`ChannelError::Groups`] if the image has no pixels or more than 2^20. Returns [`ChannelError::Value`]
+    /// if the field of view is outside (0, pi), if `range` is not a finite number > 0, or if the placement is not
+    /// finite or not normalized.
     pub fn new(
         body: B,
         placement: Pose,
@@ -79,23 +79,23 @@ impl<B: Copy> Camera<B> {
         Ok(Self { body, placement, size, tangent, range, own, rays, seen })
     }
 
-    /// The body it is on.
+    /// Returns the body to which the camera is attached.
     pub fn body(&self) -> B {
         self.body
     }
 
-    /// The image's [columns, rows].
+    /// Returns the number of columns and rows of the image.
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// Where the camera is in the world.
+    /// Returns the pose of the camera in the world.
     pub fn pose<W: Kinematics<Body = B> + ?Sized>(&self, world: &W) -> Pose {
         world.pose(self.body).compose(&self.placement)
     }
 
-    /// Returns the first surface of each pixel [rows x columns], the upper left first. The camera's own body is
-    /// invisible.
+    /// Casts a ray for each pixel and returns the first surface on it. The pixel at the upper left corner comes first.
+    /// The body to which the camera is attached is invisible.
     pub fn look<W: Kinematics<Body = B> + Vision + ?Sized>(&mut self, world: &W) -> &[Option<Seen<B>>] {
         let pose = self.pose(world);
         for (ray, own) in self.rays.iter_mut().zip(&self.own) {
@@ -105,28 +105,28 @@ impl<B: Copy> Camera<B> {
         &self.seen
     }
 
-    /// Returns the color of each pixel at the last look, the upper left first.
+    /// Returns the colors of all pixels in the latest image, starting at the upper left corner.
     pub fn colors(&self) -> impl Iterator<Item = Option<[f32; 3]>> {
         self.seen.iter().map(|seen| seen.as_ref().and_then(|seen| seen.color))
     }
 
-    /// Passes the image of the last look to a recorder under this number. It is black where there was no surface, or
-    /// one without a color.
+    /// Passes the latest image to a recorder under the number `image`. Pixels without a surface or without a color are
+    /// black.
     pub fn record<R: Recorder + ?Sized>(&self, image: usize, recorder: &mut R) {
         for (pixel, color) in self.colors().enumerate() {
             recorder.pixel(image, pixel, color.unwrap_or_default());
         }
     }
 
-    /// Where the middle of a pixel is in the image: to the left and upwards, in halves of its width.
+    /// Returns the position of a pixel's center in the image, to the left and upwards in units of half the width.
     pub fn pixel(&self, index: usize) -> [f32; 2] {
         let [columns, rows] = self.size.map(|count| count as f32);
         let (column, row) = ((index % self.size[0]) as f32, (index / self.size[0]) as f32);
         [(columns - 1.0 - 2.0 * column) / columns, (rows - 1.0 - 2.0 * row) / columns]
     }
 
-    /// Returns the position of a place of the world [m] in the image, to the left and upwards in halves of its width.
-    /// It is beyond 1 outside of the image, and `None` for a place that is not in front of the camera.
+    /// Projects a point of the world [m] to the image. The result is the position to the left and upwards in units of
+    /// half the width, which exceeds 1 outside the image. It is `None` if the point is not in front of the camera.
     pub fn project(&self, pose: &Pose, place: [f32; 3]) -> Option<[f32; 2]> {
         let [ahead, left, up] = pose.transform_back(place);
         (ahead > 0.0).then(|| [left, up].map(|x| x / (ahead * self.tangent)))

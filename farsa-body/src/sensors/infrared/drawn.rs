@@ -1,4 +1,4 @@
-//! Infrared sensors as rays to be drawn.
+//! Rays that represent infrared sensors in recordings.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::recorder::Recorder;
 use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 
-/// Infrared channels of a robot as one ray each, for recordings.
+/// Converts the infrared channels of a robot to rays, which can be drawn in recordings.
 ///
 /// ```
 /// use farsa_body::robots::MobileRobot;
@@ -41,8 +41,8 @@ pub struct InfraredDrawing {
 }
 
 impl InfraredDrawing {
-    /// Builds the rays of a ring of sensors in `groups` groups of neighbors, at the first sensor of each. Every sensor
-    /// has its own ray where the ring cannot be divided so.
+    /// Creates one ray for each of `groups` groups of neighboring sensors, at the first sensor of the group. If the
+    /// ring cannot be divided into groups of equal size, each sensor has a separate ray.
     pub fn for_robot(robot: &MobileRobot, groups: usize) -> Self {
         let angles = &robot.infrared.angles;
         let divided = groups > 0 && angles.len().is_multiple_of(groups);
@@ -54,16 +54,16 @@ impl InfraredDrawing {
         }
     }
 
-    /// Number of rays.
+    /// Returns the number of rays.
     pub fn count(&self) -> usize {
         self.rays.len()
     }
 
-    /// Records a ray for each channel: it ends where a thing would be that gives the same reading by
-    /// [`InfraredRays`](crate::sensors::infrared::InfraredRays).
+    /// Records one ray per channel. A ray ends at the distance at which
+    /// [`InfraredRays`](crate::sensors::infrared::InfraredRays) would read the same value.
     ///
-    /// `x` is what each channel read when the robot was at `pose`. `met`: only those that read something, where a crowd
-    /// has too many others.
+    /// The values `x` must have been read when the robot was at `pose`. If `met` is true, channels that detect nothing
+    /// are omitted. This is useful when there are many robots.
     pub fn record(&self, pose: Pose, x: &[f32], met: bool, recorder: &mut dyn Recorder) {
         for (ray, &x) in self.rays.iter().zip(x).filter(|(_, x)| !met || **x > 0.0) {
             let length = self.range * (1.0 - x);

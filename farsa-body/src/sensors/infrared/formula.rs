@@ -1,4 +1,4 @@
-//! Infrared sensors by the analytic model, for worlds of the plane.
+//! Infrared sensors that are based on a formula, for planar worlds.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -12,14 +12,16 @@ use crate::sensors::beam::Beam;
 use crate::sensors::infrared::model::InfraredModel;
 use crate::sensors::stance::Stance;
 
-/// Reads a ring of infrared sensors by the model [`InfraredModel`], one channel each in [0, 1].
+/// A ring of infrared sensors that is simulated by a formula (see [`InfraredModel`]). Each sensor has one channel in
+/// [0, 1].
 ///
-/// Every wall and every other body adds its response, and nothing hides anything. The response depends on the distance
-/// of the nearest point to the hull, the radius, and the angle between the sensor's axis and that point's bearing from
-/// the robot's center. The range is the model's: 33 mm for a wall, less for a cylinder.
+/// The responses to all walls and all other bodies are added, and objects do not hide each other. A response depends on
+/// the radius of the object and on the distance between the hull and its nearest point. It also depends on the angle
+/// between the axis of the sensor and the bearing of this point from the center of the robot. The range is 33 mm for
+/// walls and smaller for cylinders.
 ///
-/// The axes are any list of unit vectors in the robot's frame. Wrap it in [`crate::wrappers::Noisy`] for noise, as
-/// [`crate::sensors::infrared::InfraredRays`] shows.
+/// The axes are unit vectors in the frame of the robot and can be stored in any list. Wrap the sensor in
+/// [`crate::wrappers::Noisy`] to add noise. See [`crate::sensors::infrared::InfraredRays`] for an example.
 #[doc(alias = "proximity")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InfraredFormula<L, B = BodyId> {
@@ -30,11 +32,11 @@ pub struct InfraredFormula<L, B = BodyId> {
 }
 
 impl<L: AsRef<[[f32; 2]]>, B> InfraredFormula<L, B> {
-    /// A ring of sensors around the round hull of `radius` [m] of `body`, which look along these `axes`.
+    /// Creates a ring of sensors with the given `axes` on the round hull of `body`, whose `radius` is given in meters.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if there are no axes, [`ChannelError::Value`] if one is no unit vector or `radius` is not
-    /// a finite number > 0.
+    /// Returns [`ChannelError::Groups`] if there are no axes. Returns [`ChannelError::Value`] if an axis is not a unit
+    /// vector, or if `radius` is not a finite number > 0.
     pub fn new(body: B, axes: L, radius: f32) -> Result<Self, ChannelError> {
         groups("axes", axes.as_ref().len(), 1)?;
         axes.as_ref().iter().try_for_each(|&axis| direction("length of an axis", axis))?;
@@ -44,10 +46,10 @@ impl<L: AsRef<[[f32; 2]]>, B> InfraredFormula<L, B> {
 
 #[cfg(feature = "alloc")]
 impl<B> InfraredFormula<Vec<[f32; 2]>, B> {
-    /// The ring of a robot whose body this is, in the order of [`crate::robots::InfraredRing::angles`].
+    /// Creates the sensors of a robot, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
-    /// The errors of [`InfraredFormula::new`].
+    /// Returns the errors of [`InfraredFormula::new`].
     pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let axis = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1).direction;
         Self::new(body, robot.infrared.angles.iter().map(axis).collect(), robot.radius as f32)

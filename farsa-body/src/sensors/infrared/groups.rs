@@ -1,4 +1,4 @@
-//! Infrared sensors by rays in groups of neighbors, for worlds that list near surfaces.
+//! Infrared sensors that are simulated by rays and combined in groups of neighbors.
 
 use alloc::{vec, vec::Vec};
 
@@ -10,11 +10,11 @@ use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 use crate::sensors::infrared::rays::InfraredRays;
 
-/// Reads a ring of [`InfraredRays`] in groups of neighbors, each of which gives its largest reading, one channel each
-/// in [0, 1].
+/// A ring of [`InfraredRays`] whose sensors are divided into groups of neighbors. Each group has one channel in [0, 1],
+/// which is the largest reading of its sensors.
 ///
-/// The middle of group i is sensor i * size of the ring. Rays that no near surface can reach are not cast, which does
-/// not change the readings.
+/// The middle of group i is the sensor with index i * size. To save time, rays that cannot reach any nearby surface are
+/// not cast. This does not change the readings.
 #[derive(Clone, Debug)]
 pub struct InfraredGroups<B = BodyId> {
     body: B,
@@ -66,10 +66,10 @@ impl Obstacle {
 }
 
 impl<B: Copy> InfraredGroups<B> {
-    /// Builds the ring of the robot with this body in `count` groups.
+    /// Creates the sensors of a robot and divides them into `count` groups.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for a ring that has no such number of groups of the same size, and those of
+    /// Returns [`ChannelError::Groups`] if the ring cannot be divided into groups of equal size, and the errors of
     /// [`InfraredRays::for_robot`].
     pub fn for_robot(robot: &MobileRobot, body: B, count: usize) -> Result<Self, ChannelError> {
         let sensors = robot.infrared.angles.len();
@@ -86,7 +86,7 @@ impl<B: Copy> InfraredGroups<B> {
 }
 
 impl<B> InfraredGroups<B> {
-    /// Returns the last readings of all sensors of the ring, in the order of [`crate::robots::InfraredRing::angles`].
+    /// Returns the latest readings of all sensors, in the order of [`crate::robots::InfraredRing::angles`].
     pub fn ring(&self) -> &[f32] {
         &self.ring
     }

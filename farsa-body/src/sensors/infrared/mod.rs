@@ -1,14 +1,14 @@
-//! Infrared rings of mobile robots. Which one do I need?
+//! Infrared sensors of mobile robots.
 //!
 //! | sensor | what a reading is | hidden things | needs |
 //! |---|---|---|---|
 //! | [`InfraredRays`] | how near the nearest hit of a few rays is | are not seen | `Rays`: any world |
-//! | [`InfraredGroups`] | the largest of such readings in a group of neighbours | are not seen | `Rays`, `Sight` |
+//! | [`InfraredGroups`] | the largest of such readings in a group of neighbors | are not seen | `Rays`, `Sight` |
 //! | [`InfraredFormula`] | a formula of distance, bearing and radius, [`InfraredModel`] | are felt, too | `Sight` |
-//! | [`SampledInfrared`] | what a real robot's sensors read, from [`InfraredTables`] | are felt, too | `Sight`, measured tables |
+//! | [`SampledInfrared`] | the readings of a real robot's sensors, from [`InfraredTables`] | are felt, too | `Sight`, measured tables |
 //!
-//! Take rays for a custom world or for walls that hide each other, the formula for speed, and tables to reproduce a
-//! measured robot.
+//! Use rays in custom worlds and if walls should hide each other. The formula is the fastest model, and tables
+//! reproduce the measurements of a real robot.
 
 /// Channels as rays to be drawn.
 #[cfg(feature = "alloc")]

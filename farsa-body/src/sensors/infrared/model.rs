@@ -1,15 +1,16 @@
-//! The response of an infrared sensor to a surface: the analytic model.
+//! A model for the response of infrared sensors to surfaces.
 
 use farsa_num::Scalar;
 
-/// The response of an infrared sensor to a surface of one radius, as a formula instead of a table.
+/// The response of an infrared sensor to a surface of a given radius. It is computed by a formula and does not need a
+/// table.
 ///
-/// A sensor reads the sum over all surfaces of `distance_term * angle_term`, brought into [0, 1].
-/// - `distance_term = clamp((far - d) / (far - near), 0, 1)`, with `d` the distance from the robot's hull to the nearest
-///   point of the surface [m].
-/// - `angle_term = s^2`, `s = max((cos(a) - cos(width)) / (1 - cos(width)), 0)`, with `a` the angle between the
-///   sensor's axis and the bearing of that point from the robot's center. It is 1 ahead, 1/2 at about half the width,
-///   and smoothly 0 at the width.
+/// The reading of a sensor is the sum of `distance_term * angle_term` over all surfaces, clamped to [0, 1].
+/// - `distance_term = clamp((far - d) / (far - near), 0, 1)`, where `d` is the distance between the hull of the robot
+///   and the nearest point of the surface [m].
+/// - `angle_term = s^2` with `s = max((cos(a) - cos(width)) / (1 - cos(width)), 0)`, where `a` is the angle between the
+///   axis of the sensor and the bearing of that point from the center of the robot. It is 1 straight ahead, 1/2 at
+///   about half the width, and decreases smoothly to 0 at the width.
 ///
 /// | | curvature [1/m] | near [mm] | far [mm] | width [deg] |
 /// |---|---|---|---|---|
@@ -17,12 +18,13 @@ use farsa_num::Scalar;
 /// | cylinder of 27 mm | 37 | 11.1 | 29.3 | 32 |
 /// | cylinder of 12.5 mm or less | 80 | 9 | 25 | 32 |
 ///
-/// Between these rows everything is linear in the curvature, the width by its cosine.
+/// Between these rows, all values are interpolated linearly in the curvature. For the width, its cosine is
+/// interpolated.
 ///
-/// Near and far are those of FARSA2's analytic sensor. The widths come from the mean of seven sensors of its measured
-/// Khepera, at distances without saturation. They are the angles at which the mean falls to half of its peak (25
-/// degrees for a wall, 17 for either cylinder). Deviations from those measurements: all sensors are alike, and each
-/// points away from the robot's center.
+/// The near and far distances are those of the analytic sensor of FARSA2. The widths were derived from the measured
+/// Khepera of FARSA2 as the mean of seven sensors at distances without saturation. They are the angles at which the
+/// mean response is half of its maximum (25 degrees for a wall and 17 degrees for both cylinders). Deviations from the
+/// measurements: all sensors are identical, and each sensor points away from the center of the robot.
 ///
 /// ```
 /// use farsa_body::sensors::infrared::InfraredModel;
@@ -61,12 +63,14 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
 }
 
 impl InfraredModel {
-    /// Where a wall straight before a sensor reads 0 and where it reads 1, by its distance from the hull [m].
+    /// The distances from the hull at which a sensor in front of a wall reads 0 and 1 [m].
     ///
-    /// Both ends of a table of channels: between them a reading falls in proportion to the distance, and with the angle.
+    /// These values are useful for tables of channels. Between them the reading decreases linearly with the distance.
+    /// It also decreases with the angle.
     pub const WALL_ENDS: [f64; 2] = [WALL[1], WALL[0]];
 
-    /// The model of a surface with this radius [m]. 0, negative and NaN are a wall's.
+    /// Returns the model for a surface with the given radius [m]. The values 0, NaN and negative numbers represent a
+    /// wall.
     pub fn for_radius(radius: f32) -> Self {
         let curvature = if radius > 0.0 { 1.0 / f64::from(radius) } else { 0.0 };
         let part = Scalar::min(curvature / SMALL_CURVATURE, 1.0);
@@ -80,22 +84,22 @@ impl InfraredModel {
         }
     }
 
-    /// The distance from the hull at which the response ends [m].
+    /// Returns the distance from the hull at which the response ends [m].
     pub fn range(&self) -> f32 {
         self.far
     }
 
-    /// Returns the response to one surface [0..1].
+    /// Computes the response to one surface, which is in [0..1].
     ///
-    /// `distance` is that from the robot's hull to the surface's nearest point [m]. `cosine` is that of the angle
-    /// between the sensor's axis and the bearing of this point from the robot's center. The response is 0 for a
-    /// distance or an angle that is NaN.
+    /// The `distance` is measured from the hull of the robot to the nearest point of the surface [m]. The `cosine` is
+    /// that of the angle between the axis of the sensor and the bearing of this point from the center of the robot. If
+    /// one of them is NaN, the response is 0.
     #[inline(always)]
     pub fn response<S: Scalar>(&self, distance: S, cosine: S) -> S {
         self.distance_term(distance) * self.angle_term(cosine)
     }
 
-    /// The part of [`response`](Self::response) that all sensors of a robot share [0..1].
+    /// Computes the factor of [`response`](Self::response) that is common to all sensors of a robot [0..1].
     #[inline(always)]
     pub fn distance_term<S: Scalar>(&self, distance: S) -> S {
         let slope = distance.constant(f64::from(self.per_metre));
@@ -103,7 +107,7 @@ impl InfraredModel {
         ((far - distance) * slope).clamp(distance.constant(0.0), distance.constant(1.0))
     }
 
-    /// The part of [`response`](Self::response) that depends on where the sensor looks [0..1].
+    /// Computes the factor of [`response`](Self::response) that depends on the direction of the sensor [0..1].
     #[inline(always)]
     pub fn angle_term<S: Scalar>(&self, cosine: S) -> S {
         let slope = cosine.constant(f64::from(self.per_cosine));
@@ -113,7 +117,7 @@ impl InfraredModel {
         s * s
     }
 
-    /// Returns the reading for all surfaces: the sum of their responses, clamped to [0, 1].
+    /// Converts the sum of the responses to a reading by clamping it to [0, 1].
     #[inline(always)]
     pub fn reading<S: Scalar>(sum: S) -> S {
         sum.clamp(sum.constant(0.0), sum.constant(1.0))

@@ -1,4 +1,4 @@
-//! Infrared sensors by rays, for any world that can cast them.
+//! Infrared sensors that are simulated by rays. They work in any world that supports ray casts.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -11,15 +11,15 @@ use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
 use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::{Beam, BeamFrame};
 
-/// Reads the nearness of the first surface in each cone of a ring of infrared sensors, one channel each in [0, 1]. It
-/// is 1 - distance / range: 1 at the hull, 0 where nothing is within the range.
+/// A ring of infrared sensors that measure the proximity of the nearest surface in a cone. Each sensor has one channel
+/// in [0, 1]. The reading is 1 - distance / range, which is 1 at the hull and 0 if nothing is within the range.
 ///
-/// The distance is that of the nearest hit of all rays of a cone, from the hull along the ray. So the number of rays
-/// changes how finely a cone is searched, and not the reading of a wall across it. A real sensor sums the light from
-/// the whole cone. [`SampledInfrared`](crate::sensors::infrared::SampledInfrared) is closer to that. The robot's own
-/// body is invisible.
+/// The distance is that of the nearest hit of all rays in the cone, measured along the ray from the hull. A larger
+/// number of rays detects smaller objects, but does not change the reading for a wall in front of the sensor. Note that
+/// a real sensor sums up the light of the whole cone, which is modeled more accurately by
+/// [`SampledInfrared`](crate::sensors::infrared::SampledInfrared). The robot itself is invisible.
 ///
-/// The beams are any list, in groups of one sensor each. Noise comes from the wrapper:
+/// The beams can be stored in any list and are grouped by sensor. Use a wrapper to add noise:
 ///
 /// ```
 /// # #[cfg(feature = "alloc")] {
@@ -46,12 +46,13 @@ pub struct InfraredRays<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
-    /// A ring of sensors of `rays` beams each at `height` [m] above the origin of `body`, which see as far as `range` [m]
-    /// from the hull.
+    /// Creates sensors with `rays` beams each. They are located at `height` [m] above the origin of `body` and have a
+    /// range of `range` [m] from the hull.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if the beams do not form whole sensors, [`ChannelError::Value`] if a beam's direction
-    /// is no unit vector, a number is not finite or `range` is not > 0.
+    /// Returns [`ChannelError::Groups`] if the number of beams is not a multiple of `rays`. Returns
+    /// [`ChannelError::Value`] if a direction is not a unit vector, if a number is not finite, or if `range` is not >
+    /// 0.
     pub fn new(body: B, beams: L, rays: usize, height: f32, range: f32) -> Result<Self, ChannelError> {
         groups("beams", beams.as_ref().len(), rays)?;
         beams.as_ref().iter().try_for_each(Beam::check)?;
@@ -60,10 +61,10 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
 }
 
 impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
-    /// Reads as [`Sensor::read`] does, without the rays that certainly hit nothing.
+    /// Reads the sensors like [`Sensor::read`], but skips rays that cannot hit anything.
     ///
-    /// `meets` receives the ends of a ray \[m\] and returns whether there may be something between them. A ray without
-    /// reads 0.
+    /// The closure `meets` is called with both ends of a ray \[m\] and returns true if there may be something between
+    /// them. Rays that are skipped read 0.
     #[inline]
     pub fn read_where<W>(&self, world: &W, out: &mut [f32], mut meets: impl FnMut([f32; 3], [f32; 3]) -> bool)
     where
@@ -84,10 +85,10 @@ impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
 
 #[cfg(feature = "alloc")]
 impl<B> InfraredRays<Vec<Beam>, B> {
-    /// The ring of a robot whose body this is, at half its height, in the order of [`crate::robots::InfraredRing::angles`].
+    /// Creates the sensors of a robot at half its height, in the order of [`crate::robots::InfraredRing::angles`].
     ///
     /// # Errors
-    /// The errors of [`InfraredRays::new`].
+    /// Returns the errors of [`InfraredRays::new`].
     pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let (ring, rays) = (&robot.infrared, robot.infrared.rays);
         let cone =

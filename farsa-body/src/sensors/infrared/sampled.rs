@@ -1,4 +1,4 @@
-//! Infrared sensors by measured tables, for worlds of the plane.
+//! Infrared sensors that are based on measured tables, for planar worlds.
 
 use alloc::vec::Vec;
 use core::borrow::Borrow;
@@ -10,7 +10,7 @@ use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::sensors::infrared::table::InfraredTable;
 use crate::sensors::stance::Stance;
 
-/// Which measured table answers for which surface.
+/// Measured tables for walls and for round bodies of different radii.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InfraredTables {
     walls: InfraredTable,
@@ -18,14 +18,15 @@ pub struct InfraredTables {
 }
 
 impl InfraredTables {
-    /// A table for walls, and tables for round bodies with the radii [m] at which they were measured.
+    /// Combines a table for walls with tables for round bodies. Each of the latter is given with the radius [m] at
+    /// which it was measured.
     ///
-    /// A body takes the table whose radius is nearest to its own, of two equally near the earlier. Without any, that of
-    /// the walls.
+    /// A body uses the table with the most similar radius, and the earlier one of two equally similar tables. If there
+    /// are no tables for bodies, the table of the walls is used.
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] if a table has another number of sensors than that of the walls, [`ChannelError::Value`]
-    /// if a radius is not a finite number > 0.
+    /// Returns [`ChannelError::Groups`] if the numbers of sensors differ, or [`ChannelError::Value`] if a radius is not
+    /// a finite number > 0.
     pub fn new(walls: InfraredTable, bodies: Vec<(f32, InfraredTable)>) -> Result<Self, ChannelError> {
         for (radius, table) in &bodies {
             positive("radius of a table", *radius)?;
@@ -37,17 +38,17 @@ impl InfraredTables {
         Ok(Self { walls, bodies })
     }
 
-    /// Number of sensors.
+    /// Returns the number of sensors.
     pub fn sensors(&self) -> usize {
         self.walls.sensors()
     }
 
-    /// The distance from the hull at which all responses end [m].
+    /// Returns the distance from the hull at which all responses end [m].
     pub fn range(&self) -> f32 {
         self.bodies.iter().map(|(_, table)| table.range()).fold(self.walls.range(), farsa_num::Scalar::max)
     }
 
-    /// The table for a round body of this radius [m], or with 0 for a wall.
+    /// Returns the table for a round body with the given radius [m]. A radius of 0 selects the table for walls.
     pub fn table(&self, radius: f32) -> &InfraredTable {
         let mut nearest = (f32::INFINITY, &self.walls);
         if radius > 0.0 {
@@ -62,15 +63,15 @@ impl InfraredTables {
     }
 }
 
-/// Reads a ring of infrared sensors from measured tables, one channel each in [0, 1].
+/// A ring of infrared sensors that is simulated with measured tables. Each sensor has one channel in [0, 1].
 ///
-/// Every wall and every other body adds the value of its table for the distance of its nearest point to the hull and
-/// for that point's bearing from the robot's center. The sum is cut at 1, and nothing hides anything. The nearest point
-/// of a round body is towards its center. That of a wall is the foot of the perpendicular, or the wall's end where that
-/// is nearer. The two walls of a corner both respond, each for its own nearest point.
+/// The tables provide the response to each wall and each other body. It depends on the distance between the hull and
+/// the nearest point of the object, and on the bearing of this point from the center of the robot. The responses are
+/// added and limited to 1, and objects do not hide each other. The nearest point of a wall is the foot of the
+/// perpendicular or the nearer end of the wall. In a corner, both walls respond separately.
 ///
-/// The tables are owned, borrowed, or shared by an `Rc` or `Arc`. Wrap it in [`crate::wrappers::Noisy`] for noise, as
-/// [`crate::sensors::infrared::InfraredRays`] shows.
+/// The tables can be owned, borrowed, or shared by an `Rc` or `Arc`. Wrap the sensor in [`crate::wrappers::Noisy`] to
+/// add noise. See [`crate::sensors::infrared::InfraredRays`] for an example.
 ///
 /// ```
 /// use farsa_body::ports::Sensor;
@@ -100,19 +101,20 @@ pub struct SampledInfrared<T, B = BodyId> {
 }
 
 impl<T: Borrow<InfraredTables>, B> SampledInfrared<T, B> {
-    /// All sensors of the tables, on the round hull of `radius` [m] of `body`.
+    /// Creates a ring with all sensors of the tables on the round hull of `body`, whose `radius` is given in meters.
     ///
     /// # Errors
-    /// [`ChannelError::Value`] if `radius` is not a finite number > 0.
+    /// Returns [`ChannelError::Value`] if `radius` is not a finite number > 0.
     pub fn new(body: B, radius: f32, tables: T) -> Result<Self, ChannelError> {
         let channels = tables.borrow().sensors();
         Ok(Self { body, radius: positive("radius", radius)?, tables, channels })
     }
 
-    /// Only the first sensors: of a Khepera's eight the first six are those in front.
+    /// Limits the ring to the first sensors. This is useful for the Khepera, where the first six of eight sensors are
+    /// at the front.
     ///
     /// # Errors
-    /// [`ChannelError::Selection`] if there are fewer sensors, [`ChannelError::Groups`] for 0.
+    /// Returns [`ChannelError::Selection`] if there are fewer sensors, or [`ChannelError::Groups`] if the number is 0.
     pub fn first(self, sensors: usize) -> Result<Self, ChannelError> {
         groups("sensors", sensors, 1)?;
         let channels = self.tables.borrow().sensors();

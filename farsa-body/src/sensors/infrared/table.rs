@@ -1,14 +1,13 @@
-//! Measured infrared sensors: tables of readings by distance and angle.
+//! Tables of infrared readings that were measured at different distances and angles.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// The readings of a robot's infrared sensors for one surface at sampled distances and angles, measured on a real
-/// robot.
+/// The readings of a real robot's infrared sensors for one surface, sampled at different distances and angles.
 ///
-/// Distances are from the robot's hull to the surface's nearest point, angles those of this point's bearing from the
-/// robot's center, counted clockwise from its heading.
+/// Distances are measured from the hull of the robot to the nearest point of the surface. Angles are the bearings of
+/// this point from the center of the robot, clockwise from its heading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InfraredTable {
     sensors: usize,
@@ -28,11 +27,11 @@ const MAX_READING: u16 = 1023;
 const MAX_READINGS: usize = 4096 * 8 * 180 * 20;
 
 impl InfraredTable {
-    /// Reads the text of one of FARSA's `.sam` files.
+    /// Parses the contents of a `.sam` file of FARSA.
     ///
-    /// A first line `sensors angles distances first step`, the last two in whole millimeters. For each distance a line
-    /// `TURN k`, k from 0, and for each angle a line of readings in 0..=1023, one a sensor. A last line `END`. Empty
-    /// lines do not count.
+    /// The first line contains `sensors angles distances first step`, where the last two values are integers in
+    /// millimeters. For each distance there is a line `TURN k`, starting with k = 0. It is followed by one line per
+    /// angle with a reading in 0..=1023 for each sensor. The last line is `END`. Empty lines are ignored.
     ///
     /// ```
     /// use farsa_body::sensors::infrared::InfraredTable;
@@ -47,7 +46,7 @@ impl InfraredTable {
     /// ```
     ///
     /// # Errors
-    /// The fault, with the number of its line.
+    /// Returns the first error and the number of its line.
     pub fn parse(text: &str) -> Result<Self, InfraredTableError> {
         let mut lines = Lines { lines: text.lines().enumerate(), last: 0 };
         let (line, header) = lines.next("the sizes `sensors angles distances first step`")?;
@@ -104,23 +103,23 @@ impl InfraredTable {
         }
     }
 
-    /// Number of sensors.
+    /// Returns the number of sensors.
     pub fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// The distance from the hull at which the response ends [m].
+    /// Returns the distance from the hull at which the response ends [m].
     pub fn range(&self) -> f32 {
         (self.first + self.step * self.distances as f32) / 1000.0
     }
 
-    /// Returns the readings for a surface at this `distance` from the hull [m] and this `bearing` [rad],
-    /// counter-clockwise from ahead. [sensors] in [0, 1).
+    /// Returns the readings of all sensors for a surface at the given distance from the hull [m] and the given bearing
+    /// [rad], counter-clockwise from straight ahead. The readings are in [0, 1).
     ///
-    /// The row is that of FARSA: the distance's number is trunc((distance - first) / step), 0 below the first, `None`
-    /// past the last. The angle's trunc(angle / 360 angles) of the clockwise angle in [0, 360) degrees. Readings are
-    /// divided by
-    /// 1024. `None` for NaN.
+    /// The row is chosen as in FARSA. The index of the distance is trunc((distance - first) / step). It is 0 below the
+    /// first distance, and the result is `None` after the last one. The index of the angle is trunc(angle / 360 angles)
+    /// for the clockwise angle in [0, 360) degrees. Readings are divided by 1024. The result is `None` if an argument
+    /// is NaN.
     pub fn response(&self, distance: f32, bearing: f32) -> Option<&[f32]> {
         const FULL: f32 = 2.0 * core::f32::consts::PI;
         let from_first = (1000.0 * distance - self.first) / self.step;
@@ -156,70 +155,70 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Why a text is no infrared table. Lines are counted from 1.
+/// The reason why a table of infrared readings cannot be parsed. Lines are counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InfraredTableError {
-    /// A size of the first line is no whole number, too small or beyond 65535.
+    /// A size in the first line is not an integer, too small or larger than 65535.
     Size {
-        /// Its line.
+        /// The number of the line.
         line: usize,
-        /// Which size.
+        /// The name of the size.
         field: &'static str,
-        /// The text of the file.
+        /// The text in the file.
         found: String,
     },
-    /// The first line announces more readings than follow.
+    /// The number of readings in the first line is larger than the file permits.
     TooLarge {
-        /// Its line.
+        /// The number of the line.
         line: usize,
-        /// The number of readings.
+        /// The announced number of readings.
         readings: u64,
     },
-    /// A line has too few or too many numbers.
+    /// A line contains too few or too many numbers.
     Width {
-        /// Its number.
+        /// The number of the line.
         line: usize,
-        /// The expected number.
+        /// The expected number of values.
         expected: usize,
-        /// The actual number.
+        /// The actual number of values.
         found: usize,
     },
-    /// A reading is no whole number from 0 to 1023.
+    /// A reading is not an integer from 0 to 1023.
     Reading {
-        /// Its line.
+        /// The number of the line.
         line: usize,
-        /// The text of the file.
+        /// The text in the file.
         found: String,
     },
-    /// The readings of a distance do not begin with their number, or there are more or fewer rows before it than angles.
+    /// The number of the next distance is missing. The preceding distance may also have too few or too many rows.
     Turn {
-        /// Its line.
+        /// The number of the line.
         line: usize,
-        /// The number that should follow `TURN`.
+        /// The number that is expected after `TURN`.
         expected: usize,
-        /// The text of the file.
+        /// The text in the file.
         found: String,
     },
-    /// The text ends too early.
+    /// The file ends too early.
     Truncated {
-        /// The line that is missing.
+        /// The number of the missing line.
         line: usize,
         /// The expected content.
         expected: &'static str,
     },
-    /// The readings are not followed by `END`.
+    /// There is no line `END` after the readings.
     End {
-        /// The line at which it is expected.
+        /// The number of the line where it is expected.
         line: usize,
-        /// The text of the file.
+        /// The text in the file.
         found: String,
     },
-    /// Something follows `END`.
+    /// There is additional text after `END`.
     Garbage {
-        /// Its line.
+        /// The number of the line.
         line: usize,
-        /// The text of the file.
+        /// The text in the file.
         found: String,
     },
 }

@@ -1,4 +1,4 @@
-//! The kit's checks of setting a world up.
+//! Checks for worlds that can be prepared for a new episode.
 
 use alloc::format;
 
@@ -11,13 +11,14 @@ use crate::testing::trace::{HOLD, Instant, parting, saved, trace};
 /// The tolerance between a reading and the placed value. A world may keep other coordinates.
 const NEAR: f32 = 1e-4;
 
-/// Checks what every world promises about being set up for a new episode, on worlds that `make` makes all alike.
+/// Checks the port [`Arrange`] of a world. The closure `make` must always create the same world.
 ///
-/// A cleared world has no trace of its past, and joints, floating and planar bodies are where they were placed. The
-/// ports report the same after [`Arrange::finish_placement`] as after a snapshot is restored.
+/// A world must not depend on its past after it was cleared. Joints, floating bodies and planar bodies must be where
+/// they were placed. After [`Arrange::finish_placement`], the ports must report the same values as after a snapshot was
+/// restored.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first promise that is violated.
 pub fn check_arrange<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,

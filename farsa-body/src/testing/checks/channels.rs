@@ -1,4 +1,4 @@
-//! The kit's checks of sensors and motors.
+//! Checks for sensors and motors.
 
 use alloc::{format, vec, vec::Vec};
 
@@ -9,13 +9,14 @@ use crate::testing::trace::saved;
 /// Number of values laid out beyond the channels, to see whether they are touched.
 const BEYOND: usize = 3;
 
-/// Checks what every sensor promises, in the state in which the world is.
+/// Checks a sensor in the current state of a world.
 ///
-/// It fills its channels with finite values and no value beyond, in a shorter slice the first, and after a reset reads
-/// the same bits again. Noise is no exception, because a reset rewinds it.
+/// The sensor must write finite values to all of its channels and must not write beyond them. If the slice is too
+/// short, it must write the first channels. After a reset, it must read identical bits. This also applies to noisy
+/// sensors, because a reset rewinds the noise.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first promise that is violated.
 pub fn check_sensor<W, S>(sensor: &mut S, world: &W) -> Result<(), ConformanceError>
 where
     W: ?Sized,
@@ -54,14 +55,14 @@ where
     ensure(sensor.channels() == channels, Promise::Channels, || format!("{channels}, then {}", sensor.channels()))
 }
 
-/// Checks what every motor promises, on worlds that `make` makes all alike.
+/// Checks a motor. The closure `make` must always create the same world.
 ///
-/// After a reset the same values give the same commands. Values beyond the channels are ignored, an empty slice
-/// commands nothing, and no value, NaN and infinity included, makes a command that is not finite. Commands are observed
-/// through the world's snapshot.
+/// After a reset, equal values must lead to equal commands. Values beyond the channels are ignored, and an empty slice
+/// does not change any command. Commands must be finite for all values, including NaN and infinity. The commands are
+/// observed through snapshots of the world.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first promise that is violated.
 pub fn check_motor<W, M>(motor: &mut M, make: impl Fn() -> W) -> Result<(), ConformanceError>
 where
     W: Actuated + Snapshot,

@@ -1,4 +1,4 @@
-//! The kit's check of forces from outside.
+//! Checks for worlds with external forces.
 
 use alloc::format;
 
@@ -7,14 +7,14 @@ use crate::testing::probe::Probe;
 use crate::testing::promise::{ConformanceError, Promise, ensure};
 use crate::testing::trace::{Instant, parting, saved, trace};
 
-/// Checks what every world with the port [`ExternalForces`] promises, on worlds that `make` makes all alike.
+/// Checks the port [`ExternalForces`] of a world. The closure `make` must always create the same world.
 ///
-/// A force on one of the bodies `pushed`, upwards and to the side, moves it that way, in the next step alone. Forces on
-/// one body add up. No force changes no bit, nor does one on a body that does not exist (`nobody`). A world that is
-/// restored has none.
+/// A force on one of the bodies in `pushed`, upwards and to the side, must accelerate the body in this direction during
+/// the next step only. Several forces on a body are added. A zero force and a force on the missing body `nobody` must
+/// not change any bit. A world that was restored has no pending forces.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first promise that is violated.
 pub fn check_external_forces<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,

@@ -1,4 +1,4 @@
-//! The kit's checks.
+//! The checks of the conformance kit.
 
 /// Setting a world up for a new episode.
 mod arrange;

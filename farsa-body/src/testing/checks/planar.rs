@@ -1,4 +1,4 @@
-//! The kit's checks of what a world of the plane shows.
+//! Checks for planar worlds.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -13,16 +13,18 @@ const LOOKS: usize = 256;
 /// The tolerance between two ways to the same point [m].
 const CLOSE: f32 = 1e-4;
 
-/// Checks what every world promises about what is near and in sight, at these places [m] and as far as `range` [m].
+/// Checks the port [`Sight`](crate::ports::Sight) at the given positions [m] with a range of `range` [m].
 ///
-/// Near surfaces are reported within their range, with the distance of their point, and again within twice the range.
-/// The first surface in a random direction is the nearest object there, reported as near and absent without its body. A
-/// near round body is visible or behind something nearer. Colors and signals are in [0, 1].
+/// Nearby surfaces must be within the range and have the distance of their point. They must also be reported for twice
+/// the range. The first surface in a random direction must be the nearest object, must be reported as nearby, and must
+/// disappear if its body is ignored. A nearby round body must be visible unless something is in front of it. Colors and
+/// signals must be in [0, 1].
 ///
-/// `bodies` are all bodies of the world. No place lies within a wall. Something must be near and something in sight.
+/// The argument `bodies` must contain all bodies of the world. The positions must not be inside a wall. At least one
+/// surface must be nearby, and at least one must be in sight.
 ///
 /// # Errors
-/// [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with what was wrong.
+/// Returns [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with a description of the problem.
 pub fn check_sight<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
 where
     W: Sight,
@@ -43,10 +45,11 @@ where
     ensure(seen > 0, Promise::Look, || format!("nothing in sight from any of {} places", places.len()))
 }
 
-/// Checks what every world of the plane promises: all of [`check_sight`], and what is underfoot and shining.
+/// Checks the port [`Planar`](crate::ports::Planar). This includes all checks of [`check_sight`] as well as the ground
+/// and the lamps.
 ///
 /// # Errors
-/// As [`check_sight`].
+/// Returns the same errors as [`check_sight`].
 pub fn check_planar<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
 where
     W: Planar,

@@ -1,4 +1,4 @@
-//! The kit's checks of ray casts.
+//! Checks for worlds with ray casts.
 
 use alloc::format;
 
@@ -10,12 +10,13 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 /// Number of rays cast from every origin.
 const RAYS: usize = 256;
 
-/// Checks what every world promises about rays, with many of `range` [m] in random directions from every origin [m].
+/// Checks the port [`Rays`](crate::ports::Rays) with many rays in random directions. They start at each of the given
+/// origins and have a length of `range` [m].
 ///
-/// `bodies` are all bodies of the world. Some of the rays must hit something.
+/// The argument `bodies` must contain all bodies of the world. At least one ray must hit something.
 ///
 /// # Errors
-/// [`Promise::Ray`] with what was wrong.
+/// Returns [`Promise::Ray`] with a description of the problem.
 pub fn check_rays<W>(world: &W, bodies: &[W::Body], origins: &[[f32; 3]], range: f32) -> Result<(), ConformanceError>
 where
     W: Rays,

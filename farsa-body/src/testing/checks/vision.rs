@@ -1,4 +1,4 @@
-//! The kit's checks of what eyes see.
+//! Checks for worlds with cameras.
 
 use alloc::{format, vec, vec::Vec};
 
@@ -11,16 +11,17 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 /// Number of rays of an eye.
 const RAYS: usize = 256;
 
-/// Checks what every world promises about eyes, with many rays of `range` [m] in random directions from every origin [m].
+/// Checks the port [`Vision`](crate::ports::Vision) with many rays in random directions. They start at each of the
+/// given origins and have a length of `range` [m].
 ///
-/// A hit is a body of the world within the range, with a color in [0, 1]. The ray alone hits it again, also within
-/// twice the range, but not within less than its distance and not without its body. Rays beyond the shorter slice have
-/// no result.
+/// A hit must be within the range, belong to a body of the world and have a color in [0, 1]. A single ray must produce
+/// the same hit, also for twice the range. It must not produce it if the range is shorter than the distance or if the
+/// body is ignored. Rays beyond the end of the shorter slice have no result.
 ///
-/// `bodies` are all bodies of the world. Some of the rays must hit a body.
+/// The argument `bodies` must contain all bodies of the world. At least one ray must hit a body.
 ///
 /// # Errors
-/// [`Promise::Vision`] with what was wrong.
+/// Returns [`Promise::Vision`] with a description of the problem.
 pub fn check_vision<W>(world: &W, bodies: &[W::Body], origins: &[[f32; 3]], range: f32) -> Result<(), ConformanceError>
 where
     W: Vision,

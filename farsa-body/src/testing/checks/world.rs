@@ -1,4 +1,4 @@
-//! The kit's checks of a world that steps.
+//! Checks for worlds that can be simulated step by step.
 
 use alloc::{format, string::String, vec, vec::Vec};
 
@@ -8,14 +8,15 @@ use crate::testing::probe::Probe;
 use crate::testing::promise::{ConformanceError, Promise, ensure};
 use crate::testing::trace::{HOLD, Instant, command, pairs, parting, saved, trace};
 
-/// Checks what every world promises, on worlds that `make` makes all alike.
+/// Checks a world while it is stepped. The closure `make` must always create the same world.
 ///
-/// The worlds are stepped under random commands within the probe's ranges. The same commands give the same bits,
-/// snapshots hold everything, commands hold and act, and the ports are consistent. In nine steps of ten the mean
-/// velocity over a step is as near to that of its ends as these are to each other, within [`Probe::slack`].
+/// The worlds are simulated with random commands within the ranges of the probe. Equal commands must lead to equal
+/// bits, snapshots must be complete, commands must have an effect and remain active, and all ports must be consistent.
+/// In nine of ten steps, the mean velocity must not deviate from the velocities at both ends by more than these differ
+/// from each other, with a tolerance of [`Probe::slack`].
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first promise that is violated.
 pub fn check_world<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,
