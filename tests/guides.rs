@@ -14,9 +14,8 @@ mod readers;
 const GUIDES: [&str; 4] = ["new-robot", "new-sensor", "new-fitness", "new-experiment"];
 
 /// The programs of the guides: guide, the reader's file, our file.
-const PROGRAMS: [[&str; 3]; 5] = [
+const PROGRAMS: [[&str; 3]; 4] = [
     ["new-robot", "src/main.rs", "new_robot.rs"],
-    ["new-robot", "src/bin/wheels.rs", "new_robot_wheels.rs"],
     ["new-sensor", "src/main.rs", "new_sensor.rs"],
     ["new-fitness", "src/main.rs", "new_fitness.rs"],
     ["new-experiment", "src/main.rs", "new_experiment.rs"],
@@ -403,7 +402,6 @@ fn follow(name: &str, builder: Builder) {
     fs::create_dir_all(&place).expect("an empty folder");
     // The reader has FARSA next to the project.
     let here = |text: &str| text.replace("../farsa", &root().display().to_string());
-    // With a second program `cargo run` alone would be ambiguous.
     let mut files: BTreeMap<String, String> = BTreeMap::new();
     let mut project: PathBuf = place.clone();
     let mut said = None;
