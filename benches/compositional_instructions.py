@@ -1,4 +1,4 @@
-"""The table of docs/results/compositional-instructions.md, and how the conditions compare, from counts of successes.
+"""A table of all runs, and how the conditions compare, from counts of successes.
 
     python benches/compositional_instructions.py docs/results/compositional-instructions.csv
 
