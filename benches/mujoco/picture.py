@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Draws the cost against the error of both engines' steps from the table of errors in docs/results/speed.md.
+"""Draws the cost against the error of both engines' steps from docs/results/speed-errors.csv.
 
-    picture.py SPEED.md PICTURE.svg"""
+    picture.py ERRORS.csv PICTURE.svg"""
 
+import csv
 import math
-import re
 import sys
 from pathlib import Path
 
@@ -22,16 +22,9 @@ LEFT, TOP, WIDTH, HEIGHT, GAP = 62, 74, 250, 300, 36
 
 def read(text):
     """For each phase and engine its steps: (step, error [deg], cost [us per 10 ms])."""
-    lines = text.splitlines()
-    start = next(i for i, line in enumerate(lines) if line.startswith("| phase | engine | 10 ms |"))
-    steps = re.findall(r"([\d.]+) ms", lines[start])
     found = {}
-    for line in lines[start + 2 :]:
-        if not line.startswith("|"):
-            break
-        phase, engine, *cells = [cell.strip() for cell in line.strip("|").split("|")]
-        pairs = [tuple(float(x) for x in cell.split(",")) for cell in cells[: len(steps)]]
-        found[phase, engine] = [(step, *pair) for step, pair in zip(steps, pairs)]
+    for phase, engine, step, error, cost in list(csv.reader(text.splitlines()))[1:]:
+        found.setdefault((phase, engine), []).append((step, float(error), float(cost)))
     return found
 
 
