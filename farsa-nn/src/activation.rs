@@ -1,4 +1,4 @@
-//! Activation functions.
+//! The activation functions of neurons.
 
 use core::fmt;
 use core::str::FromStr;
@@ -8,31 +8,32 @@ use farsa_num::{Scalar, logistic, tanh};
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// The activation function of a neuron. A slope or gain multiplies its argument.
+/// The activation function of a neuron. Its argument is multiplied by a slope or a gain.
 ///
-/// Every function is finite for finite numbers and never falls where its argument rises.
+/// All functions are monotonic, and they are finite for finite arguments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Activation {
-    /// `1/(1 + exp(-x))`, in [0, 1].
+    /// The logistic function `1/(1 + exp(-x))`, with values in [0, 1].
     #[default]
     Logistic,
-    /// The hyperbolic tangent, in [-1, 1].
+    /// The hyperbolic tangent, with values in [-1, 1].
     Tanh,
-    /// `x` itself.
+    /// The identity function.
     Linear,
-    /// 1 from zero on, else 0.
+    /// A step function, which is 1 for arguments >= 0 and 0 otherwise.
     Step,
-    /// `x` above zero, else 0.
+    /// A rectified function, which is `x` for arguments > 0 and 0 otherwise.
     Rectified,
 }
 
 impl Activation {
-    /// Every function, in the order of their declaration.
+    /// All functions in the order of their declaration.
     pub const ALL: [Self; 5] = [Self::Logistic, Self::Tanh, Self::Linear, Self::Step, Self::Rectified];
 
-    /// The name in configurations and logs: `logistic`, `tanh`, `linear`, `step` or `rectified`.
+    /// Returns the name that is used in configurations and logs. It is `logistic`, `tanh`, `linear`, `step` or
+    /// `rectified`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Logistic => "logistic",
@@ -43,7 +44,8 @@ impl Activation {
         }
     }
 
-    /// Evaluates the function at `x`. For a NaN the result is 0 (step, rectified) or NaN.
+    /// Evaluates the function at `x`. If `x` is NaN, the result is 0 for the step and rectified functions and NaN for
+    /// the others.
     ///
     /// ```
     /// use farsa_nn::Activation;
@@ -78,10 +80,10 @@ impl fmt::Display for Activation {
 impl FromStr for Activation {
     type Err = Error;
 
-    /// Finds the function of this name, ignoring case.
+    /// Parses the name of a function. The case of the letters is ignored.
     ///
     /// # Errors
-    /// [`Error::Name`] for an unknown name.
+    /// Returns [`Error::Name`] if the name is unknown.
     fn from_str(name: &str) -> Result<Self, Error> {
         Self::ALL
             .into_iter()

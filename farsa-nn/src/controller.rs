@@ -1,17 +1,18 @@
-//! The interface of the loop to controllers.
+//! The interface of all controllers.
 
-/// A map from sensor values to motor values, with or without memory, updated once per tick.
+/// A controller, which computes motor values from sensor values once per tick. It may have a memory.
 ///
-/// The numbers have no units. The body defines their meaning.
+/// The values have no units. Their meaning is defined by the body.
 ///
 /// # For implementors
-/// - Construction may fail, `step` may not. It returns no error, does not allocate, and panics on no input.
-/// - The same calls since the last `reset` give the same bits on every machine.
-/// - Use the shorter of two lengths. The weights of a missing input do not count, and a missing output is not computed. Extra
-///   values are neither read nor written. `debug_assert!` reports the fault.
+/// - The constructor may fail, but `step` must not return errors, allocate memory or panic.
+/// - Equal sequences of calls after a `reset` must produce equal bits on every machine.
+/// - If a slice has the wrong length, use the shorter length. The weights of missing inputs are ignored, and missing
+///   outputs are not computed. Additional values are neither read nor written. Use `debug_assert!` to report the error.
 ///
 /// # For callers
-/// Be generic over `C: Controller`, or take `&mut dyn Controller`. `&mut C` is a controller too.
+/// Write generic functions with a type `C: Controller`, or use `&mut dyn Controller`. Note that `&mut C` is a
+/// controller, too.
 ///
 /// ```
 /// use farsa_nn::{Controller, Perceptron};
@@ -29,17 +30,17 @@
 /// # }
 /// ```
 pub trait Controller {
-    /// Number of values that `step` reads.
+    /// Returns the number of values that `step` reads.
     fn inputs(&self) -> usize;
-    /// Number of values that `step` writes.
+    /// Returns the number of values that `step` writes.
     fn outputs(&self) -> usize;
-    /// Restores the state after construction.
+    /// Resets the controller to the state after its construction.
     fn reset(&mut self);
-    /// Advances by one tick from the sensor values `x` [`inputs`](Self::inputs) and overwrites the motor values `y`
-    /// [`outputs`](Self::outputs).
+    /// Advances the controller by one tick. It reads the sensor values `x` and overwrites the motor values `y`. The
+    /// lengths of the slices should be [`inputs`](Self::inputs) and [`outputs`](Self::outputs).
     ///
     /// # Panics
-    /// With debug assertions, when `x` or `y` has another length.
+    /// Panics if a slice has a different length and debug assertions are enabled.
     fn step(&mut self, x: &[f32], y: &mut [f32]);
 }
 

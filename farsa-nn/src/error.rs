@@ -1,68 +1,68 @@
-//! Errors of networks.
+//! The errors of networks.
 
 use core::fmt;
 
 use crate::fault::{LayoutFault, ParameterFault, Slice};
 
-/// An error of building a network, of changing its parameters, or of learning.
+/// An error that occurs when a network is created, when its parameters are changed, or during learning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A slice of the wrong length. Ask the layout for the right one.
+    /// A slice has the wrong length. The layout provides the right one.
     Length {
-        /// The slice.
+        /// The slice with the wrong length.
         slice: Slice,
-        /// Length that the layout needs.
+        /// The length that the layout requires.
         expected: usize,
-        /// Length of the slice.
+        /// The actual length of the slice.
         found: usize,
     },
-    /// A parameter that the network cannot use.
+    /// A parameter cannot be used by the network.
     Parameter {
-        /// Its index.
+        /// The index of the parameter.
         index: usize,
-        /// The fault.
+        /// The reason why it cannot be used.
         fault: ParameterFault,
     },
-    /// A sum of an integer network that could leave 32 bits. Smaller weights or fewer fraction bits help.
+    /// A sum of an integer network could exceed 32 bits. This can be avoided by smaller weights or fewer fraction bits.
     Sum {
-        /// The target: hidden neurons first, then outputs.
+        /// The target of the sum. Hidden neurons are counted first, followed by outputs.
         target: usize,
         /// The largest possible magnitude of the sum, in its units.
         largest: u64,
-        /// The largest magnitude allowed.
+        /// The largest magnitude that is allowed.
         limit: u64,
     },
-    /// A NaN or infinite state.
+    /// A state is NaN or infinite.
     State {
-        /// The number of its neuron.
+        /// The index of the neuron.
         index: usize,
     },
-    /// An invalid layout or setting.
+    /// The layout or a setting is invalid.
     Layout(LayoutFault),
-    /// A demonstration that is not a whole number of ticks.
+    /// The length of a demonstration is not a multiple of the number of values per tick.
     Demonstration {
-        /// Number of sensor values.
+        /// The number of sensor values.
         values: usize,
-        /// Sensors of the layout.
+        /// The number of sensors in the layout.
         sensors: usize,
-        /// Number of target motor values.
+        /// The number of target motor values.
         wanted: usize,
-        /// Outputs of the layout.
+        /// The number of outputs in the layout.
         outputs: usize,
     },
-    /// An unexpected line of a text.
+    /// A text contains an unexpected line.
     Text {
-        /// Its number, from 1.
+        /// The number of the line, starting at 1.
         line: usize,
-        /// The expected content.
+        /// A description of the expected content.
         expected: &'static str,
     },
-    /// An unknown name.
+    /// A name is unknown.
     Name {
-        /// The named thing.
+        /// The kind of thing that has this name.
         of: &'static str,
-        /// All valid names.
+        /// A list of all valid names.
         names: &'static str,
     },
 }

@@ -2,35 +2,36 @@
 
 use core::fmt;
 
-/// A slice whose length follows from the layout.
+/// A slice whose length is determined by the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slice {
-    /// The parameters.
+    /// The parameters of the network.
     Parameters,
-    /// The state.
+    /// The state of the network.
     State,
     /// The mirror images of inputs or neurons.
     MirrorImages,
 }
 
-/// A fault of one parameter.
+/// The reason why a parameter cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterFault {
-    /// NaN or an infinity.
+    /// The parameter is NaN or infinite.
     NotFinite,
-    /// A leak of this value, outside [0, 1].
+    /// The parameter is a leak with this value, which is outside [0, 1].
     Leak(f32),
-    /// A weight that is too large for an integer network, even without fraction bits. The value includes the slope.
+    /// The parameter is a weight that is too large for an integer network, even without fraction bits. The value
+    /// includes the slope.
     Weight(f64),
-    /// A time constant that is not above zero, or so short that the integrator diverges.
+    /// The parameter is a time constant that is not above zero, or for which the integrator diverges.
     TimeConstant {
-        /// Its value [s].
+        /// The value of the time constant [s].
         value: f32,
-        /// The smallest stable time constant [s], 0 if every one above zero is stable.
+        /// The smallest stable time constant [s], or 0 if all positive time constants are stable.
         least: f32,
     },
-    /// A parameter without a value, which evolution is to draw.
+    /// The parameter has no value, because it is drawn by the evolution.
     NoValue,
 }
 
@@ -50,57 +51,57 @@ impl fmt::Display for ParameterFault {
     }
 }
 
-/// A fault of a layout or of a setting next to it.
+/// The reason why a layout or a setting is invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LayoutFault {
-    /// A NaN or infinite slope of the logistic function.
+    /// The slope of the logistic function is NaN or infinite.
     Slope(f32),
-    /// A time step [s] that is not a finite number above zero.
+    /// The time step [s] is not a finite number above zero.
     TimeStep(f32),
-    /// Neurons that the layout does not have.
+    /// The layout does not have these neurons.
     Neurons {
-        /// The first of them.
+        /// The index of the first neuron.
         first: usize,
-        /// Their number.
+        /// The number of neurons in the range.
         count: usize,
-        /// Number of neurons in the layout.
+        /// The number of neurons in the layout.
         neurons: usize,
     },
-    /// A block over neurons that the layout does not have.
+    /// A block refers to neurons that do not exist in the layout.
     Block {
-        /// Index of the block.
+        /// The index of the block.
         index: usize,
-        /// The first of the neurons.
+        /// The index of the first neuron.
         first: usize,
-        /// Their number.
+        /// The number of neurons in the range.
         count: usize,
-        /// Number of neurons in the layout.
+        /// The number of neurons in the layout.
         neurons: usize,
     },
-    /// An invalid number of fraction bits of an integer network.
+    /// The number of fraction bits of an integer network is invalid.
     FractionBits {
-        /// The integers: inputs, weights or sums.
+        /// The kind of integers, which are inputs, weights or sums.
         of: &'static str,
-        /// The number of fraction bits.
+        /// The invalid number of fraction bits.
         found: u32,
         /// The smallest valid number.
         least: u32,
         /// The largest valid number.
         most: u32,
     },
-    /// A missing mirror image of an input or of a neuron, or one with another mirror image.
+    /// The mirror image of an input or a neuron does not exist or has a different mirror image.
     Mirror {
-        /// The number of the input or neuron.
+        /// The index of the input or neuron.
         index: usize,
-        /// Its mirror image.
+        /// The index of its mirror image.
         image: usize,
     },
-    /// Alike neurons that overlap with others, or whose mirror images are not alike.
+    /// A span of alike neurons overlaps with another one, or its mirror images are not alike.
     Alike {
-        /// The first of them.
+        /// The index of the first neuron.
         first: usize,
-        /// Their number.
+        /// The number of neurons in the span.
         count: usize,
     },
 }

@@ -1,7 +1,8 @@
-//! The inner loops: a dense layer and its logistic function, over the lanes of a [`Scalar`].
+//! The inner loops of dense layers and logistic functions, computed for the lanes of a [`Scalar`].
 //!
-//! Lanes are targets, which do not depend on each other. Each target adds its sources in a fixed order. So neither the width
-//! of the vectors, nor the number of vectors summed together, nor a target computed twice can change a bit.
+//! Each lane is a target, and targets do not depend on each other. Since each target adds its sources in a fixed order,
+//! the results do not depend on the width or the number of vectors. They are also identical if a target is computed
+//! twice.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, logistic};
@@ -86,8 +87,8 @@ pub(crate) struct Layer<'a, R = f32> {
     pub(crate) slope: R,
     /// The initial sums `[targets]`, or empty for zeros.
     pub(crate) biases: &'a [R],
-    /// Two pairs of sources and weights, added in this order. Weights are source-major `[sources x targets]`, and the shorter
-    /// of both lengths counts.
+    /// Two pairs of sources and weights, added in this order. Weights are source-major `[sources x targets]`, and the
+    /// shorter of both lengths counts.
     pub(crate) sources: [(&'a [R], &'a [R]); 2],
 }
 
@@ -171,8 +172,8 @@ impl Layer<'_> {
 }
 
 impl<R: Real> Layer<'_, R> {
-    /// Overwrites `y` [at most `targets`] with the sums and returns the last vector of them. A partial last vector is not
-    /// written. Returns `None` for less than one vector.
+    /// Overwrites `y` [at most `targets`] with the sums and returns the last vector of them. A partial last vector is
+    /// not written. Returns `None` for less than one vector.
     #[inline(always)]
     fn sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) -> Option<S> {
         let last = y.len().checked_sub(S::LANES)?;

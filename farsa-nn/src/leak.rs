@@ -1,4 +1,4 @@
-//! The three readings of a hidden neuron's leak.
+//! Three interpretations of the leak of a hidden neuron.
 
 use core::fmt;
 use core::str::FromStr;
@@ -10,30 +10,30 @@ use crate::name::same_letters;
 
 /// The formula for the activation `H(t)` of a hidden neuron with leak `d` [0..1] and response `y(t) = sigma(net(t))`.
 ///
-/// The source prints one equation and describes another, and its program used a third. So each reading has a name, and a run
-/// records the one it used.
+/// The source prints one equation but describes another, and its program used a third one. Therefore each
+/// interpretation has a name, which is recorded in every run.
 ///
 /// Source: `[Ferrauto2010]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Leak {
-    /// `H(t) = d*y(t) + (1-d)*H(t-1)`: the low-pass filter of the source's description.
+    /// The low-pass filter `H(t) = d*y(t) + (1-d)*H(t-1)`, which the source describes in words.
     // The source calls d the time constant of leaky-integrator neurons. The printed equation has no integrator.
     #[default]
     Filter,
-    /// `H(t) = d*y(t) + (1-d)*y(t-1)`: the equation as printed, a memory of one step.
+    /// The printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`, which has a memory of one step.
     TwoTap,
-    /// `H(t) = d*H(t-1) + (1-d)*y(t)`: the original program, where `d` weights the old value (and is `|p|/range` of a
-    /// gene `p`, clamped to [0, 1]).
+    /// The equation `H(t) = d*H(t-1) + (1-d)*y(t)` of the original program. Here `d` is the weight of the previous
+    /// value, which is computed from a gene `p` as `|p|/range` clamped to [0, 1].
     Evonet,
 }
 
 impl Leak {
-    /// Every reading, in the order of their declaration.
+    /// All interpretations in the order of their declaration.
     pub const ALL: [Self; 3] = [Self::Filter, Self::TwoTap, Self::Evonet];
 
-    /// The name in configurations and logs: `filter`, `two-tap` or `evonet`.
+    /// Returns the name that is used in configurations and logs. It is `filter`, `two-tap` or `evonet`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Filter => "filter",
@@ -42,11 +42,12 @@ impl Leak {
         }
     }
 
-    /// The time constant [s] of a neuron with leak `d` [0..1] that is updated every `time_step` [s].
+    /// Returns the time constant [s] of a neuron with leak `d` [0..1] that is updated every `time_step` [s].
     ///
-    /// A step keeps the share `1-d` or `d` of the old activation, which equals `exp(-dt/tau)`. Under a constant response the
-    /// neuron follows `tau da/dt = -a + y`. The result is 0 for a share of 0 and infinite for a share of 1. It is `None` for
-    /// [`Leak::TwoTap`], whose memory is one step, and for a `d` outside [0, 1].
+    /// In each step, the fraction `1-d` or `d` of the previous activation is kept, which corresponds to `exp(-dt/tau)`.
+    /// If the response is constant, the neuron follows `tau da/dt = -a + y`. The result is 0 if nothing is kept and
+    /// infinite if everything is kept. It is `None` for [`Leak::TwoTap`], whose memory is one step, and for values of
+    /// `d` outside [0, 1].
     ///
     /// ```
     /// use farsa_nn::Leak;
@@ -68,10 +69,10 @@ impl Leak {
         Some(if left < 1.0 { (f64::from(time_step) / -ln(left)) as f32 } else { f32::INFINITY })
     }
 
-    /// The leak [0..1] of a neuron with this time constant [s] that is updated every `time_step` [s]: the inverse of
-    /// [`time_constant`](Self::time_constant).
+    /// Returns the leak [0..1] of a neuron with the given time constant [s] that is updated every `time_step` [s]. This
+    /// is the inverse of [`time_constant`](Self::time_constant).
     ///
-    /// `None` for [`Leak::TwoTap`] and for a time constant below zero.
+    /// The result is `None` for [`Leak::TwoTap`] and for negative time constants.
     pub fn for_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {
         if time_constant.is_nan() || time_constant < 0.0 {
             return None;
@@ -85,8 +86,8 @@ impl Leak {
         }
     }
 
-    /// Computes activations from responses [both of the length of the leaks]. `previous` has the responses of the previous step
-    /// for [`Leak::TwoTap`].
+    /// Computes activations from responses [both of the length of the leaks]. `previous` has the responses of the
+    /// previous step for [`Leak::TwoTap`].
     #[inline]
     pub(crate) fn apply(self, responses: &[f32], leaks: &[f32], activations: &mut [f32], previous: &mut [f32]) {
         let neurons = activations.iter_mut().zip(responses).zip(leaks);
@@ -110,10 +111,10 @@ impl fmt::Display for Leak {
 impl FromStr for Leak {
     type Err = Error;
 
-    /// Finds the reading of this name, ignoring case and hyphens. `TwoTap` is `two-tap`.
+    /// Parses the name of an interpretation. Case and hyphens are ignored, so `TwoTap` is equivalent to `two-tap`.
     ///
     /// # Errors
-    /// [`Error::Name`] for an unknown name.
+    /// Returns [`Error::Name`] if the name is unknown.
     fn from_str(name: &str) -> Result<Self, Error> {
         Self::ALL
             .into_iter()

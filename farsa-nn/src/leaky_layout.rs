@@ -1,34 +1,35 @@
-//! The shape of a three-layer network and the order of its parameters.
+//! The layout of a network with three layers, which also defines the order of its parameters.
 
 use core::ops::Range;
 
-/// The kind of a parameter of a [`LeakyLayout`].
+/// The kind of a parameter in a [`LeakyLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum LeakyParameter {
-    /// `w_ji`: from sensor `j` to hidden neuron `i`.
+    /// The weight `w_ji` from sensor `j` to hidden neuron `i`.
     SensorWeight,
-    /// `r_ki`: from hidden neuron `k`, one step ago, to hidden neuron `i`.
+    /// The weight `r_ki` from hidden neuron `k` in the previous step to hidden neuron `i`.
     RecurrentWeight,
-    /// `w_ji`: from hidden neuron `j` to output `i`.
+    /// The weight `w_ji` from hidden neuron `j` to output `i`.
     OutputWeight,
-    /// `beta_i`: added to the net input of hidden neuron `i`.
+    /// The bias `beta_i`, which is added to the net input of hidden neuron `i`.
     Bias,
-    /// `d_i` [0..1]: the leak of hidden neuron `i` in the reading of a [`Leak`](crate::Leak).
+    /// The leak `d_i` of hidden neuron `i` [0..1], which is interpreted according to a [`Leak`](crate::Leak).
     Leak,
 }
 
 impl LeakyParameter {
-    /// Every kind, in the order of the parameters.
+    /// All kinds in the order of the parameters.
     pub const ALL: [Self; 5] = [Self::SensorWeight, Self::RecurrentWeight, Self::OutputWeight, Self::Bias, Self::Leak];
 }
 
-/// Numbers of sensors `n`, hidden neurons `h` and outputs `o` of a [`LeakyNetwork`](crate::LeakyNetwork), and the slope
-/// of its logistic function.
+/// The layout of a [`LeakyNetwork`](crate::LeakyNetwork), which consists of the numbers of sensors `n`, hidden neurons
+/// `h` and outputs `o`, and of the slope of its logistic function.
 ///
-/// The parameters are one slice, source-major: all targets of one source together.
+/// All parameters are stored in one slice. Weights are ordered by source, so the weights to all targets of a source are
+/// consecutive.
 ///
 /// | kind | count | at |
 /// |---|---|---|
@@ -38,7 +39,8 @@ impl LeakyParameter {
 /// | [`Bias`](LeakyParameter::Bias) | `h` | `n*h + h*h + h*o + i` |
 /// | [`Leak`](LeakyParameter::Leak) | `h` | `n*h + h*h + h*o + h + i` |
 ///
-/// Counts saturate. A layout too large for the machine has `usize::MAX` parameters, which no slice has.
+/// All counts saturate. If a layout is too large for the machine, it has `usize::MAX` parameters, which no slice can
+/// contain.
 ///
 /// Source: `[Ferrauto2010]` chapter 2, which has the totals 792 and 756 but not the order.
 ///
@@ -62,72 +64,72 @@ pub struct LeakyLayout {
     slope: f32,
 }
 
-/// The parameters of a [`LeakyLayout`] by kind, as returned by [`LeakyLayout::split`].
+/// The parameters of a [`LeakyLayout`], separated by kind. This is the result of [`LeakyLayout::split`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LeakyParts<'a> {
-    /// Weights from the sensors `[sensors x hidden]`.
+    /// The weights from the sensors `[sensors x hidden]`.
     pub sensor_weights: &'a [f32],
-    /// Weights from the hidden neurons one step ago `[hidden x hidden]`.
+    /// The weights from the hidden neurons in the previous step `[hidden x hidden]`.
     pub recurrent_weights: &'a [f32],
-    /// Weights to the outputs `[hidden x outputs]`.
+    /// The weights to the outputs `[hidden x outputs]`.
     pub output_weights: &'a [f32],
-    /// Biases of the hidden neurons `[hidden]`.
+    /// The biases of the hidden neurons.
     pub biases: &'a [f32],
-    /// Leaks of the hidden neurons `[hidden]`.
+    /// The leaks of the hidden neurons.
     pub leaks: &'a [f32],
 }
 
 impl LeakyLayout {
-    /// Default slope of the logistic function, 0.2 (`[Ferrauto2010]` chapter 2).
+    /// The default slope of the logistic function, which is 0.2 (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
-    /// Builds a layout with slope [`LeakyLayout::SLOPE`].
+    /// Creates a layout with the default slope [`LeakyLayout::SLOPE`].
     pub const fn new(sensors: usize, hidden: usize, outputs: usize) -> Self {
         Self { sensors, hidden, outputs, slope: Self::SLOPE }
     }
 
     /// Sets the slope of `sigma(x) = 1/(1 + exp(-slope*x))`.
     ///
-    /// [`LeakyNetwork::new`](crate::LeakyNetwork::new) checks that it is finite.
+    /// It is checked by [`LeakyNetwork::new`](crate::LeakyNetwork::new) and must be finite.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { slope, ..self }
     }
 
-    /// Number of sensors.
+    /// Returns the number of sensors.
     pub const fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// Number of hidden neurons.
+    /// Returns the number of hidden neurons.
     pub const fn hidden(&self) -> usize {
         self.hidden
     }
 
-    /// Number of outputs.
+    /// Returns the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Slope of the logistic function of hidden neurons and outputs.
+    /// Returns the slope of the logistic function, which is used for hidden neurons and outputs.
     pub const fn slope(&self) -> f32 {
         self.slope
     }
 
-    /// Number of parameters, `n*h + h*h + h*o + h + h`.
+    /// Returns the number of parameters, which is `n*h + h*h + h*o + h + h`.
     pub const fn parameter_count(&self) -> usize {
         self.range(LeakyParameter::Leak).end
     }
 
-    /// Length of the state, `3*h`.
+    /// Returns the length of the state, which is `3*h`.
     ///
-    /// The order is: activations `H(t)` `[hidden]`, responses `y(t)` `[hidden]` of [`Leak::TwoTap`](crate::Leak::TwoTap) (zeros
-    /// in the other readings), workspace of the sums `[hidden]`.
+    /// The state contains the activations `H(t)` `[hidden]`, the responses `y(t)` `[hidden]` and a workspace for sums
+    /// `[hidden]`. The responses are used by [`Leak::TwoTap`](crate::Leak::TwoTap) and are zero otherwise.
     pub const fn state_len(&self) -> usize {
         self.hidden.saturating_mul(3)
     }
 
-    /// The indices of the parameters of one kind.
+    /// Returns the indices of all parameters of a kind.
     pub const fn range(&self, kind: LeakyParameter) -> Range<usize> {
         let h = self.hidden;
         let recurrent = self.sensors.saturating_mul(h);
@@ -143,12 +145,12 @@ impl LeakyLayout {
         }
     }
 
-    /// The kind of the parameter at this index, `None` beyond the last.
+    /// Returns the kind of the parameter at the given index, or `None` if there is no such parameter.
     pub fn kind(&self, index: usize) -> Option<LeakyParameter> {
         LeakyParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// The kind of each parameter, in their order, for decoding a genome.
+    /// Returns an iterator over the kinds of all parameters. This is useful for decoding a genome.
     ///
     /// ```
     /// use farsa_nn::{LeakyLayout, LeakyParameter};
@@ -167,9 +169,9 @@ impl LeakyLayout {
         LeakyParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// Splits parameters [[`parameter_count`](Self::parameter_count)] by kind.
+    /// Separates parameters by kind. The length of the slice should be [`parameter_count`](Self::parameter_count).
     ///
-    /// A slice that is too short truncates the last kinds. Extra parameters are ignored.
+    /// If the slice is too short, the last kinds are truncated. Additional parameters are ignored.
     #[inline]
     pub fn split<'a>(&self, parameters: &'a [f32]) -> LeakyParts<'a> {
         let part = |kind| {

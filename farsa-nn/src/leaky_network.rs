@@ -8,9 +8,9 @@ use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::lesion::{Lesion, hold};
 use crate::network::{Data, Model, Network, check_parameters};
 
-/// A network of one recurrent hidden layer with leaks.
+/// A network with one recurrent hidden layer of leaky neurons.
 ///
-/// With sensors `I`, `sigma(x) = 1/(1 + exp(-slope*x))` and the selected reading of the [`Leak`]:
+/// With sensors `I`, `sigma(x) = 1/(1 + exp(-slope*x))` and the selected [`Leak`]:
 ///
 /// ```text
 /// y_i(t) = sigma( beta_i + sum_j w_ji I_j(t) + sum_k r_ki H_k(t-1) )
@@ -18,17 +18,15 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// O_i(t) = sigma( sum_j w_ji H_j(t) )
 /// ```
 ///
-/// `H(0)` and `y(0)` are zero in every reading.
+/// The initial values `H(0)` and `y(0)` are zero. Inputs must not be NaN or infinite. Otherwise they influence the
+/// state until [`reset`](crate::Controller::reset) is called.
 ///
-/// A NaN or infinite input is an error of the caller. Its effect on the state lasts until
-/// [`reset`](crate::Controller::reset).
+/// For lesions, hidden neurons are numbered first, followed by outputs. The value of a lesioned hidden neuron is set
+/// before and after the step, so its recurrent connections transmit this value, too.
 ///
-/// For lesions, hidden neurons are numbered first, then outputs. A held hidden neuron is held before and after the step, so
-/// its recurrent connections carry the held value too.
-///
-/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is the first summand, not the last, which changes the rounding
-/// only. The recurrent sum, which the source describes in words and confirms by its parameter counts, is explicit and reads
-/// `H(t-1)`. The initial state, which the source omits, is zero.
+/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is added first and not last, which only affects rounding.
+/// The recurrent sum, which the source describes in words and confirms by its parameter counts, is explicit and uses
+/// `H(t-1)`. The initial state is zero, since the source does not specify it.
 ///
 /// ```
 /// use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
@@ -47,7 +45,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// ```
 pub type LeakyNetwork<P, S> = Network<LeakyModel, P, S>;
 
-/// The layout of a [`LeakyNetwork`] and the reading of its leaks.
+/// The layout of a [`LeakyNetwork`], together with the interpretation of its leaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakyModel {
     pub(crate) layout: LeakyLayout,
@@ -55,28 +53,28 @@ pub struct LeakyModel {
 }
 
 impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<LeakyModel, P, S> {
-    /// Builds a network at rest from parameters [[`parameter_count`](LeakyLayout::parameter_count)] and a state
-    /// [[`state_len`](LeakyLayout::state_len)], which it sets to zero.
+    /// Creates a network with the given parameters and resets its state to zero. The slices must have the lengths
+    /// [`parameter_count`](LeakyLayout::parameter_count) and [`state_len`](LeakyLayout::state_len).
     ///
     /// # Errors
-    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`] if the slope is invalid, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(layout: LeakyLayout, leak: Leak, parameters: P, state: S) -> Result<Self, Error> {
         Self::at_rest(LeakyModel { layout, leak }, parameters, state)
     }
 }
 
 impl<P, S> Network<LeakyModel, P, S> {
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.model.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.model.leak
     }
 
-    /// The activations `H(t)` `[hidden]` in [0, 1].
+    /// Returns the activations `H(t)` of the hidden neurons, which are in [0, 1].
     pub fn hidden(&self) -> &[f32]
     where
         S: AsRef<[f32]>,

@@ -1,35 +1,37 @@
-//! Lesions: networks with held neurons.
+//! Lesions, which set the activations of neurons to constant values.
 
 use crate::controller::Controller;
 
-/// A neuron held at an activation, independent of its input.
+/// A lesion that sets the activation of a neuron to a constant value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lesion {
-    /// The neuron's number.
+    /// The index of the neuron.
     pub neuron: usize,
-    /// The held activation, 0 for silence.
+    /// The constant activation. A value of 0 silences the neuron.
     pub activation: f32,
 }
 
 impl Lesion {
-    /// A silent neuron.
+    /// Creates a lesion that silences a neuron.
     pub const fn new(neuron: usize) -> Self {
         Self { neuron, activation: 0.0 }
     }
 }
 
-/// A network whose neurons can be held.
+/// A network that supports lesions.
 ///
-/// Each kind of network documents the numbers of its neurons. To cut a link, set its weight to zero.
+/// Each kind of network documents how its neurons are numbered. To cut a link instead of a neuron, set its weight to
+/// zero.
 pub trait Ablatable: Controller {
-    /// Number of neurons that can be held.
+    /// Returns the number of neurons that can be lesioned.
     fn neurons(&self) -> usize;
-    /// Advances as [`Controller::step`] with these neurons held. Missing neurons are ignored.
+    /// Advances the network like [`Controller::step`], but applies the given lesions. Lesions of neurons that do not
+    /// exist are ignored.
     fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]);
 }
 
-/// A network with lesions, for studies of the roles of its neurons.
+/// A network with lesions. This is useful for studying the role of individual neurons.
 ///
 /// ```
 /// use farsa_nn::{Controller, Ctrnn, CtrnnLayout, Lesion, Lesioned};
@@ -55,22 +57,22 @@ pub struct Lesioned<'a, N> {
 }
 
 impl<'a, N: Ablatable> Lesioned<'a, N> {
-    /// Holds these neurons from the next step on.
+    /// Applies the given lesions to a network. They take effect in the next step.
     pub const fn new(network: N, lesions: &'a [Lesion]) -> Self {
         Self { network, lesions }
     }
 
-    /// Replaces the lesions from the next step on.
+    /// Replaces the lesions. The new ones take effect in the next step.
     pub const fn set_lesions(&mut self, lesions: &'a [Lesion]) {
         self.lesions = lesions;
     }
 
-    /// The network.
+    /// Returns a reference to the network.
     pub const fn network(&self) -> &N {
         &self.network
     }
 
-    /// Returns the network.
+    /// Removes the lesions and returns the network.
     pub fn into_network(self) -> N {
         self.network
     }

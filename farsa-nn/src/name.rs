@@ -1,4 +1,4 @@
-//! Comparison of names.
+//! Comparison of names without regard to case and hyphens.
 
 /// Compares two names, ignoring case and hyphens.
 pub(crate) fn same_letters(name: &str, other: &str) -> bool {

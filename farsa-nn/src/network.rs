@@ -1,4 +1,4 @@
-//! A network over parameters and a state that the caller provides.
+//! Networks whose parameters and state are provided by the caller.
 
 use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
@@ -9,28 +9,28 @@ use crate::fault::{ParameterFault, Slice};
 use crate::kernel::level;
 use crate::lesion::{Ablatable, Lesion};
 
-/// A kind of network: its layout and settings, without parameters and state.
+/// A kind of network, which consists of a layout and settings but does not contain parameters or a state.
 pub trait Model {
-    /// Number of inputs.
+    /// Returns the number of inputs.
     fn inputs(&self) -> usize;
-    /// Number of outputs.
+    /// Returns the number of outputs.
     fn outputs(&self) -> usize;
-    /// Number of neurons that a lesion can hold.
+    /// Returns the number of neurons that can be lesioned.
     fn neurons(&self) -> usize;
-    /// Length of the state.
+    /// Returns the length of the state.
     fn state_len(&self) -> usize;
-    /// Checks the layout, then the parameters. `value` decodes a stored parameter.
+    /// Checks the layout and the parameters. The closure `value` decodes a stored parameter.
     ///
     /// # Errors
-    /// The first fault.
+    /// Returns the first error that is found.
     fn check_model<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> f32 + Copy) -> Result<(), Error>;
-    /// Updates the part of the state that follows from the parameters.
+    /// Updates the part of the state that is computed from the parameters.
     fn prepare(&self, _parameters: &[f32], _state: &mut [f32]) {}
-    /// Advances by one tick with some neurons held.
+    /// Advances the network by one tick while some neurons are lesioned.
     fn step(&self, data: Data<'_>, lesions: &[Lesion], x: &[f32], y: &mut [f32]);
 }
 
-/// The data of a step next to inputs and outputs.
+/// The data of a step, in addition to the inputs and outputs.
 #[derive(Debug)]
 pub struct Data<'a> {
     pub(crate) parameters: &'a [f32],
@@ -38,11 +38,11 @@ pub struct Data<'a> {
     pub(crate) level: Level,
 }
 
-/// A network of some kind `M` over parameters `P` and a state `S`.
+/// A network of the kind `M` with parameters `P` and a state `S`.
 ///
-/// The parameters may be a `static` array, a borrowed slice or a `Vec`. The state may be an array, a mutable slice or a
-/// `Vec`. Use it by the names of its kinds: [`LeakyNetwork`](crate::LeakyNetwork), [`Perceptron`](crate::Perceptron),
-/// [`Ctrnn`](crate::Ctrnn) and [`BlockNetwork`](crate::block::BlockNetwork).
+/// The parameters can be a `static` array, a borrowed slice or a `Vec`. The state can be an array, a mutable slice or a
+/// `Vec`. Usually this type is used by the names of its kinds, which are [`LeakyNetwork`](crate::LeakyNetwork),
+/// [`Perceptron`](crate::Perceptron), [`Ctrnn`](crate::Ctrnn) and [`BlockNetwork`](crate::block::BlockNetwork).
 #[derive(Clone, Debug)]
 pub struct Network<M, P, S> {
     pub(crate) model: M,
@@ -61,10 +61,10 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
         Ok(network)
     }
 
-    /// Replaces the parameters and returns the old ones. The state is unchanged.
+    /// Replaces the parameters and returns the previous ones. The state is not changed.
     ///
     /// # Errors
-    /// [`Error::Length`] or [`Error::Parameter`]. Then the network is unchanged.
+    /// Returns [`Error::Length`] or [`Error::Parameter`]. In this case the network is unchanged.
     pub fn set_parameters(&mut self, parameters: P) -> Result<P, Error> {
         self.model.check_model(parameters.as_ref(), |p| p)?;
         let old = core::mem::replace(&mut self.parameters, parameters);
@@ -72,10 +72,10 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
         Ok(old)
     }
 
-    /// Copies parameters over those of the network. The state is unchanged.
+    /// Copies new parameters into the network. The state is not changed.
     ///
     /// # Errors
-    /// [`Error::Length`] or [`Error::Parameter`]. Then the network is unchanged.
+    /// Returns [`Error::Length`] or [`Error::Parameter`]. In this case the network is unchanged.
     pub fn copy_parameters(&mut self, parameters: &[f32]) -> Result<(), Error>
     where
         P: AsMut<[f32]>,
@@ -86,7 +86,7 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
         Ok(())
     }
 
-    /// The parameters.
+    /// Returns the parameters of the network.
     pub fn parameters(&self) -> &[f32] {
         self.parameters.as_ref()
     }
@@ -98,14 +98,15 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
 }
 
 impl<M, P, S> Network<M, P, S> {
-    /// The same network with other instructions. The results have the same bits.
+    /// Selects the instructions of the processor that are used. The results do not change.
     ///
-    /// The default is [`Instructions::detect`]. A processor without the chosen instructions uses its best ones.
+    /// The default is [`Instructions::detect`]. If the processor does not support the selected instructions, the best
+    /// available ones are used.
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }
 
-    /// Returns the parameters and the state.
+    /// Returns the parameters and the state of the network.
     pub fn into_parts(self) -> (P, S) {
         (self.parameters, self.state)
     }
@@ -145,7 +146,8 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for Network<M, P, S> 
     }
 }
 
-/// Checks the number of parameters, their finiteness, and the leaks, which begin at an index and end with the parameters.
+/// Checks the number of parameters, their finiteness, and the leaks, which begin at an index and end with the
+/// parameters.
 pub(crate) fn check_parameters<T: Copy>(
     count: usize,
     leaks: usize,

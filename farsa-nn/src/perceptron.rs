@@ -1,4 +1,4 @@
-//! A single layer of logistic units, for reflexes.
+//! A single layer of logistic units, which is sufficient for reflexes.
 
 use crate::error::Error;
 use crate::fault::LayoutFault;
@@ -6,14 +6,15 @@ use crate::kernel::Layer;
 use crate::lesion::{Lesion, hold};
 use crate::network::{Data, Model, Network, check_parameters};
 
-/// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
-/// `sigma(x) = 1/(1 + exp(-slope*x))`.
+/// A layer of logistic units without memory. The outputs are `O_i = sigma( beta_i + sum_j w_ji I_j )` with `sigma(x) =
+/// 1/(1 + exp(-slope*x))`.
 ///
-/// The parameters are source-major like those of a [`LeakyLayout`](crate::LeakyLayout): `w_ji` at `j*outputs + i`
-/// `[inputs x outputs]`, then `beta_i` `[outputs]`. Sums start at the bias and add the inputs in their order.
+/// As in a [`LeakyLayout`](crate::LeakyLayout), the parameters are ordered by source. The weight `w_ji` has the index
+/// `j*outputs + i`, and the biases `beta_i` follow after all weights. Sums start with the bias, and the inputs are
+/// added in their order.
 ///
-/// This is enough for wall following, phototaxis and the discrimination of cylinders by a wheeled robot. For lesions, the
-/// neurons are the outputs.
+/// Such a layer is sufficient for wall following, phototaxis and the discrimination of cylinders by a wheeled robot.
+/// For lesions, the neurons are the outputs.
 ///
 /// ```
 /// use farsa_nn::{Controller, Perceptron};
@@ -28,7 +29,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// ```
 pub type Perceptron<P> = Network<PerceptronModel, P, [f32; 0]>;
 
-/// The shape of a [`Perceptron`] and its slope.
+/// The shape of a [`Perceptron`], together with its slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerceptronModel {
     pub(crate) inputs: usize,
@@ -37,7 +38,7 @@ pub struct PerceptronModel {
 }
 
 impl Perceptron<()> {
-    /// Number of parameters, `inputs*outputs + outputs`. Saturates.
+    /// Returns the number of parameters, which is `inputs*outputs + outputs`. The count saturates.
     ///
     /// ```
     /// assert_eq!(farsa_nn::Perceptron::parameter_count(6, 2), 14);
@@ -48,17 +49,18 @@ impl Perceptron<()> {
 }
 
 impl<P: AsRef<[f32]>> Perceptron<P> {
-    /// Builds a layer from parameters [[`parameter_count`](Perceptron::parameter_count)].
+    /// Creates a layer with the given parameters. Their number must be
+    /// [`parameter_count`](Perceptron::parameter_count).
     ///
     /// # Errors
-    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`] if the slope is invalid, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(inputs: usize, outputs: usize, slope: f32, parameters: P) -> Result<Self, Error> {
         Self::at_rest(PerceptronModel { inputs, outputs, slope }, parameters, [])
     }
 }
 
 impl<P> Perceptron<P> {
-    /// The slope of the logistic function.
+    /// Returns the slope of the logistic function.
     pub const fn slope(&self) -> f32 {
         self.model.slope
     }

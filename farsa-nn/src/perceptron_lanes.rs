@@ -1,4 +1,4 @@
-//! Single layers in SIMD lanes, for the lanes of a batch of worlds.
+//! Single layers in SIMD lanes, which are used together with batches of worlds.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Instructions, Scalar, logistic};
@@ -9,10 +9,10 @@ use crate::kernel::level;
 use crate::network::check_parameters;
 use crate::perceptron::Perceptron;
 
-/// [`Perceptron`]s of one shape and slope that step together, each with its own parameters.
+/// Several [`Perceptron`]s with the same shape and slope but different parameters, which are computed together.
 ///
-/// All slices are `[values x lanes]`: one value of every lane, then the next value of every lane. Each lane has the bits of a
-/// single [`Perceptron`].
+/// All slices have the order `[values x lanes]`. The first value of all lanes is followed by the second value of all
+/// lanes. Each lane produces the same bits as a single [`Perceptron`].
 ///
 /// ```
 /// use farsa_nn::{Controller, Perceptron, PerceptronLanes};
@@ -39,10 +39,11 @@ pub struct PerceptronLanes<P> {
 }
 
 impl<P: AsRef<[f32]>> PerceptronLanes<P> {
-    /// Builds layers from parameters [[`parameter_count`](Perceptron::parameter_count) x lanes].
+    /// Creates layers with the given parameters. Their number must be [`parameter_count`](Perceptron::parameter_count)
+    /// x lanes.
     ///
     /// # Errors
-    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`] if the slope is invalid, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(inputs: usize, outputs: usize, slope: f32, lanes: usize, parameters: P) -> Result<Self, Error> {
         LayoutFault::check_slope(slope)?;
         let count = Perceptron::parameter_count(inputs, outputs).saturating_mul(lanes);
@@ -50,17 +51,18 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         Ok(Self { inputs, outputs, slope, lanes, parameters, level: level() })
     }
 
-    /// The same layers with other instructions. The results have the same bits.
+    /// Selects the instructions of the processor that are used. The results do not change.
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }
 
-    /// Number of layers.
+    /// Returns the number of layers.
     pub fn lanes(&self) -> usize {
         self.lanes
     }
 
-    /// Steps every layer from `x` [inputs x lanes] to `y` [outputs x lanes]. Does nothing if one of them is shorter.
+    /// Computes the outputs `y` [outputs x lanes] of all layers from the inputs `x` [inputs x lanes]. Does nothing if
+    /// one of the slices is too short.
     pub fn step(&self, x: &[f32], y: &mut [f32]) {
         let enough = x.len() >= self.inputs * self.lanes && y.len() >= self.outputs * self.lanes;
         debug_assert!(enough, "{} inputs and {} outputs of {} lanes", self.inputs, self.outputs, self.lanes);
@@ -120,12 +122,13 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
 }
 
 impl<P: AsRef<[f32]> + AsMut<[f32]>> PerceptronLanes<P> {
-    /// Sets the parameters of one layer [[`parameter_count`](Perceptron::parameter_count)], in the order of a [`Perceptron`].
+    /// Sets the parameters of one layer, in the order of a [`Perceptron`]. Their number must be
+    /// [`parameter_count`](Perceptron::parameter_count).
     ///
-    /// A lane beyond the last is an error of the caller and changes nothing.
+    /// The lane must exist. Otherwise the call has no effect.
     ///
     /// # Errors
-    /// [`Error::Length`] or [`Error::Parameter`]. Then nothing changes.
+    /// Returns [`Error::Length`] or [`Error::Parameter`]. In this case nothing is changed.
     pub fn set_lane(&mut self, lane: usize, parameters: &[f32]) -> Result<(), Error> {
         debug_assert!(lane < self.lanes, "lane {lane} of {}", self.lanes);
         let count = Perceptron::parameter_count(self.inputs, self.outputs);

@@ -1,8 +1,9 @@
-//! The sums of a layer of many targets, whose weights exceed the near caches.
+//! The sums of layers with many targets, whose weights do not fit into the near caches.
 //!
-//! The loops of narrow layers read a few columns of the weights, so each row is on another page. Here the sums are in `y`, and a
-//! few sources at a time are added to all of them. The weights are read sequentially, which the processor prefetches. Each target
-//! adds its sources in the same order, so both ways have the same bits.
+//! For narrow layers, the inner loops read a few columns of the weights, so each row is on a different page. For wide
+//! layers, the sums are stored in `y`, and a few sources at a time are added to all of them. The weights are then read
+//! sequentially and can be prefetched by the processor. Since each target adds its sources in the same order, both
+//! methods produce the same bits.
 
 use farsa_num::{Real, Scalar};
 
@@ -23,8 +24,8 @@ impl<R: Real> Layer<'_, R> {
         );
     }
 
-    /// Keeps the sums of the last vector separate until the end. It may overlap the previous vector, and shared sources must not
-    /// be added twice.
+    /// Keeps the sums of the last vector separate until the end. It may overlap the previous vector, and shared sources
+    /// must not be added twice.
     #[inline(always)]
     fn add_rows<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) {
         let Some(last) = y.len().checked_sub(S::LANES) else { return };

@@ -1,4 +1,4 @@
-//! Angles from their sines, cosines and tangents: one lane, in `f64`.
+//! Inverse trigonometric functions. They are computed in `f64` and do not use lanes.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -8,9 +8,11 @@ use crate::scalar::{Real, Scalar};
 /// The difference of pi / 2 and its nearest double.
 const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
 
-/// The angle \[rad\] of the point (x, y) from the x axis, in [-pi, pi], to within 1.5 units in the last place.
+/// Computes the angle between the x axis and the point (x, y), in radians. The result is in [-pi, pi] and accurate to
+/// 1.5 units in the last place.
 ///
-/// Signs of zero and infinities as in IEEE 754 section 9.2.1. NaN with a NaN. `f32` is computed in `f64` and rounded.
+/// The signs of zero and infinities are handled as in IEEE 754 section 9.2.1. If an argument is NaN, the result is NaN.
+/// For `f32`, the result is computed in `f64` and rounded.
 ///
 /// Source: own (one reduction by pi / 4, minimax polynomial on |tan| <= sqrt(2) - 1).
 ///
@@ -25,17 +27,21 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
     R::from_f64(atan2_f64(y.to_f64(), x.to_f64()))
 }
 
-/// The angle in [-pi/2, pi/2] \[rad\] with this sine, to within 1 unit in the last place. NaN outside [-1, 1].
+/// Computes the arcsine of `x`, in radians. The result is in [-pi/2, pi/2] and accurate to 1 unit in the last place. It
+/// is NaN if `x` is outside [-1, 1].
 ///
-/// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_asin.c` in outline. Deviation: own minimax polynomial.
+/// For `f32`, the result is computed in `f64` and rounded. Source: \[Fdlibm\] `e_asin.c` in outline. Deviation: own
+/// minimax polynomial.
 #[inline(always)]
 pub fn asin<R: Real>(x: R) -> R {
     R::from_f64(asin_f64(x.to_f64()))
 }
 
-/// The angle in [0, pi] \[rad\] with this cosine, to within 1 unit in the last place. NaN outside [-1, 1].
+/// Computes the arccosine of `x`, in radians. The result is in [0, pi] and accurate to 1 unit in the last place. It is
+/// NaN if `x` is outside [-1, 1].
 ///
-/// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_acos.c` in outline. Deviation: own minimax polynomial.
+/// For `f32`, the result is computed in `f64` and rounded. Source: \[Fdlibm\] `e_acos.c` in outline. Deviation: own
+/// minimax polynomial.
 #[inline(always)]
 pub fn acos<R: Real>(x: R) -> R {
     R::from_f64(acos_f64(x.to_f64()))
@@ -79,7 +85,8 @@ fn excess(z: f64) -> f64 {
         -0.020_086_293_575_054_714, 0.032_085_934_506_420_916)
 }
 
-/// The square root in two parts, the first with its lower half empty, so that twice its double can be subtracted exactly.
+/// The square root in two parts, the first with its lower half empty, so that twice its double can be subtracted
+/// exactly.
 fn root(z: f64) -> (f64, f64) {
     let s = crate::square_root::sqrt(z);
     let high = f64::from_bits(s.to_bits() & 0xFFFF_FFFF_0000_0000);

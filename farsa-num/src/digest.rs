@@ -1,20 +1,20 @@
-//! Fingerprints of numbers and bytes, to detect changes and damage. They do not protect against forgery.
+//! Checksums of numbers and bytes, which detect accidental changes. They do not protect against forgery.
 
-/// A 64-bit fingerprint of a sequence of values, for comparing runs bit for bit.
+/// A 64-bit hash of a sequence of values. It is used to check that two runs agree bit for bit.
 ///
-/// Source: FNV-1a, \[Fowler2019\], 64 bits. Deviation: numbers enter as their little-endian bytes, and every NaN
-/// as the same one, because processors differ in the bits they give it.
+/// Source: FNV-1a, \[Fowler2019\], 64 bits. Deviation: numbers are hashed as little-endian bytes. All NaNs are hashed
+/// like the same NaN, because processors produce different bits for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
 
 impl Digest {
-    /// The digest of nothing.
+    /// Creates the hash of an empty sequence.
     #[inline]
     pub const fn new() -> Self {
         Self(0xCBF2_9CE4_8422_2325)
     }
 
-    /// Adds bytes.
+    /// Adds a slice of bytes.
     #[inline]
     pub fn add_bytes(&mut self, bytes: &[u8]) {
         for &byte in bytes {
@@ -22,14 +22,14 @@ impl Digest {
         }
     }
 
-    /// Adds the bits of a number. -0.0 differs from 0.0.
+    /// Adds the bits of a number. Note that -0.0 and 0.0 are different.
     #[inline]
     pub fn add_f32(&mut self, x: f32) {
         let bits = if x.is_nan() { 0x7FC0_0000 } else { x.to_bits() };
         self.add_bytes(&bits.to_le_bytes());
     }
 
-    /// Adds the bits of every number in a slice.
+    /// Adds the bits of all numbers in a slice.
     #[inline]
     pub fn add_f32s(&mut self, xs: &[f32]) {
         for &x in xs {
@@ -37,14 +37,14 @@ impl Digest {
         }
     }
 
-    /// Adds the bits of a number. -0.0 differs from 0.0.
+    /// Adds the bits of a number. Note that -0.0 and 0.0 are different.
     #[inline]
     pub fn add_f64(&mut self, x: f64) {
         let bits = if x.is_nan() { 0x7FF8_0000_0000_0000 } else { x.to_bits() };
         self.add_bytes(&bits.to_le_bytes());
     }
 
-    /// Adds the bits of every number in a slice.
+    /// Adds the bits of all numbers in a slice.
     #[inline]
     pub fn add_f64s(&mut self, xs: &[f64]) {
         for &x in xs {
@@ -58,7 +58,7 @@ impl Digest {
         self.add_bytes(&x.to_le_bytes());
     }
 
-    /// The fingerprint of all that was added, in order.
+    /// Returns the hash of all values that were added.
     #[inline]
     pub const fn finish(&self) -> u64 {
         self.0
@@ -71,15 +71,16 @@ impl Default for Digest {
     }
 }
 
-/// The checksum of files and flash images: CRC-32 of IEEE 802.3.
+/// Computes the CRC-32 of IEEE 802.3, which is used as a checksum of files and flash images.
 ///
-/// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones. No deviation.
+/// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones. No
+/// deviation.
 #[inline]
 pub const fn crc32(bytes: &[u8]) -> u32 {
     Crc32::new().with(bytes).finish()
 }
 
-/// The [`crc32`] of bytes that arrive in parts.
+/// An incremental version of [`crc32`], for bytes that are not available at once.
 ///
 /// ```
 /// use farsa_num::{Crc32, crc32};
@@ -90,13 +91,13 @@ pub const fn crc32(bytes: &[u8]) -> u32 {
 pub struct Crc32(u32);
 
 impl Crc32 {
-    /// The checksum of no bytes.
+    /// Creates the checksum of an empty sequence.
     #[inline]
     pub const fn new() -> Self {
         Self(u32::MAX)
     }
 
-    /// Adds bytes.
+    /// Adds a slice of bytes.
     #[inline]
     #[must_use]
     pub const fn with(self, bytes: &[u8]) -> Self {
@@ -109,7 +110,7 @@ impl Crc32 {
         Self(crc)
     }
 
-    /// The checksum of the bytes so far. More may follow.
+    /// Returns the checksum of all bytes that were added. You can continue to add bytes afterwards.
     #[inline]
     pub const fn finish(self) -> u32 {
         !self.0

@@ -1,19 +1,21 @@
-//! The exponential function and the two squashing functions based on it.
+//! The exponential function, and two activation functions that are based on it.
 
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
 
-/// e to the power of `x`, to within 1 unit in the last place, subnormal results included.
+/// Computes the exponential function e^x. The result is accurate to 1 unit in the last place, even if it is subnormal.
 ///
-/// Infinity above ln of the largest number, 0 below ln of the smallest, NaN for NaN.
+/// If the result exceeds the largest number, it is infinity. If it is too small for any number, it is 0. The result is
+/// NaN if `x` is NaN.
 ///
 /// ```
 /// assert!((farsa_num::exp(1.0_f64) - core::f64::consts::E).abs() < 1e-15);
 /// assert_eq!([-104.0_f32, 89.0].map(farsa_num::exp), [0.0, f32::INFINITY]);
 /// ```
 ///
-/// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table. The polynomial
-/// is our minimax fit on |r| <= 0.347. 2^k is applied as two factors, so both stay within the normal exponents.
+/// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table is used.
+/// The polynomial is our minimax approximation on |r| <= 0.347. The factor 2^k is applied in two steps, so that both
+/// exponents stay within the normal range.
 #[inline(always)]
 pub fn exp<S: Scalar>(x: S) -> S {
     let double = S::Real::DIGITS > 24;
@@ -48,10 +50,10 @@ pub fn exp<S: Scalar>(x: S) -> S {
     p * half.exp2_integer() * (k - half).exp2_integer()
 }
 
-/// The logistic function 1 / (1 + e^-x), to within 2.5 units in the last place.
+/// Computes the logistic function 1 / (1 + e^-x). The result is accurate to 2.5 units in the last place.
 ///
-/// In [0, 1] for every number, NaN for NaN. In `f32` it never falls. Below -ln of the largest number, where it would be
-/// subnormal, it is 0.
+/// The result is always in [0, 1], or NaN if `x` is NaN. For `f32` the function is monotonic. If the result would be
+/// subnormal, it is 0 instead.
 ///
 /// ```
 /// use farsa_num::logistic;
@@ -66,9 +68,9 @@ pub fn logistic<S: Scalar>(x: S) -> S {
     one / (one + exp(-x))
 }
 
-/// The hyperbolic tangent, to within 1.5 units in the last place.
+/// Computes the hyperbolic tangent. The result is accurate to 1.5 units in the last place.
 ///
-/// In [-1, 1] for every number, exactly odd, NaN for NaN. tanh(-0.0) is 0.0.
+/// The result is always in [-1, 1], or NaN if `x` is NaN. The function is exactly odd, except that tanh(-0.0) is 0.0.
 ///
 /// Source: own minimax polynomial in x^2 for |x| < 0.5625, and 1 - 2 / (e^2x + 1) beyond.
 #[inline(always)]

@@ -1,38 +1,39 @@
-//! Instruction sets of lane code.
+//! The instruction sets that are available for lanes.
 
 use core::fmt;
 
 use fearless_simd::Level;
 
-/// An instruction set with vectors, or none.
+/// An instruction set for vectors.
 ///
-/// It changes the time of lane code, never its bits. This is a plain name. If the processor lacks the chosen set, lane code
-/// uses the best available one.
+/// The choice only affects the speed of lanes and never their results. If the processor does not support the selected
+/// set, the best available one is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Instructions {
-    /// No vectors: lanes are computed one after the other.
+    /// No vector instructions. Lanes are computed one after the other.
     Fallback,
-    /// SSE2, which every x86-64 processor has.
+    /// SSE2, which is supported by all x86-64 processors.
     Sse2,
-    /// SSE4.2 (x86-64-v2).
+    /// SSE4.2, which is part of x86-64-v2.
     Sse4_2,
-    /// AVX2 (x86-64-v3).
+    /// AVX2, which is part of x86-64-v3.
     Avx2,
-    /// AVX-512 as of Ice Lake.
+    /// AVX-512 in the version of Ice Lake.
     Avx512,
-    /// Neon of aarch64.
+    /// Neon on aarch64.
     Neon,
-    /// The vectors of WebAssembly.
+    /// The 128-bit vectors of WebAssembly.
     WasmSimd128,
 }
 
 impl Instructions {
-    /// Every instruction set, narrower before wider.
+    /// All instruction sets, ordered by the width of their vectors.
     pub const ALL: [Self; 7] =
         [Self::Fallback, Self::Sse2, Self::Sse4_2, Self::Avx2, Self::Avx512, Self::Neon, Self::WasmSimd128];
 
-    /// The best set of this processor with the feature `std`, else the set that the program is compiled for.
+    /// Returns the best instruction set of this processor if the feature `std` is enabled. Otherwise it returns the set
+    /// for which the program was compiled.
     ///
     /// ```
     /// use farsa_num::Instructions;
@@ -45,18 +46,19 @@ impl Instructions {
         Self::widest(best())
     }
 
-    /// The set that the program is compiled for.
+    /// Returns the instruction set for which the program was compiled.
     pub fn baseline() -> Self {
         Self::widest(Level::baseline())
     }
 
-    /// Every instruction set up to that of [`detect`](Self::detect), narrowest first.
+    /// Returns all instruction sets up to the result of [`detect`](Self::detect), in the order of their width.
     pub fn available() -> impl Iterator<Item = Self> {
         let best = best();
         Self::ALL.into_iter().filter(move |one| one.within(best).is_some())
     }
 
-    /// The name in configurations and logs: `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon` or `wasm-simd128`.
+    /// Returns the name that is used in configurations and logs. It is `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`,
+    /// `neon` or `wasm-simd128`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fallback => "fallback",
@@ -69,9 +71,9 @@ impl Instructions {
         }
     }
 
-    /// The level of `fearless_simd` for these instructions, or the best available one.
+    /// Returns the corresponding level of `fearless_simd`, or the best available one.
     ///
-    /// For `fearless_simd::dispatch!`. This function may change in a minor release.
+    /// It can be passed to `fearless_simd::dispatch!`. Note that this function may change in a minor release.
     #[doc(hidden)]
     pub fn level(self) -> Level {
         let best = best();

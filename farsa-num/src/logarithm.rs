@@ -3,12 +3,13 @@
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
 
-/// Natural logarithm, to within 1 unit in the last place.
+/// Computes the natural logarithm. The result is accurate to 1 unit in the last place.
 ///
-/// Negative infinity at zero, NaN below, infinity at infinity. `f32` is computed in `f64` and rounded.
+/// The result is negative infinity for zero, infinity for infinity, and NaN for negative arguments. For `f32`, it is
+/// computed in `f64` and rounded.
 ///
-/// Source: \[Tang1990\] in outline (x = 2^k m with m around 1, a series in (m - 1) / (m + 1)). Deviations: no table, own minimax
-/// polynomial.
+/// Source: \[Tang1990\] in outline (x = 2^k m with m around 1, a series in (m - 1) / (m + 1)). Deviations: no table,
+/// own minimax polynomial.
 #[inline(always)]
 pub fn ln<R: Real>(x: R) -> R {
     R::from_f64(ln_f64(x.to_f64()))

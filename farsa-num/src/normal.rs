@@ -1,4 +1,4 @@
-//! Rows of standard normal numbers, many at a time.
+//! Efficient generation of many standard normal numbers.
 
 use core::f64::consts::TAU;
 
@@ -71,7 +71,8 @@ fn philox_of_many<const N: usize>(counter: [u32; 4], key: [u32; 2]) -> [[u32; N]
     words
 }
 
-/// The number in [0, 1) of two words, the lower one first: the same as of their 53 highest bits, without a conversion of 64.
+/// The number in [0, 1) of two words, the lower one first: the same as of their 53 highest bits, without a conversion
+/// of 64.
 #[inline(always)]
 fn uniform(low: u32, high: u32) -> f64 {
     (f64::from(high) * 2_097_152.0 + f64::from(low >> 11)) * (1.0 / 9_007_199_254_740_992.0)

@@ -1,4 +1,4 @@
-//! The random generator: streams addressed by their purpose, independent of the order of draws.
+//! A random number generator with independent streams, which are addressed by their purpose.
 
 use fearless_simd::Level;
 
@@ -9,29 +9,30 @@ use crate::sin_cos::sin_cos;
 /// The shortest row that is computed with vectors: half of a batch.
 const LEAST: usize = PAIRS;
 
-/// The purpose of a stream. The number of each purpose is part of every recorded run and never changes.
+/// The purpose of a stream. Its number is part of every recorded run and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Domain {
-    /// Starting positions and other conditions of a trial.
+    /// The starting positions and other conditions of a trial.
     Start = 0,
-    /// Noise of sensors.
+    /// The noise of sensors.
     Sensor = 1,
-    /// Noise of motors.
+    /// The noise of motors.
     Motor = 2,
-    /// Genomes of the first generation.
+    /// The genomes of the first generation.
     InitialGenome = 3,
-    /// Choice of parents, mutation and crossover.
+    /// The selection of parents, mutation and crossover.
     Mutation = 4,
-    /// Initial states and noise of networks.
+    /// The initial states and the noise of networks.
     Network = 5,
-    /// Everything else that a program draws: the stream of [`Stream::from_seed`].
+    /// All other purposes. It is used by [`Stream::from_seed`].
     General = 6,
 }
 
-/// Four 32-bit random words from a counter and a key: Philox4x32-10.
+/// Computes four 32-bit random words from a counter and a key with the Philox4x32-10 algorithm.
 ///
-/// Source: \[Salmon2011\] section 3.3 with the constants of its `Random123` code. No deviation (the tests have the published answers).
+/// Source: \[Salmon2011\] section 3.3 with the constants of its `Random123` code. No deviation (the tests contain the
+/// published results).
 #[inline]
 pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     let [mut a, mut b, mut c, mut d] = counter;
@@ -46,12 +47,13 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     [a, b, c, d]
 }
 
-/// A stream of random numbers, determined by the seed of the run and by its purpose.
+/// A stream of random numbers that is determined by a seed and a purpose.
 ///
-/// Plain data of 44 bytes. A copy has the same position. Two streams that differ in any argument of [`Stream::new`] share
-/// no block. It repeats after 2^34 words.
+/// A stream is plain data of 44 bytes, and a copy continues at the same position. Two streams never share a block if
+/// any argument of [`Stream::new`] differs. A stream repeats after 2^34 words.
 ///
-/// The key is the two halves of the seed (low first). The counter is (block, domain << 24 | trial, individual, generation).
+/// The key consists of the two halves of the seed, with the lower half first. The counter is (block, domain << 24 |
+/// trial, individual, generation).
 ///
 /// ```
 /// use farsa_num::{Domain, Stream};
@@ -74,9 +76,10 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// The stream of a seed for one purpose, at its first word.
+    /// Creates the stream of a seed for one purpose. It starts at the first word.
     ///
-    /// `trial` counts to 2^24 - 1. Higher bits are dropped, and a debug build panics.
+    /// The largest value of `trial` is 2^24 - 1. Higher bits are ignored, and the function panics if debug assertions
+    /// are enabled.
     #[inline]
     pub const fn new(seed: u64, domain: Domain, trial: u32, individual: u32, generation: u32) -> Self {
         debug_assert!(trial < 1 << 24, "a trial's number has 24 bits");
@@ -89,9 +92,10 @@ impl Stream {
         }
     }
 
-    /// The stream of a seed for purposes outside a run, at its first word.
+    /// Creates a stream for purposes outside of a run. It starts at the first word.
     ///
-    /// It is `Stream::new(seed, Domain::General, 0, 0, 0)` and shares no block with the streams of a run of the same seed.
+    /// This is equivalent to `Stream::new(seed, Domain::General, 0, 0, 0)`. The stream does not share any block with
+    /// the streams of a run that uses the same seed.
     ///
     /// ```
     /// use farsa_num::Stream;
@@ -105,14 +109,14 @@ impl Stream {
         Self::new(seed, Domain::General, 0, 0, 0)
     }
 
-    /// Number of 32-bit words drawn so far, modulo 2^34.
+    /// Returns the number of 32-bit words that have been drawn, modulo 2^34.
     #[inline]
     pub fn position(&self) -> u64 {
         let words = 4 * u64::from(self.counter[0]) + u64::from(self.drawn);
         words.wrapping_sub(4) & 0x3_FFFF_FFFF
     }
 
-    /// Moves to the position after `position` words, modulo 2^34.
+    /// Moves the stream to a position, as if the given number of words modulo 2^34 had been drawn.
     #[inline]
     pub fn seek(&mut self, position: u64) {
         self.counter[0] = (position >> 2) as u32;
@@ -131,7 +135,7 @@ impl Stream {
         self.drawn = 0;
     }
 
-    /// The next word.
+    /// Draws a 32-bit word.
     #[inline]
     pub fn next_u32(&mut self) -> u32 {
         if self.drawn > 3 {
@@ -148,28 +152,29 @@ impl Stream {
         word
     }
 
-    /// The next two words, the first in the lower half.
+    /// Draws two words. The first one is the lower half of the result.
     #[inline]
     pub fn next_u64(&mut self) -> u64 {
         let low = u64::from(self.next_u32());
         u64::from(self.next_u32()) << 32 | low
     }
 
-    /// Uniform in [0, 1), a multiple of 2^-24. Draws one word.
+    /// Draws a uniformly distributed number in [0, 1). It is a multiple of 2^-24 and uses one word.
     #[inline]
     pub fn uniform(&mut self) -> f32 {
         (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Uniform in [0, 1), a multiple of 2^-53. Draws two words.
+    /// Draws a uniformly distributed number in [0, 1). It is a multiple of 2^-53 and uses two words.
     #[inline]
     pub fn uniform_f64(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform in [low, high). `low` if the interval is empty or a bound is NaN. Draws one word.
+    /// Draws a uniformly distributed number in [low, high) and uses one word. The result is `low` if the interval is
+    /// empty or if a bound is NaN.
     ///
-    /// `high - low` must not overflow, or the result is always the largest number below `high`.
+    /// Note that `high - low` must not overflow. Otherwise the result is always the largest number below `high`.
     #[inline]
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
         let x = low + (high - low) * self.uniform();
@@ -177,14 +182,15 @@ impl Stream {
         if low < high { if x < high { x } else { high.next_down() } } else { low }
     }
 
-    /// Uniform in [low, high), like [`Stream::range`]. Draws two words.
+    /// Draws a uniformly distributed number in [low, high), like [`Stream::range`]. It uses two words.
     #[inline]
     pub fn range_f64(&mut self, low: f64, high: f64) -> f64 {
         let x = low + (high - low) * self.uniform_f64();
         if low < high { if x < high { x } else { high.next_down() } } else { low }
     }
 
-    /// Uniform in 0..n without bias, and 0 for n = 0. Draws one word, rarely more.
+    /// Draws a uniformly distributed integer in 0..n without bias. The result is 0 if n is 0. In most cases it uses one
+    /// word.
     ///
     /// Source: \[Lemire2019\] algorithm 5. No deviation.
     #[inline]
@@ -200,15 +206,16 @@ impl Stream {
         (product >> 32) as u32
     }
 
-    /// A standard normal number: the first of [`Stream::normal_pair`]. Draws two words.
+    /// Draws a standard normal number, which is the first result of [`Stream::normal_pair`]. It uses two words.
     #[inline]
     pub fn normal(&mut self) -> f32 {
         self.normal_pair()[0]
     }
 
-    /// Two independent standard normal numbers, of magnitude below 6.67. Draws two words.
+    /// Draws two independent standard normal numbers, whose magnitudes are below 6.67. They use two words.
     ///
-    /// Source: \[Box1958\], computed in `f64` and rounded. Deviation: the radius takes its uniform in (0, 1].
+    /// Source: \[Box1958\], computed in `f64` and rounded. Deviation: the radius is computed from a uniform number in
+    /// (0, 1].
     #[inline]
     pub fn normal_pair(&mut self) -> [f32; 2] {
         const UNIT: f64 = 1.0 / 4_294_967_296.0;
@@ -219,9 +226,11 @@ impl Stream {
         [(radius * c) as f32, (radius * s) as f32]
     }
 
-    /// The same two numbers to the precision of `f64`, of magnitude below 8.58. Draws four words.
+    /// Draws two independent standard normal numbers in double precision, whose magnitudes are below 8.58. They use
+    /// four words.
     ///
-    /// Source: \[Box1958\]. Deviation: the radius takes its uniform in (0, 1], a multiple of 2^-53.
+    /// Source: \[Box1958\]. Deviation: the radius is computed from a uniform number in (0, 1], which is a multiple of
+    /// 2^-53.
     #[inline]
     pub fn normal_pair_f64(&mut self) -> [f64; 2] {
         // 1 - u of a uniform in [0, 1) is exact, and above 0.
@@ -232,10 +241,11 @@ impl Stream {
         [radius * c, radius * s]
     }
 
-    /// Fills a row with independent standard normal numbers, two of [`normal_pair_f64`](Self::normal_pair_f64) at a time. In an
-    /// odd row the last partner is unused.
+    /// Fills a slice with independent standard normal numbers, which are drawn in pairs by
+    /// [`normal_pair_f64`](Self::normal_pair_f64). If the length is odd, the last number is discarded.
     ///
-    /// Long rows use vector instructions of the processor (feature `std`, else of the program), with the same bits.
+    /// Long slices are computed with vector instructions. They are detected at run time if the feature `std` is
+    /// enabled, and do not change the results.
     pub fn fill_normal(&mut self, row: &mut [f64]) {
         let mut rest = row;
         let level = Level::try_detect().unwrap_or(Level::baseline());
@@ -260,12 +270,13 @@ impl Stream {
         }
     }
 
-    /// Number of failures before the next success, given ln(1 - p) of the probability p of a success. Draws two words.
+    /// Draws the number of failures before the next success, given ln(1 - p) for a success probability p. It uses two
+    /// words.
     ///
-    /// For skip sampling, which visits only the genes that mutate. `u64::MAX` if ln(1 - p) is not below 0 (p = 0, or NaN), and 0 for
-    /// negative infinity (p = 1).
+    /// This is useful for skip sampling, which only visits genes that mutate. The result is `u64::MAX` if ln(1 - p) is
+    /// not below 0 (p = 0 or NaN), and 0 if it is negative infinity (p = 1).
     ///
-    /// Source: inversion, \[Devroye1986\] chapter X.2. The uniform is in (0, 1], a multiple of 2^-53.
+    /// Source: inversion, \[Devroye1986\] chapter X.2. The uniform number is in (0, 1] and a multiple of 2^-53.
     #[inline]
     pub fn geometric(&mut self, log_one_minus_p: f64) -> u64 {
         let u = ((self.next_u64() >> 11) + 1) as f64 * (1.0 / 9_007_199_254_740_992.0);

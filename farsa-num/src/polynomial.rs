@@ -1,4 +1,4 @@
-//! Horner's rule, unrolled by the compiler's macro expander so that its order of operations is in the source.
+//! A macro for Horner's rule. Since it is unrolled at compile time, the order of operations is defined by the source.
 
 /// `c0 + x * (c1 + x * (c2 + ...))`, each constant rounded once to the lane's type.
 macro_rules! polynomial {

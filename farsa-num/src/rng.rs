@@ -1,4 +1,4 @@
-//! The stream as a generator of the `rand` ecosystem.
+//! Implementations of the traits of the `rand` ecosystem for streams.
 
 use core::convert::Infallible;
 
@@ -6,7 +6,8 @@ use rand_core::{SeedableRng, TryRng};
 
 use crate::philox::Stream;
 
-/// Words are those of [`Stream::next_u32`] and [`Stream::next_u64`]. Bytes are words in little endian, the last one truncated.
+/// Words are those of [`Stream::next_u32`] and [`Stream::next_u64`]. Bytes are words in little endian, the last one
+/// truncated.
 ///
 /// Not for cryptography.
 impl TryRng for Stream {
@@ -32,7 +33,8 @@ impl TryRng for Stream {
     }
 }
 
-/// The seed is that of the inherent [`Stream::from_seed`] as bytes in little endian, and `seed_from_u64` is that function.
+/// The seed is that of the inherent [`Stream::from_seed`] as bytes in little endian, and `seed_from_u64` is that
+/// function.
 impl SeedableRng for Stream {
     type Seed = [u8; 8];
 

@@ -1,34 +1,35 @@
-//! The scalar of all generic numerical code: one number, or the same number in several worlds.
+//! The scalar type of generic numerical code, which contains either a single number or one number per lane.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
-/// A truth value per lane, the result of a comparison of [`Scalar`]s.
+/// A truth value for each lane, which results from a comparison of [`Scalar`]s.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// Returns true if any lane is true.
+    /// Returns true if at least one lane is true.
     fn any(self) -> bool;
-    /// Returns true if every lane is true.
+    /// Returns true if all lanes are true.
     fn all(self) -> bool;
-    /// The truth value of one lane, false beyond the last.
+    /// Returns the truth value of one lane. It is false if the lane does not exist.
     fn lane(self, index: usize) -> bool;
 }
 
-/// The type of one lane of a [`Scalar`]: `f32` or `f64`.
+/// The type of a single lane of a [`Scalar`], which is `f32` or `f64`.
 pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Default + Send + Sync + 'static {
-    /// Binary digits of the significand: 24 for `f32`, 53 for `f64`.
+    /// The number of binary digits of the significand, which is 24 for `f32` and 53 for `f64`.
     const DIGITS: u32;
 
-    /// The nearest value of this type.
+    /// Converts a number to the nearest value of this type.
     fn from_f64(x: f64) -> Self;
-    /// The value in double precision, exact.
+    /// Converts the value to double precision, which is always exact.
     fn to_f64(self) -> f64;
 }
 
-/// Arithmetic on one value per lane, with the same bits in a lane as alone.
+/// Arithmetic on one or more lanes. The bits of a lane do not depend on the number of lanes.
 ///
-/// Implemented by `f32`, `f64` and, for SIMD, `fearless_simd::f32x8` and `f32x16`. Code over it has no `if` on a value. It
-/// compares to a [`Mask`] and selects. Every operation is one rounded IEEE operation per lane, never fused or approximated.
-/// Functions over it are `#[inline(always)]`, so they inherit the target features of the dispatch around them.
+/// This trait is implemented by `f32` and `f64`, and for SIMD by `fearless_simd::f32x8` and `f32x16`. Generic code must
+/// not use values in conditions. It computes a [`Mask`] by a comparison and selects between two results. Each operation
+/// is rounded once per lane as in IEEE 754 and is never fused or approximated. Functions that use this trait should be
+/// `#[inline(always)]`, so that they inherit the target features of the calling dispatch.
 ///
 /// ```
 /// use farsa_num::Scalar;
@@ -61,91 +62,92 @@ pub trait Scalar:
     + SubAssign
     + MulAssign
 {
-    /// The type of one lane.
+    /// The type of a single lane.
     type Real: Real;
     /// The result of a comparison.
     type Mask: Mask;
-    /// The proof that the processor has the instructions, `()` for one lane.
+    /// A token that proves that the processor supports the instructions. It is `()` for a single lane.
     type Simd: Copy;
-    /// Number of lanes.
+    /// The number of lanes.
     const LANES: usize;
 
-    /// The same value in every lane.
+    /// Creates a value in which all lanes contain the same number.
     fn splat(simd: Self::Simd, x: Self::Real) -> Self;
-    /// The first [`LANES`](Self::LANES) values of a slice, one per lane.
+    /// Loads the first [`LANES`](Self::LANES) numbers of a slice.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// Panics if the slice is too short.
     fn load(simd: Self::Simd, from: &[Self::Real]) -> Self;
-    /// Writes the lanes over the first [`LANES`](Self::LANES) values of a slice.
+    /// Writes all lanes to the first [`LANES`](Self::LANES) elements of a slice.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// Panics if the slice is too short.
     fn store(self, to: &mut [Self::Real]);
-    /// The token this value was made with.
+    /// Returns the token with which the value was created.
     fn simd(self) -> Self::Simd;
-    /// One lane's value.
+    /// Returns the number in one lane.
     ///
     /// # Panics
-    /// If `index >= LANES`.
+    /// Panics if `index >= LANES`.
     fn lane(self, index: usize) -> Self::Real;
-    /// Replaces one lane's value.
+    /// Replaces the number in one lane.
     ///
     /// # Panics
-    /// If `index >= LANES`.
+    /// Panics if `index >= LANES`.
     fn set_lane(&mut self, index: usize, x: Self::Real);
-    /// Calls a function compiled for the instructions that the token proves.
+    /// Calls a function that is compiled for the instructions of the token.
     ///
-    /// A large piece of lane code becomes one function this way, compiled once and not in each caller. The closure must be
-    /// `#[inline(always)]` to inherit the instructions.
+    /// This is useful for large pieces of code, which are then compiled only once and not in every caller. The closure
+    /// must be `#[inline(always)]` to inherit the instructions.
     fn vectorize<T>(simd: Self::Simd, work: impl FnOnce() -> T) -> T;
 
-    /// Square root, correctly rounded. NaN below zero.
+    /// Computes the square root, which is correctly rounded. It is NaN for negative numbers.
     fn sqrt(self) -> Self;
-    /// Clears the sign.
+    /// Computes the absolute value by clearing the sign.
     fn abs(self) -> Self;
-    /// `self < other`, false with a NaN.
+    /// Tests if `self < other`. The result is false if one of them is NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`, false with a NaN.
+    /// Tests if `self <= other`. The result is false if one of them is NaN.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self > other`, false with a NaN.
+    /// Tests if `self > other`. The result is false if one of them is NaN.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
-    /// `self >= other`, false with a NaN.
+    /// Tests if `self >= other`. The result is false if one of them is NaN.
     #[inline(always)]
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
     }
-    /// `if_true` where the mask is true, else `if_false`.
+    /// Selects `if_true` in lanes where the mask is true, and `if_false` in all other lanes.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// The nearest integer, ties to even, for magnitudes below 2^22 (`f32`) or 2^51 (`f64`).
+    /// Rounds to the nearest integer, with ties to even. The magnitude must be below 2^22 (`f32`) or 2^51 (`f64`).
     fn round_small(self) -> Self;
-    /// 2 to the power of an integer-valued number within the normal exponents [-126, 127] or [-1022, 1023]. Unspecified beyond.
+    /// Computes 2 to the power of an integer. The exponent must be within [-126, 127] (`f32`) or [-1022, 1023] (`f64`).
+    /// Otherwise the result is unspecified.
     fn exp2_integer(self) -> Self;
 
-    /// A constant in every lane, rounded once to the lane's type.
+    /// Returns a constant in all lanes. It is rounded once to the type of a lane.
     #[inline(always)]
     fn constant(self, x: f64) -> Self {
         Self::splat(self.simd(), Self::Real::from_f64(x))
     }
-    /// A lane-type value in every lane.
+    /// Returns a number of the lane type in all lanes.
     #[inline(always)]
     fn like(self, x: Self::Real) -> Self {
         Self::splat(self.simd(), x)
     }
-    /// The smaller one, or `other` where `self` is NaN.
+    /// Returns the smaller number, or `other` in lanes where `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// The larger one, or `other` where `self` is NaN.
+    /// Returns the larger number, or `other` in lanes where `self` is NaN.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.gt(other), self, other)
     }
-    /// `self` clamped to [low, high], or `low` where `self` is NaN.
+    /// Clamps the value to [low, high]. The result is `low` in lanes where `self` is NaN.
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)

@@ -1,12 +1,13 @@
-//! Sine and cosine.
+//! The sine and cosine functions.
 
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
 
-/// Sine and cosine of `x` \[rad\], each to within 1.5 units in the last place for |x| <= 10000.
+/// Computes the sine and the cosine of `x`, which is given in radians. Both are accurate to 1.5 units in the last place
+/// if |x| <= 10000.
 ///
-/// Beyond, the error grows to about the distance between neighboring arguments. The results are NaN above 2^22 (`f32`) or 2^45
-/// (`f64`), for infinities and for NaN. sin(-0.0) is 0.0.
+/// For larger arguments, the error grows to about the distance between neighboring arguments. The results are NaN for
+/// arguments above 2^22 (`f32`) or 2^45 (`f64`), for infinities and for NaN. Note that sin(-0.0) is 0.0.
 ///
 /// ```
 /// let (sine, cosine) = farsa_num::sin_cos(core::f64::consts::FRAC_PI_6);

@@ -1,4 +1,4 @@
-//! Square roots, correctly rounded everywhere and so the same bits.
+//! Square roots that are correctly rounded and therefore identical on all machines.
 
 /// The processor's own instruction where libm has it.
 #[cfg(not(all(target_arch = "wasm32", feature = "std")))]

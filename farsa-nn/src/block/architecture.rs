@@ -1,12 +1,13 @@
-//! Common architectures as blocks.
+//! Common network architectures.
 
 use crate::activation::Activation;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
-/// The connections of inputs, hidden neurons and outputs: a named architecture with optional changes.
+/// A named architecture that defines the connections between inputs, hidden neurons and outputs. It can be modified by
+/// the methods of this type.
 ///
-/// By default neurons are logistic with slope 1 and biases, without gains and leaks.
+/// By default, neurons are logistic with a slope of 1. They have biases, but no gains and leaks.
 ///
 /// ```
 /// use farsa_nn::block::{Architecture, BlockPlan};
@@ -43,7 +44,8 @@ pub struct BlockPlan {
 }
 
 impl Architecture {
-    /// A network of inputs, hidden neurons and outputs without memory. Without hidden neurons, inputs connect to outputs.
+    /// Creates a feed-forward network without memory. If there are no hidden neurons, the inputs are connected to the
+    /// outputs.
     pub const fn feed_forward(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self {
             inputs,
@@ -58,35 +60,38 @@ impl Architecture {
         }
     }
 
-    /// A feed-forward network with connections among hidden neurons from the previous step (`[Elman1990]`).
+    /// Creates an Elman network. This is a feed-forward network with additional connections among the hidden neurons,
+    /// which use the activations of the previous step (`[Elman1990]`).
     pub const fn elman(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { among_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// A feed-forward network with connections from the outputs of the previous step to hidden neurons (`[Jordan1986]`).
+    /// Creates a Jordan network. This is a feed-forward network with additional connections from the outputs of the
+    /// previous step to the hidden neurons (`[Jordan1986]`).
     ///
-    /// Deviation: the context of the source also keeps a share of its old value. Here it is the outputs only.
+    /// Deviation: the context units of the source also keep a share of their previous value. Here they contain only the
+    /// outputs.
     pub const fn jordan(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { outputs_to_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// A single layer of hidden neurons and outputs, with connections from the inputs and, from the previous step, from the whole
-    /// layer.
+    /// Creates a fully recurrent network. It has a single layer of hidden neurons and outputs, which receives the
+    /// inputs and the activations of the layer in the previous step.
     pub const fn fully_recurrent(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { together: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// Adds connections from inputs to outputs.
+    /// Adds direct connections from the inputs to the outputs.
     pub const fn with_inputs_to_outputs(self) -> Self {
         Self { inputs_to_outputs: true, ..self }
     }
 
-    /// Adds connections among outputs from the previous step.
+    /// Adds connections among the outputs, which use the activations of the previous step.
     pub const fn with_recurrent_outputs(self) -> Self {
         Self { among_outputs: true, ..self }
     }
 
-    /// Sets the functions of hidden neurons and outputs.
+    /// Sets the activation functions of the hidden neurons and of the outputs.
     pub const fn with_activations(self, hidden: Activation, outputs: Activation) -> Self {
         Self {
             hidden: Group { activation: hidden, ..self.hidden },
@@ -95,7 +100,7 @@ impl Architecture {
         }
     }
 
-    /// Sets the slope of hidden neurons and outputs.
+    /// Sets the slope of the hidden neurons and of the outputs.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { hidden: self.hidden.with_slope(slope), outputs: self.outputs.with_slope(slope), ..self }
     }
@@ -125,12 +130,12 @@ impl Architecture {
         Self { hidden: Group { bias: false, ..self.hidden }, ..self }
     }
 
-    /// Delays the inputs by a number of steps.
+    /// Delays the inputs by the given number of steps.
     pub const fn with_input_delay(self, steps: usize) -> Self {
         Self { delay: steps, ..self }
     }
 
-    /// Builds groups and blocks, in the order of the original.
+    /// Creates the groups and blocks of the network, in the same order as the original program.
     pub const fn plan(&self) -> BlockPlan {
         let inputs = Span::new(0, self.inputs);
         let hidden = Span::new(inputs.end(), self.hidden.neurons);
@@ -168,7 +173,7 @@ impl BlockPlan {
     /// The largest number of blocks of an architecture.
     const MOST: usize = 9;
 
-    /// The layout over these groups and blocks.
+    /// Returns a layout that borrows the groups and blocks.
     pub const fn layout(&self) -> BlockLayout<'_> {
         BlockLayout::new(self.inputs, self.outputs, &self.groups, self.blocks.split_at(self.count).0)
     }

@@ -1,117 +1,120 @@
-//! The description of a network of blocks: groups of alike neurons, and blocks in the order of their evaluation.
+//! The description of a block network. It consists of groups of similar neurons and a sequence of blocks.
 
 use crate::activation::Activation;
 
-/// Neurons `first` to `first + count - 1`.
+/// A range of consecutive neurons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Span {
-    /// The first neuron.
+    /// The index of the first neuron.
     pub first: usize,
-    /// Number of neurons.
+    /// The number of neurons.
     pub count: usize,
 }
 
 impl Span {
-    /// `count` neurons from `first` on.
+    /// Creates a span of `count` neurons that starts at `first`.
     pub const fn new(first: usize, count: usize) -> Self {
         Self { first, count }
     }
 
-    /// The end of the span, one after the last neuron. Saturates.
+    /// Returns the index after the last neuron. The addition saturates.
     pub const fn end(self) -> usize {
         self.first.saturating_add(self.count)
     }
 
-    /// Returns true if the span contains a neuron.
+    /// Returns true if the neuron belongs to the span.
     pub const fn contains(self, neuron: usize) -> bool {
         self.first <= neuron && neuron < self.end()
     }
 }
 
-/// A range of alike neurons. They have one activation function, and all or none of them have a bias, a gain and a leak.
+/// A group of similar neurons. They have the same activation function, and either all or none of them have a bias, a
+/// gain or a leak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Group {
-    /// Number of neurons.
+    /// The number of neurons in the group.
     pub neurons: usize,
-    /// Their function. The response of an input is the input itself.
+    /// The activation function. It is not applied to inputs.
     pub activation: Activation,
-    /// The factor of the net input.
+    /// The factor by which the net input is multiplied.
     pub slope: f32,
-    /// Gives each a bias as the start of its net input, else 0.
+    /// If true, each neuron has a bias, which is the initial value of its net input. Otherwise it is 0.
     pub bias: bool,
-    /// Gives each a gain as the factor of its activation at all targets, else 1.
+    /// If true, each neuron has a gain that multiplies its activation at all targets. Otherwise it is 1.
     pub gain: bool,
-    /// Gives each a leak in the reading of a [`Leak`](crate::Leak). Without it the activation is the response.
+    /// If true, each neuron has a leak, which is interpreted according to the selected [`Leak`](crate::Leak). Otherwise
+    /// the activation equals the response.
     pub leak: bool,
 }
 
 impl Group {
-    /// Builds a group of this function with slope 1, without biases, gains and leaks.
+    /// Creates a group with a slope of 1 and without biases, gains and leaks.
     pub const fn new(neurons: usize, activation: Activation) -> Self {
         Self { neurons, activation, slope: 1.0, bias: false, gain: false, leak: false }
     }
 
-    /// Sets the slope.
+    /// Sets the slope of the group.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { slope, ..self }
     }
 
-    /// Adds biases.
+    /// Adds biases to the neurons.
     pub const fn with_biases(self) -> Self {
         Self { bias: true, ..self }
     }
 
-    /// Adds gains.
+    /// Adds gains to the neurons.
     pub const fn with_gains(self) -> Self {
         Self { gain: true, ..self }
     }
 
-    /// Adds leaks.
+    /// Adds leaks to the neurons.
     pub const fn with_leaks(self) -> Self {
         Self { leak: true, ..self }
     }
 }
 
-/// One part of a step. A step evaluates the blocks in their order.
+/// A part of the computation of a step. The blocks of a network are evaluated in their order.
 ///
-/// A connection from neurons with a later update reads their activation of the previous step. So the order of the blocks
-/// determines the recurrent connections.
+/// If a connection starts at neurons that are updated by a later block, it uses their activations from the previous
+/// step. The order of the blocks therefore determines which connections are recurrent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Block {
-    /// Adds the activations of all neurons of one span, times their gains and the weights, to the net inputs of another.
+    /// Connects all neurons of a span to all neurons of another span. The activations of the sources are multiplied by
+    /// their gains and the weights and added to the net inputs of the targets.
     Connect {
-        /// The sources.
+        /// The neurons from which the connections start.
         from: Span,
-        /// The targets.
+        /// The neurons at which the connections end.
         to: Span,
-        /// Delay of the sources [steps]. They are 0 before the first step.
+        /// The delay of the activations in steps. Before the first step they are 0.
         delay: usize,
     },
     /// Computes new activations from the net inputs.
     Update(Span),
-    /// Copies the gain of the first neuron to the whole span.
+    /// Copies the gain of the first neuron to all neurons of the span.
     Gain(Span),
     /// Copies the activation of a neuron to the gains of a span.
     ModulatedGain {
-        /// The neurons with this gain.
+        /// The neurons whose gains are set.
         neurons: Span,
-        /// The neuron of the activation.
+        /// The neuron that provides the activation.
         by: usize,
     },
 }
 
 impl Block {
-    /// Builds connections without a delay.
+    /// Creates connections without a delay.
     pub const fn connect(from: Span, to: Span) -> Self {
         Self::Connect { from, to, delay: 0 }
     }
 
-    /// Increases the delay of connections by a number of steps.
+    /// Increases the delay of connections by the given number of steps.
     pub const fn delayed(self, steps: usize) -> Self {
         match self {
             Self::Connect { from, to, delay } => Self::Connect { from, to, delay: delay.saturating_add(steps) },
@@ -119,7 +122,7 @@ impl Block {
         }
     }
 
-    /// Number of weights.
+    /// Returns the number of weights in this block.
     pub const fn weights(&self) -> usize {
         match self {
             Self::Connect { from, to, .. } => from.count.saturating_mul(to.count),

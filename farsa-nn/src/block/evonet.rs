@@ -1,33 +1,34 @@
-//! The parameter order of the original's Evonet, and its decoding of parameters.
+//! Conversion of the parameters of Evonet, the network of the original program.
 
 use crate::block::description::Block;
 use crate::block::layout::{BlockLayout, BlockParameter};
 use crate::error::Error;
 use crate::fault::Slice;
 
-/// The ranges of Evonet's parameters. Each parameter is stored as a number `p` in [-weight, weight].
+/// The ranges of the parameters in Evonet. Each parameter is stored as a number `p` in [-weight, weight].
 ///
-/// Source: `[FARSA2]`, with the names `weightRange`, `biasRange` and `gainRange`.
+/// Source: `[FARSA2]`, where the names are `weightRange`, `biasRange` and `gainRange`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvonetRanges {
-    /// The largest weight.
+    /// The largest absolute value of a weight.
     pub weight: f32,
-    /// The largest bias.
+    /// The largest absolute value of a bias.
     pub bias: f32,
     /// The largest gain.
     pub gain: f32,
 }
 
 impl Default for EvonetRanges {
-    /// 5 each, as in the source.
+    /// Returns a range of 5 for all parameters, as in the source.
     fn default() -> Self {
         Self { weight: 5.0, bias: 5.0, gain: 5.0 }
     }
 }
 
 impl EvonetRanges {
-    /// Decodes a gene [0..255] to the number `p`: `weight - 2*weight*gene/255`. Gene 0 is the largest.
+    /// Converts a gene [0..255] to the number `p` by `weight - 2*weight*gene/255`. Gene 0 results in the largest
+    /// number.
     ///
     /// ```
     /// use farsa_nn::block::EvonetRanges;
@@ -38,10 +39,10 @@ impl EvonetRanges {
         self.weight - f32::from(gene) / 255.0 * self.weight * 2.0
     }
 
-    /// Decodes a number `p` to a parameter: a weight is `p`, a bias `p/weight*bias`, a gain `|p|/weight*gain`, a leak `|p|/weight`
-    /// clamped to [0, 1].
+    /// Converts a number `p` to a parameter. A weight is `p`, a bias is `p/weight*bias`, a gain is `|p|/weight*gain`,
+    /// and a leak is `|p|/weight` clamped to [0, 1].
     ///
-    /// Deviation: the source clamps the activations that result from a leak beyond 1, instead of the leak.
+    /// Deviation: the source does not clamp the leak, but the activations that result from a leak larger than 1.
     pub fn decode(self, kind: BlockParameter, p: f32) -> f32 {
         match kind {
             BlockParameter::Weight => p,
@@ -53,11 +54,11 @@ impl EvonetRanges {
 }
 
 impl<'a> BlockLayout<'a> {
-    /// The indices of the parameters in the original's order.
+    /// Returns the indices of the parameters in the order of the original program.
     ///
-    /// Gains are first, then biases. Then each block has the weights of a connection target by target, or the leaks of an update.
-    ///
-    /// Each parameter occurs once if each leaky neuron is updated once a step.
+    /// Gains come first, followed by biases. After them, each block contributes the weights of a connection, ordered by
+    /// target, or the leaks of an update. If each leaky neuron is updated once per step, every parameter occurs exactly
+    /// once.
     ///
     /// Source: Evonet of `[FARSA2]`.
     ///
@@ -90,10 +91,12 @@ impl<'a> BlockLayout<'a> {
         flags.chain(blocks)
     }
 
-    /// Writes parameters [[`parameter_count`](Self::parameter_count)] from numbers in the original's order.
+    /// Converts numbers in the order of the original program to parameters, which are written to a slice of length
+    /// [`parameter_count`](Self::parameter_count).
     ///
     /// # Errors
-    /// [`Error::Length`] of the parameters or of the numbers. Then the parameters may be partly written.
+    /// Returns [`Error::Length`] if one of the slices has the wrong length. In this case some parameters may have been
+    /// written.
     pub fn read_evonet(
         &self,
         ranges: EvonetRanges,

@@ -1,4 +1,4 @@
-//! The text formats of the original for networks: `.net` and `.phe`.
+//! Parsers for the network files `.net` and `.phe` of the original program.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ use crate::block::layout_buf::BlockLayoutBuf;
 use crate::error::Error;
 use crate::fault::{ParameterFault, Slice};
 
-/// A network of the original FARSA, read from its text. Requires the feature `alloc`.
+/// A network that was read from a file of the original FARSA. Requires the feature `alloc`.
 ///
 /// A `.net` file has these lines:
 ///
@@ -24,26 +24,29 @@ use crate::fault::{ParameterFault, Slice};
 /// | `N` lines of six whole numbers | bias (0, 1), type, gain (0, 1), and three for its display; types are 0 logistic or an input as it is, 1 the same with a leak, 2 step, 3 logistic with slope 0.2 |
 /// | `END` | |
 ///
-/// A `.phe` file has a line `FREE PARAMETERS P` and `P` more lines before its `END`. Each has a parameter, its mutation rate and
-/// its name. `*` is a parameter that evolution draws, or a rate that it sets. Older files have no rate, and -99 instead of `*`.
-/// Text after the numbers of a line and empty lines are ignored.
+/// In a `.phe` file there is a line `FREE PARAMETERS P` and `P` additional lines before `END`. Each of these lines
+/// contains a parameter, its mutation rate and its name. An asterisk represents a parameter that is drawn by the
+/// evolution or a rate that is set by it. Older files have no rates and use -99 instead of the asterisk. Empty lines
+/// and text after the numbers of a line are ignored.
 ///
-/// Source: `[FARSA2]`. Deviation: an unexpected line is an error, where the source continues.
+/// Source: `[FARSA2]`. Deviation: an unexpected line is an error, whereas the source continues.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evonet {
-    /// The layout.
+    /// The layout of the network.
     pub layout: BlockLayoutBuf,
-    /// The parameters in the original's order, `None` if evolution draws them. Empty for a `.net` file.
+    /// The parameters in the order of the original program. They are `None` if they are drawn by the evolution. For a
+    /// `.net` file the list is empty.
     pub numbers: Vec<Option<f32>>,
-    /// Their mutation rates, `None` if evolution sets them.
+    /// The mutation rates of the parameters. They are `None` if they are set by the evolution.
     pub mutations: Vec<Option<f32>>,
 }
 
 impl Evonet {
-    /// Decodes the parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::block::BlockLayout).
+    /// Converts the parameters to the order of a [`BlockLayout`](crate::block::BlockLayout) for the
+    /// [`layout`](Self::layout) of this network.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter that evolution draws, [`Error::Length`] for a `.net` file.
+    /// Returns [`Error::Parameter`] if a parameter is drawn by the evolution, or [`Error::Length`] for a `.net` file.
     pub fn parameters(&self, ranges: EvonetRanges) -> Result<Vec<f32>, Error> {
         if let Some(index) = self.numbers.iter().position(Option::is_none) {
             return Err(ParameterFault::NoValue.at(index));
@@ -59,11 +62,11 @@ impl Evonet {
 impl FromStr for Evonet {
     type Err = Error;
 
-    /// Reads a `.net` or a `.phe` file.
+    /// Parses the contents of a `.net` or `.phe` file.
     ///
     /// # Errors
-    /// [`Error::Text`] with the line, [`Error::Layout`] for missing neurons, [`Error::Length`] for another number of parameters
-    /// than the network has.
+    /// Returns [`Error::Text`] with the number of the line, [`Error::Layout`] if neurons are missing, or
+    /// [`Error::Length`] if the number of parameters is wrong.
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut lines = Lines { rest: text, line: 0 };
         lines.begins("ARCHITECTURE")?;

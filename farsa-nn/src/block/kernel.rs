@@ -1,4 +1,5 @@
-//! One step of a block-wise network, over the lanes of a [`Scalar`]. Lanes are targets, as in the kernel of layers.
+//! One step of a block network, computed for the lanes of a [`Scalar`]. As in the kernel of layers, each lane is a
+//! target.
 
 use farsa_num::{Scalar, logistic};
 

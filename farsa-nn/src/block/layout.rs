@@ -1,4 +1,4 @@
-//! The shape of a block-wise network and the order of its parameters.
+//! The layout of a block network, which also defines the order of its parameters.
 
 use core::ops::Range;
 
@@ -6,33 +6,33 @@ use crate::block::description::{Block, Group, Span};
 use crate::error::Error;
 use crate::fault::LayoutFault;
 
-/// The kind of a parameter of a [`BlockLayout`].
+/// The kind of a parameter in a [`BlockLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum BlockParameter {
-    /// A weight of a connection.
+    /// The weight of a connection.
     Weight,
-    /// A bias of a neuron.
+    /// The bias of a neuron.
     Bias,
-    /// A gain of a neuron.
+    /// The gain of a neuron.
     Gain,
-    /// A leak of a neuron [0..1].
+    /// The leak of a neuron [0..1].
     Leak,
 }
 
 impl BlockParameter {
-    /// Every kind, in the order of the parameters.
+    /// All kinds in the order of the parameters.
     pub const ALL: [Self; 4] = [Self::Weight, Self::Bias, Self::Gain, Self::Leak];
 }
 
 /// The groups of neurons and the blocks of a [`BlockNetwork`](crate::block::BlockNetwork).
 ///
-/// The first neurons are the inputs, the last ones the outputs. The description is borrowed from constants in flash, or from a
-/// layout built at run time.
+/// The inputs are the first neurons and the outputs are the last ones. Groups and blocks are borrowed, so they can be
+/// constants in flash memory or part of a layout that was created at run time.
 ///
-/// The parameters are one slice. Absent biases, gains and leaks take no space.
+/// All parameters are stored in one slice. Biases, gains and leaks that do not exist are omitted.
 ///
 /// | kind | order |
 /// |---|---|
@@ -41,8 +41,8 @@ impl BlockParameter {
 /// | [`Gain`](BlockParameter::Gain) | neurons in their order |
 /// | [`Leak`](BlockParameter::Leak) | neurons in their order |
 ///
-/// A [`LeakyLayout`](crate::LeakyLayout) written as blocks has the same order. The order of the original is
-/// [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
+/// If a [`LeakyLayout`](crate::LeakyLayout) is expressed with blocks, the order of the parameters is the same. Use
+/// [`evonet_order`](BlockLayout::evonet_order) for the order of the original program. All counts saturate.
 ///
 /// ```
 /// use farsa_nn::block::{Block, BlockLayout, Group, Span};
@@ -77,48 +77,49 @@ pub struct BlockLayout<'a> {
 }
 
 impl<'a> BlockLayout<'a> {
-    /// Builds a layout.
+    /// Creates a layout.
     ///
-    /// [`BlockNetwork::new`](crate::block::BlockNetwork::new) checks that all neurons exist.
+    /// The neurons are checked by [`BlockNetwork::new`](crate::block::BlockNetwork::new).
     pub const fn new(inputs: usize, outputs: usize, groups: &'a [Group], blocks: &'a [Block]) -> Self {
         Self { inputs, outputs, groups, blocks }
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Number of outputs.
+    /// Returns the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// The groups.
+    /// Returns the groups of neurons.
     pub const fn groups(&self) -> &'a [Group] {
         self.groups
     }
 
-    /// The blocks.
+    /// Returns the blocks in the order of their evaluation.
     pub const fn blocks(&self) -> &'a [Block] {
         self.blocks
     }
 
-    /// Number of neurons, including inputs and outputs.
+    /// Returns the number of neurons, including inputs and outputs.
     pub const fn neurons(&self) -> usize {
         self.count(None)
     }
 
-    /// Number of parameters.
+    /// Returns the number of parameters.
     pub const fn parameter_count(&self) -> usize {
         self.range(BlockParameter::Leak).end
     }
 
-    /// Length of the state: six values per neuron, and for each delayed connection its sources times its delay plus one.
+    /// Returns the length of the state. There are six values per neuron. Each delayed connection adds one value, and
+    /// one for each source and step of delay.
     ///
-    /// The order is: activations `[neurons]`, stored responses of [`Leak::TwoTap`](crate::Leak::TwoTap) `[neurons]`, four
-    /// workspaces `[neurons]`. Each delayed block adds the index of its oldest value and its delayed values
-    /// `[delay x sources]`.
+    /// The state contains the activations `[neurons]`, the stored responses of [`Leak::TwoTap`](crate::Leak::TwoTap)
+    /// `[neurons]` and four workspaces `[neurons]`. They are followed by the index of the oldest value and the delayed
+    /// values `[delay x sources]` of each delayed block.
     pub const fn state_len(&self) -> usize {
         let (mut len, mut b) = (self.neurons().saturating_mul(6), 0);
         while b < self.blocks.len() {
@@ -128,7 +129,7 @@ impl<'a> BlockLayout<'a> {
         len
     }
 
-    /// The indices of the parameters of one kind.
+    /// Returns the indices of all parameters of a kind.
     pub const fn range(&self, kind: BlockParameter) -> Range<usize> {
         let (mut weights, mut b) = (0_usize, 0);
         while b < self.blocks.len() {
@@ -146,20 +147,21 @@ impl<'a> BlockLayout<'a> {
         }
     }
 
-    /// The kind of the parameter at this index, `None` beyond the last.
+    /// Returns the kind of the parameter at the given index, or `None` if there is no such parameter.
     pub fn kind(&self, index: usize) -> Option<BlockParameter> {
         BlockParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// The kind of each parameter, in their order, for decoding a genome.
+    /// Returns an iterator over the kinds of all parameters. This is useful for decoding a genome.
     pub fn kinds(&self) -> impl Iterator<Item = BlockParameter> + use<'a> {
         let layout = *self;
         BlockParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// The indices of the weights from one neuron to another, one for each connection with both.
+    /// Returns the indices of the weights from one neuron to another. There is one index for each connection that
+    /// contains both neurons.
     ///
-    /// To cut a link, set its weights to zero.
+    /// To cut the link between the two neurons, set these weights to zero.
     pub fn weights(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<'a> {
         self.connections().filter_map(move |(at, sources, targets)| {
             let both = sources.contains(from) && targets.contains(to);

@@ -1,4 +1,4 @@
-//! Layouts of blocks built at run time.
+//! Block layouts that are created at run time.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::block::architecture::BlockPlan;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
-/// The groups and blocks of a [`BlockLayout`] on the heap. Requires the feature `alloc`.
+/// An owned version of [`BlockLayout`]. Requires the feature `alloc`.
 ///
 /// ```
 /// use farsa_nn::block::{BlockLayoutBuf, BlockNetwork};
@@ -25,19 +25,19 @@ use crate::block::layout::BlockLayout;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlockLayoutBuf {
-    /// Number of inputs.
+    /// The number of inputs.
     pub inputs: usize,
-    /// Number of outputs.
+    /// The number of outputs.
     pub outputs: usize,
-    /// The groups.
+    /// The groups of neurons.
     pub groups: Vec<Group>,
-    /// The blocks.
+    /// The blocks in the order of their evaluation.
     pub blocks: Vec<Block>,
 }
 
 impl BlockLayoutBuf {
-    /// Builds layers with these numbers of neurons, inputs first and outputs last. All layers except the inputs are logistic with
-    /// slope 1 and biases.
+    /// Creates a feed-forward network with the given numbers of neurons per layer, from inputs to outputs. All layers
+    /// except the inputs are logistic with a slope of 1 and have biases.
     pub fn feed_forward(layers: &[usize]) -> Self {
         let mut layout = Self {
             inputs: layers.first().copied().unwrap_or(0),
@@ -61,7 +61,7 @@ impl BlockLayoutBuf {
         layout
     }
 
-    /// The layout.
+    /// Returns a layout that borrows the groups and blocks.
     pub fn layout(&self) -> BlockLayout<'_> {
         BlockLayout::new(self.inputs, self.outputs, &self.groups, &self.blocks)
     }

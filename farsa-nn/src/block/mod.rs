@@ -1,4 +1,4 @@
-//! Networks of blocks: any connections between groups of neurons, evaluated in a given order.
+//! Block networks, which permit any connections between groups of neurons and any order of evaluation.
 
 /// Common architectures as blocks.
 mod architecture;

@@ -1,4 +1,4 @@
-//! The network of blocks.
+//! The block network.
 
 use crate::block::kernel::Blocks;
 use crate::block::layout::{BlockLayout, BlockParameter};
@@ -8,10 +8,11 @@ use crate::leak::Leak;
 use crate::lesion::Lesion;
 use crate::network::{Data, Model, Network, check_parameters};
 
-/// A network of connections, updates and gains in any order.
+/// A network of connections and updates that are evaluated in a configurable order.
 ///
-/// In each step net inputs begin at the biases and gains at their parameters. Then the blocks are evaluated in their order.
-/// With activations `a`, gains `g`, weights `w`, functions `f` with slopes `s`, and the selected reading of the [`Leak`]:
+/// At the beginning of each step, the net inputs are set to the biases and the gains to their parameters. Then the
+/// blocks are evaluated in order. With activations `a`, gains `g`, weights `w`, functions `f` with slopes `s`, and the
+/// selected [`Leak`]:
 ///
 /// ```text
 /// connect        net_i = net_i + sum_j w_ji g_j a_j
@@ -20,16 +21,17 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// modulated gain g_i = a_by
 /// ```
 ///
-/// Feed-forward, Elman, Jordan and fully recurrent networks are orders of blocks, see
-/// [`Architecture`](crate::block::Architecture). Activations are zero at the start. A NaN or infinite input is an error of the
-/// caller, as in a [`LeakyNetwork`](crate::LeakyNetwork). Where the blocks are the same, so are the bits.
+/// Feed-forward, Elman, Jordan and fully recurrent networks are special cases, which can be created with
+/// [`Architecture`](crate::block::Architecture). All activations are initially zero. As in a
+/// [`LeakyNetwork`](crate::LeakyNetwork), inputs must not be NaN or infinite. Networks with equal blocks produce equal
+/// bits.
 ///
-/// For lesions, neurons are numbered as in the layout, inputs first. A held neuron is held from the beginning of a step and
-/// after its updates.
+/// For lesions, neurons are numbered as in the layout, starting with the inputs. The activation of a lesioned neuron is
+/// set at the beginning of a step and after each of its updates.
 ///
 /// Source: Evonet, the controller of `[FARSA2]`. Deviations: the order of the parameters (see
-/// [`BlockLayout::read_evonet`]), the other functions, slopes, delays and readings of the leak, and leaky inputs, which are not
-/// clamped to [0, 1].
+/// [`BlockLayout::read_evonet`]), the additional functions, slopes, delays and variants of the leak, and leaky inputs,
+/// which are not clamped to [0, 1].
 ///
 /// ```
 /// use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
@@ -48,7 +50,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// ```
 pub type BlockNetwork<'a, P, S> = Network<BlockModel<'a>, P, S>;
 
-/// The layout of a [`BlockNetwork`] and the reading of its leaks.
+/// The layout of a [`BlockNetwork`], together with the interpretation of its leaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockModel<'a> {
     pub(crate) layout: BlockLayout<'a>,
@@ -56,28 +58,28 @@ pub struct BlockModel<'a> {
 }
 
 impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<BlockModel<'a>, P, S> {
-    /// Builds a network at rest from parameters [[`parameter_count`](BlockLayout::parameter_count)] and a state
-    /// [[`state_len`](BlockLayout::state_len)], which it sets to zero.
+    /// Creates a network with the given parameters and resets its state to zero. The slices must have the lengths
+    /// [`parameter_count`](BlockLayout::parameter_count) and [`state_len`](BlockLayout::state_len).
     ///
     /// # Errors
-    /// [`Error::Layout`], [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`], [`Error::Length`] or [`Error::Parameter`].
     pub fn new(layout: BlockLayout<'a>, leak: Leak, parameters: P, state: S) -> Result<Self, Error> {
         Self::at_rest(BlockModel { layout, leak }, parameters, state)
     }
 }
 
 impl<'a, P, S> Network<BlockModel<'a>, P, S> {
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> BlockLayout<'a> {
         self.model.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.model.leak
     }
 
-    /// The activations of all neurons `[neurons]`, including inputs and outputs.
+    /// Returns the activations of all neurons, including inputs and outputs.
     pub fn activations(&self) -> &[f32]
     where
         S: AsRef<[f32]>,

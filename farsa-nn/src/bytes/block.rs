@@ -1,4 +1,4 @@
-//! The bytes of a network of blocks.
+//! The binary format of block networks.
 
 use farsa_num::Digest;
 
@@ -23,12 +23,13 @@ const BIAS: u32 = 1 << 8;
 const GAIN: u32 = 1 << 9;
 const LEAK: u32 = 1 << 10;
 
-/// The checked bytes of a [`BlockNetwork`](crate::block::BlockNetwork), with the description of its groups and blocks.
+/// A [`BlockNetwork`](crate::block::BlockNetwork) in its binary format, including the description of its groups and
+/// blocks. The bytes have been checked.
 ///
-/// A board with a constant layout compares it by [`expect`](Self::expect). A program for any network copies the layout into
-/// its own memory ([`copy_layout`](Self::copy_layout)), or onto the heap with feature `alloc` (`layout`). A short description
-/// can require a large state, by delays or by neurons without parameters. Check [`state_len`](BlockLayout::state_len) before
-/// you allocate for untrusted bytes.
+/// A board with a constant layout compares it by calling [`expect`](Self::expect). A program that supports any network
+/// copies the layout to its memory with [`copy_layout`](Self::copy_layout), or to the heap with `layout` if the feature
+/// `alloc` is enabled. Note that a short description can require a large state because of delays or neurons without
+/// parameters. If the bytes are untrusted, check [`state_len`](BlockLayout::state_len) before you allocate memory.
 ///
 /// ```
 /// use farsa_nn::block::{Architecture, BlockLayout, BlockNetwork, BlockPlan};
@@ -53,7 +54,8 @@ const LEAK: u32 = 1 << 10;
 /// ```
 pub type BlockNetworkBytes<'a> = NetworkBytes<'a, BlockShape<'a>>;
 
-/// The shape of the bytes of a [`BlockNetwork`](crate::block::BlockNetwork), with its encoded groups and blocks.
+/// The shape of a [`BlockNetwork`](crate::block::BlockNetwork) in its binary format, including the encoded groups and
+/// blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockShape<'a> {
     words: [u32; SHAPE],
@@ -63,19 +65,19 @@ pub struct BlockShape<'a> {
 }
 
 impl<'a> NetworkBytes<'a, BlockShape<'a>> {
-    /// Number of bytes of a network of this layout. Saturates.
+    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: &BlockLayout<'_>) -> usize {
         let description = description_len(layout.groups().len(), layout.blocks().len());
         frame_len(layout.parameter_count().saturating_add(description).saturating_mul(4))
     }
 
-    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
+    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
     ///
-    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
+    /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as for [`BlockNetwork::new`](crate::block::BlockNetwork::new), [`BytesError::Word`] for a
-    /// count beyond 32 bits, [`BytesError::Buffer`]. Then nothing is written.
+    /// Returns [`BytesError::Parameters`] if [`BlockNetwork::new`](crate::block::BlockNetwork::new) would fail,
+    /// [`BytesError::Word`] if a count exceeds 32 bits, or [`BytesError::Buffer`]. In these cases nothing is written.
     pub fn write(
         layout: BlockLayout<'_>,
         leak: Leak,
@@ -98,48 +100,49 @@ impl<'a> NetworkBytes<'a, BlockShape<'a>> {
         Frame::write(Kind::BlockNetwork, &words, channels, count.saturating_mul(4), numbers.flatten(), out)
     }
 
-    /// The layout hash of the layout with its groups and blocks, and of the reading of the leak.
+    /// Computes the hash of a layout, including its groups and blocks, and of the interpretation of the leaks.
     pub fn layout_hash(layout: BlockLayout<'_>, leak: Leak) -> u64 {
         layout_hash(Kind::BlockNetwork, &words_of_layout(&layout, leak))
     }
 
-    /// Compares layout and reading of the leak with those of the caller.
+    /// Checks that the layout and the interpretation of the leaks are those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect(&self, layout: BlockLayout<'_>, leak: Leak) -> Result<(), BytesError> {
         Field::Layout.check(BlockNetworkBytes::layout_hash(layout, leak), self.shape.hash())
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.shape.words[0] as usize
     }
 
-    /// Number of outputs.
+    /// Returns the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.shape.words[1] as usize
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }
 
-    /// The groups in their order.
+    /// Returns an iterator over the groups of neurons.
     pub fn groups(&self) -> impl Iterator<Item = Group> + Clone + use<'a> {
         self.shape.groups()
     }
 
-    /// The blocks in their order.
+    /// Returns an iterator over the blocks.
     pub fn blocks(&self) -> impl Iterator<Item = Block> + Clone + use<'a> {
         self.shape.blocks()
     }
 
-    /// Copies groups and blocks into buffers of the same lengths and returns a layout over them.
+    /// Copies the groups and blocks to the given buffers, which must have the right lengths. Returns a layout that
+    /// borrows the buffers.
     ///
     /// # Errors
-    /// [`BytesError::Buffer`] for the first buffer of another length. Then nothing is copied.
+    /// Returns [`BytesError::Buffer`] if a buffer has a different length. In this case nothing is copied.
     pub fn copy_layout<'b>(
         &self,
         groups: &'b mut [Group],
@@ -155,7 +158,7 @@ impl<'a> NetworkBytes<'a, BlockShape<'a>> {
         Ok(BlockLayout::new(self.inputs(), self.outputs(), groups, blocks))
     }
 
-    /// The layout on the heap. Requires the feature `alloc`.
+    /// Copies the layout to the heap. Requires the feature `alloc`.
     #[cfg(feature = "alloc")]
     pub fn layout(&self) -> BlockLayoutBuf {
         BlockLayoutBuf {

@@ -1,4 +1,4 @@
-//! The bytes of a continuous-time network.
+//! The binary format of continuous-time networks.
 
 use crate::activation::Activation;
 use crate::bytes::error::BytesError;
@@ -10,26 +10,25 @@ use crate::ctrnn::network::CtrnnModel;
 use crate::error::Error;
 use crate::network::Model as _;
 
-/// The checked bytes of a [`Ctrnn`](crate::Ctrnn).
+/// A [`Ctrnn`](crate::Ctrnn) in its binary format. The bytes have been checked.
 ///
-/// The time step is part of the layout. A board with longer steps needs another network.
-///
-/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) has an example.
+/// Note that the time step is part of the layout. A board with a different time step needs a different network. For an
+/// example, see [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes).
 pub type CtrnnBytes<'a> = NetworkBytes<'a, CtrnnModel>;
 
 impl NetworkBytes<'_, CtrnnModel> {
-    /// Number of bytes of a network of this layout. Saturates.
+    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: CtrnnLayout) -> usize {
         byte_count::<f32>(layout.parameter_count())
     }
 
-    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
+    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
     ///
-    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
+    /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as for [`Ctrnn::new`](crate::Ctrnn::new), [`BytesError::Buffer`].
-    /// Then nothing is written.
+    /// Returns [`BytesError::Parameters`] if [`Ctrnn::new`](crate::Ctrnn::new) would fail, or [`BytesError::Buffer`].
+    /// In these cases nothing is written.
     pub fn write(
         layout: CtrnnLayout,
         time_step: f32,
@@ -40,25 +39,25 @@ impl NetworkBytes<'_, CtrnnModel> {
         Shape::write(&CtrnnModel { layout, time_step }, channels, parameters, out)
     }
 
-    /// The layout hash of the layout with integrator and activation, and of the time step.
+    /// Computes the hash of a layout, including its integrator and activation function, and of the time step.
     pub fn layout_hash(layout: CtrnnLayout, time_step: f32) -> u64 {
         CtrnnModel { layout, time_step }.hash()
     }
 
-    /// Compares layout and time step [s] with those of the caller.
+    /// Checks that the layout and the time step in seconds are those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect(&self, layout: CtrnnLayout, time_step: f32) -> Result<(), BytesError> {
         self.expect_shape(&CtrnnModel { layout, time_step })
     }
 
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> CtrnnLayout {
         self.shape.layout
     }
 
-    /// The time step [s].
+    /// Returns the time step [s].
     pub const fn time_step(&self) -> f32 {
         self.shape.time_step
     }

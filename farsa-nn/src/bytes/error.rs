@@ -1,87 +1,87 @@
-//! Errors of reading and writing the bytes of a controller.
+//! Errors of the binary formats.
 
 use core::fmt;
 
 use crate::error::Error;
 
-/// A field of the head that has to agree with something.
+/// A field of the header that is compared with an expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
-    /// The version of the format, compared with that of this program.
+    /// The version of the format, which must be supported by this program.
     Version,
-    /// The CRC-32 at the end, compared with that of the bytes.
+    /// The CRC-32 at the end, which must match the preceding bytes.
     Checksum,
     /// The number of the kind of controller.
     Kind,
-    /// The stored layout hash, compared with that of kind and shape.
+    /// The stored hash of the layout, which must match the kind and the shape.
     LayoutHash,
-    /// The hash of the layout, compared with that of the caller.
+    /// The hash of the layout, which must be that of the caller.
     Layout,
-    /// The hash of the channels, compared with that of the caller.
+    /// The hash of the channels, which must be that of the caller.
     Channels,
 }
 
-/// A table of words in the bytes.
+/// A table of words in a binary format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// The eight words of the shape.
+    /// The eight words that describe the shape.
     Shape,
-    /// The description of groups and blocks.
+    /// The description of the groups and blocks.
     Description,
 }
 
-/// An error of reading or writing the bytes of a controller.
+/// An error that occurs when a controller is read or written in its binary format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BytesError {
-    /// Fewer or more bytes than the format or the head requires.
+    /// The number of bytes differs from that required by the format or the header.
     Length {
-        /// Required number of bytes.
+        /// The required number of bytes.
         expected: usize,
-        /// Number of bytes.
+        /// The actual number of bytes.
         found: usize,
     },
-    /// A beginning that no controller has.
+    /// The first bytes are not those of a controller.
     Magic {
-        /// The first bytes.
+        /// The first eight bytes.
         found: [u8; 8],
     },
-    /// Damaged bytes, or bytes of another version, kind, layout or robot.
+    /// The bytes are damaged, or they belong to a different version, kind, layout or robot.
     Mismatch {
         /// The field that differs.
         field: Field,
-        /// Its expected value.
+        /// The expected value of the field.
         expected: u64,
-        /// Its value.
+        /// The actual value of the field.
         found: u64,
     },
-    /// A word with an invalid value.
+    /// A word has an invalid value.
     Word {
-        /// The table of the word.
+        /// The table that contains the word.
         table: Table,
-        /// Its index in the table.
+        /// The index of the word in the table.
         word: usize,
-        /// Its value.
+        /// The invalid value.
         found: u32,
     },
-    /// Bytes at an address where the processor cannot use their numbers in place.
+    /// The numbers cannot be used in place, because the address of the bytes is not aligned.
     Misaligned {
-        /// Remainder of the address.
+        /// The remainder of the address.
         remainder: usize,
-        /// Required divisor of the address.
+        /// The required alignment.
         alignment: usize,
     },
-    /// A big-endian processor, which cannot use the numbers in place.
+    /// The numbers cannot be used in place, because the processor is big-endian.
     BigEndian,
-    /// A buffer of the wrong length.
+    /// A buffer has the wrong length.
     Buffer {
-        /// Required length.
+        /// The required length.
         expected: usize,
-        /// Length of the buffer.
+        /// The length of the buffer.
         found: usize,
     },
-    /// An invalid layout or parameter.
+    /// The layout or a parameter is invalid.
     Parameters(Error),
 }
 

@@ -1,10 +1,10 @@
-//! The frame of all kinds of controllers: a head, the content, a checksum.
+//! The common frame of all binary formats, which consists of a header, the content and a checksum.
 
 use farsa_num::{Digest, crc32};
 
 use crate::bytes::error::{BytesError, Field};
 
-/// Bytes at an address where their numbers can be used in place, for [`include_bytes!`].
+/// A wrapper for [`include_bytes!`] that aligns the bytes such that their numbers can be used in place.
 ///
 /// ```
 /// # const LAYOUT: farsa_nn::LeakyLayout = farsa_nn::LeakyLayout::new(1, 1, 1);
@@ -17,7 +17,7 @@ use crate::bytes::error::{BytesError, Field};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(8))]
 pub struct Aligned<B>(
-    /// The bytes.
+    /// The aligned bytes.
     pub B,
 );
 
@@ -31,18 +31,18 @@ pub(crate) const SHAPE: usize = 8;
 const HEAD: usize = 8 + 4 * 4 + 4 * SHAPE + 8 + 8;
 const CHECKSUM: usize = 4;
 
-/// The kinds of controllers with their numbers in the bytes.
+/// The kinds of controllers and their numbers in the binary format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A leaky network.
+    /// A leaky network with floating-point parameters.
     LeakyNetwork = 1,
-    /// A leaky network in integers.
+    /// A leaky network with integer parameters.
     QuantizedNetwork = 2,
     /// A continuous-time network.
     Ctrnn = 3,
     /// A layer of logistic units.
     Perceptron = 4,
-    /// A network of blocks.
+    /// A block network.
     BlockNetwork = 5,
 }
 
@@ -83,9 +83,9 @@ pub(crate) fn finite(word: usize, found: u32) -> Result<f32, BytesError> {
     if value.is_finite() { Ok(value) } else { Err(BytesError::shape(word, found)) }
 }
 
-/// A fingerprint of inputs and outputs: a hash of their names in their order.
+/// Computes a hash of the names of all inputs and outputs in their order.
 ///
-/// A controller for another body, or for sensors in another order, has another fingerprint.
+/// The hash detects controllers for a different body or for sensors in a different order.
 ///
 /// ```
 /// use farsa_nn::bytes::channel_hash;

@@ -1,4 +1,4 @@
-//! The bytes of a leaky network.
+//! The binary format of leaky networks.
 
 use crate::bytes::error::BytesError;
 use crate::bytes::frame::{Kind, SHAPE, check_unused, finite, variant, word};
@@ -9,10 +9,10 @@ use crate::leaky_layout::LeakyLayout;
 use crate::leaky_network::LeakyModel;
 use crate::network::Model as _;
 
-/// The checked bytes of a [`LeakyNetwork`](crate::LeakyNetwork).
+/// A [`LeakyNetwork`](crate::LeakyNetwork) in its binary format. The bytes have been checked.
 ///
-/// `docs/controller-format.md` specifies the format: a head with version, layout and hashes, the parameters in the order of
-/// the [`LeakyLayout`], a CRC-32. All numbers are little-endian.
+/// The format is specified in `docs/controller-format.md`. It consists of a header with the version, the layout and
+/// hashes, the parameters in the order of the [`LeakyLayout`], and a CRC-32. All numbers are little-endian.
 ///
 /// ```
 /// use farsa_nn::bytes::{Aligned, LeakyNetworkBytes};
@@ -37,18 +37,18 @@ use crate::network::Model as _;
 pub type LeakyNetworkBytes<'a> = NetworkBytes<'a, LeakyModel>;
 
 impl NetworkBytes<'_, LeakyModel> {
-    /// Number of bytes of a network of this layout. Saturates.
+    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
         byte_count::<f32>(layout.parameter_count())
     }
 
-    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
+    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
     ///
-    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
+    /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as for [`LeakyNetwork::new`](crate::LeakyNetwork::new), [`BytesError::Buffer`].
-    /// Then nothing is written.
+    /// Returns [`BytesError::Parameters`] if [`LeakyNetwork::new`](crate::LeakyNetwork::new) would fail, or
+    /// [`BytesError::Buffer`]. In these cases nothing is written.
     pub fn write(
         layout: LeakyLayout,
         leak: Leak,
@@ -59,25 +59,25 @@ impl NetworkBytes<'_, LeakyModel> {
         Shape::write(&LeakyModel { layout, leak }, channels, parameters, out)
     }
 
-    /// The layout hash of the layout, its slope and the reading of the leak.
+    /// Computes the hash of a layout, including its slope, and of the interpretation of the leaks.
     pub fn layout_hash(layout: LeakyLayout, leak: Leak) -> u64 {
         LeakyModel { layout, leak }.hash()
     }
 
-    /// Compares layout and reading of the leak with those of the caller.
+    /// Checks that the layout and the interpretation of the leaks are those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect(&self, layout: LeakyLayout, leak: Leak) -> Result<(), BytesError> {
         self.expect_shape(&LeakyModel { layout, leak })
     }
 
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.shape.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }

@@ -1,6 +1,8 @@
-//! Trained networks as bytes: in flash, in a file, over a wire. `docs/controller-format.md` specifies the format.
+//! A binary format for trained networks, which can be stored in flash memory or files, or sent over a wire. It is
+//! specified in `docs/controller-format.md`.
 //!
-//! Reading checks everything before anything runs, allocates nothing and panics on no input. The parameters are used in place.
+//! All bytes are checked when a network is read. Reading never allocates or panics, and the parameters are used in
+//! place.
 
 /// Networks of blocks.
 mod block;

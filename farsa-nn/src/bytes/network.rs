@@ -1,4 +1,4 @@
-//! The bytes of a network of any kind.
+//! The binary format that is common to all kinds of networks.
 
 use bytemuck::AnyBitPattern;
 
@@ -6,15 +6,15 @@ use crate::bytes::error::{BytesError, Field};
 use crate::bytes::frame::{Frame, Kind, SHAPE, frame_len, layout_hash};
 use crate::error::Error;
 
-/// A number that is stored as a parameter.
+/// A number that can be stored as a parameter.
 pub trait Number: AnyBitPattern {
-    /// Its little-endian bytes.
+    /// The number as little-endian bytes.
     type Bytes: Copy + IntoIterator<Item = u8>;
-    /// Splits bytes into numbers.
+    /// Splits a slice of bytes into numbers.
     fn chunks(bytes: &[u8]) -> &[Self::Bytes];
-    /// Decodes a number.
+    /// Decodes a number from its bytes.
     fn decode(bytes: Self::Bytes) -> Self;
-    /// Encodes a number.
+    /// Encodes a number as bytes.
     fn encode(self) -> Self::Bytes;
 }
 
@@ -50,36 +50,37 @@ impl Number for i16 {
     }
 }
 
-/// The shape of a kind of network, as its bytes store it.
+/// The shape of a network, as it is stored in the binary format.
 pub trait Shape<'a>: Sized {
-    /// The number of the kind.
+    /// The kind of network.
     const KIND: Kind;
-    /// The type of a parameter.
+    /// The type of the parameters.
     type Number: Number;
-    /// Reads a shape from its words and the content after the head. Returns it with the bytes of the parameters.
+    /// Reads the shape from its words and from the content after the header. Returns the shape and the bytes of the
+    /// parameters.
     ///
     /// # Errors
-    /// The first fault.
+    /// Returns the first error that is found.
     fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError>;
-    /// The words of the shape.
+    /// Returns the words that encode the shape.
     fn words(&self) -> [u32; SHAPE];
-    /// Number of bytes of a network of this shape.
+    /// Returns the number of bytes of a network with this shape.
     fn byte_count(&self) -> usize;
-    /// Checks the shape and the parameters, which `value` decodes.
+    /// Checks the shape and the parameters. The closure `value` decodes a parameter.
     ///
     /// # Errors
-    /// The first fault.
+    /// Returns the first error that is found.
     fn check<T: Copy>(&self, parameters: &[T], value: impl Fn(T) -> Self::Number + Copy) -> Result<(), Error>;
 
-    /// The layout hash.
+    /// Computes the hash of the layout.
     fn hash(&self) -> u64 {
         layout_hash(Self::KIND, &self.words())
     }
 
-    /// Checks and writes a network.
+    /// Checks a network and writes it to `out`.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] or [`BytesError::Buffer`].
+    /// Returns [`BytesError::Parameters`] or [`BytesError::Buffer`].
     fn write(&self, channels: u64, parameters: &[Self::Number], out: &mut [u8]) -> Result<(), BytesError> {
         self.check(parameters, |p| p)?;
         let bytes = parameters.iter().flat_map(|p| p.encode());
@@ -87,9 +88,10 @@ pub trait Shape<'a>: Sized {
     }
 }
 
-/// The checked bytes of a trained network. Its parameters are used in place.
+/// A trained network in its binary format. The bytes have been checked, and the parameters are used in place.
 ///
-/// Use it by the names of its kinds: [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes),
+/// Usually this type is used by the names of its kinds, which are
+/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes),
 /// [`QuantizedNetworkBytes`](crate::bytes::QuantizedNetworkBytes), [`CtrnnBytes`](crate::bytes::CtrnnBytes),
 /// [`PerceptronBytes`](crate::bytes::PerceptronBytes) and [`BlockNetworkBytes`](crate::bytes::BlockNetworkBytes).
 #[derive(Clone, Copy, Debug)]
@@ -100,11 +102,11 @@ pub struct NetworkBytes<'a, S> {
 }
 
 impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
-    /// Reads and checks the bytes of a network: the format, the checksum, the layout and every parameter.
+    /// Reads a network. The format, the checksum, the layout and all parameters are checked.
     ///
     /// # Errors
-    /// The first fault: [`BytesError::Magic`], [`BytesError::Length`], [`BytesError::Mismatch`], [`BytesError::Word`] or
-    /// [`BytesError::Parameters`].
+    /// Returns the first error that is found, which is [`BytesError::Magic`], [`BytesError::Length`],
+    /// [`BytesError::Mismatch`], [`BytesError::Word`] or [`BytesError::Parameters`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
         let Frame { shape, channels, content } = Frame::open(S::KIND, bytes)?;
         let (shape, parameters) = S::read(shape, content)?;
@@ -116,23 +118,26 @@ impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
         Ok(Self { shape, channels, parameters })
     }
 
-    /// Compares the channels with those of the caller, by their [`channel_hash`](crate::bytes::channel_hash).
+    /// Checks that the channels are those of the caller by comparing their
+    /// [`channel_hash`](crate::bytes::channel_hash).
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
         Field::Channels.check(expected, self.channels)
     }
 
-    /// The [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, 0 if unspecified.
+    /// Returns the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0 if it was not
+    /// specified.
     pub const fn channels(&self) -> u64 {
         self.channels
     }
 
-    /// The parameters in place.
+    /// Returns the parameters without copying them.
     ///
     /// # Errors
-    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]. Then use [`copy_parameters`](Self::copy_parameters).
+    /// Returns [`BytesError::Misaligned`] or [`BytesError::BigEndian`] if this is not possible. In this case, use
+    /// [`copy_parameters`](Self::copy_parameters).
     pub fn parameters(&self) -> Result<&'a [S::Number], BytesError> {
         if cfg!(target_endian = "big") {
             return Err(BytesError::BigEndian);
@@ -143,10 +148,10 @@ impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
             .map_err(|_| BytesError::Misaligned { remainder: self.parameters.as_ptr().addr() % alignment, alignment })
     }
 
-    /// Copies the parameters into a buffer of the same length.
+    /// Copies the parameters to a buffer of the same length.
     ///
     /// # Errors
-    /// [`BytesError::Buffer`]. Then nothing is copied.
+    /// Returns [`BytesError::Buffer`] if the length differs. In this case nothing is copied.
     pub fn copy_parameters(&self, out: &mut [S::Number]) -> Result<(), BytesError> {
         let values = S::Number::chunks(self.parameters);
         let (expected, found) = (values.len(), out.len());

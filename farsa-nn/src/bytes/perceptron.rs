@@ -1,4 +1,4 @@
-//! The bytes of a layer of logistic units.
+//! The binary format of layers of logistic units.
 
 use crate::bytes::error::BytesError;
 use crate::bytes::frame::{Kind, SHAPE, check_unused, finite, word};
@@ -7,24 +7,24 @@ use crate::error::Error;
 use crate::network::Model as _;
 use crate::perceptron::{Perceptron, PerceptronModel};
 
-/// The checked bytes of a [`Perceptron`].
+/// A [`Perceptron`] in its binary format. The bytes have been checked.
 ///
-/// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes) has an example.
+/// For an example, see [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes).
 pub type PerceptronBytes<'a> = NetworkBytes<'a, PerceptronModel>;
 
 impl NetworkBytes<'_, PerceptronModel> {
-    /// Number of bytes of a layer of this shape. Saturates.
+    /// Returns the number of bytes that are needed for a layer with the given shape. The count saturates.
     pub const fn byte_count(inputs: usize, outputs: usize) -> usize {
         byte_count::<f32>(Perceptron::parameter_count(inputs, outputs))
     }
 
-    /// Writes a layer into `out` [[`byte_count`](Self::byte_count)].
+    /// Writes a layer to `out`, whose length must be [`byte_count`](Self::byte_count).
     ///
-    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
+    /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as for [`Perceptron::new`](crate::Perceptron::new), [`BytesError::Buffer`].
-    /// Then nothing is written.
+    /// Returns [`BytesError::Parameters`] if [`Perceptron::new`](crate::Perceptron::new) would fail, or
+    /// [`BytesError::Buffer`]. In these cases nothing is written.
     pub fn write(
         inputs: usize,
         outputs: usize,
@@ -36,30 +36,30 @@ impl NetworkBytes<'_, PerceptronModel> {
         Shape::write(&PerceptronModel { inputs, outputs, slope }, channels, parameters, out)
     }
 
-    /// The layout hash of the numbers of inputs and outputs, and of the slope.
+    /// Computes the hash of the numbers of inputs and outputs and of the slope.
     pub fn layout_hash(inputs: usize, outputs: usize, slope: f32) -> u64 {
         PerceptronModel { inputs, outputs, slope }.hash()
     }
 
-    /// Compares shape and slope with those of the caller.
+    /// Checks that the shape and the slope are those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect(&self, inputs: usize, outputs: usize, slope: f32) -> Result<(), BytesError> {
         self.expect_shape(&PerceptronModel { inputs, outputs, slope })
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.shape.inputs
     }
 
-    /// Number of outputs.
+    /// Returns the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.shape.outputs
     }
 
-    /// The slope of the logistic function.
+    /// Returns the slope of the logistic function.
     pub const fn slope(&self) -> f32 {
         self.shape.slope
     }

@@ -1,4 +1,4 @@
-//! The bytes of a leaky network in integers.
+//! The binary format of leaky networks with integer parameters.
 
 use crate::bytes::error::{BytesError, Field};
 use crate::bytes::frame::{Kind, SHAPE, layout_hash, variant, word};
@@ -9,10 +9,10 @@ use crate::leaky_layout::LeakyLayout;
 use crate::quantized::network::check;
 use crate::quantized::scale::QuantizedScale;
 
-/// The checked bytes of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork).
+/// A [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) in its binary format. The bytes have been checked.
 ///
-/// The scale is stored next to the parameters, because it differs between individuals. A board only fixes the fraction bits
-/// of the sensor values. The weights include the slope of the logistic function.
+/// Since the scale differs between individuals, it is stored together with the parameters. A board only determines the
+/// number of fraction bits of the sensor values. The weights include the slope of the logistic function.
 ///
 /// ```
 /// use farsa_nn::bytes::{Aligned, QuantizedNetworkBytes};
@@ -41,7 +41,7 @@ use crate::quantized::scale::QuantizedScale;
 /// ```
 pub type QuantizedNetworkBytes<'a> = NetworkBytes<'a, QuantizedShape>;
 
-/// The shape of the bytes of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork).
+/// The shape of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) in its binary format.
 #[derive(Clone, Copy, Debug)]
 pub struct QuantizedShape {
     layout: LeakyLayout,
@@ -50,18 +50,18 @@ pub struct QuantizedShape {
 }
 
 impl NetworkBytes<'_, QuantizedShape> {
-    /// Number of bytes of a network of this layout. Saturates.
+    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
         byte_count::<i16>(layout.parameter_count())
     }
 
-    /// Writes a network into `out` [[`byte_count`](Self::byte_count)].
+    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
     ///
-    /// `channels` is the [`channel_hash`](crate::bytes::channel_hash) of inputs and outputs, or 0.
+    /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as for [`QuantizedNetwork::new`](crate::quantized::QuantizedNetwork::new), [`BytesError::Buffer`].
-    /// Then nothing is written.
+    /// Returns [`BytesError::Parameters`] if [`QuantizedNetwork::new`](crate::quantized::QuantizedNetwork::new) would
+    /// fail, or [`BytesError::Buffer`]. In these cases nothing is written.
     pub fn write(
         layout: LeakyLayout,
         leak: Leak,
@@ -73,33 +73,33 @@ impl NetworkBytes<'_, QuantizedShape> {
         Shape::write(&QuantizedShape { layout, leak, scale }, channels, parameters, out)
     }
 
-    /// The layout hash of the layout without its slope, the reading of the leak and the scale.
+    /// Computes the hash of the layout without its slope, of the interpretation of the leaks and of the scale.
     pub fn layout_hash(layout: LeakyLayout, leak: Leak, scale: QuantizedScale) -> u64 {
         QuantizedShape { layout, leak, scale }.hash()
     }
 
-    /// Compares the layout without its slope, the reading of the leak and the fraction bits of sensor values with those of
-    /// the caller.
+    /// Checks that the layout without its slope, the interpretation of the leaks and the number of fraction bits of the
+    /// sensor values are those of the caller.
     ///
     /// # Errors
-    /// [`BytesError::Mismatch`].
+    /// Returns [`BytesError::Mismatch`] if they differ.
     pub fn expect(&self, layout: LeakyLayout, leak: Leak, input_bits: u32) -> Result<(), BytesError> {
         let mut words = QuantizedShape { layout, leak, scale: self.shape.scale }.words();
         words[5] = input_bits;
         Field::Layout.check(layout_hash(Kind::QuantizedNetwork, &words), self.shape.hash())
     }
 
-    /// The layout. Its slope has no meaning.
+    /// Returns the layout of the network. Its slope is not used.
     pub const fn layout(&self) -> LeakyLayout {
         self.shape.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }
 
-    /// The positions of the binary points.
+    /// Returns the scale, which defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.shape.scale
     }

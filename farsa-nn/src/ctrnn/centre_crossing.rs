@@ -1,4 +1,4 @@
-//! Biases that place every neuron of a continuous-time network where its function is steepest.
+//! Center-crossing biases, for which each neuron of a continuous-time network operates where its function is steepest.
 
 use farsa_num::Stream;
 
@@ -7,10 +7,11 @@ use crate::error::Error;
 use crate::fault::Slice;
 
 impl CtrnnLayout {
-    /// Sets the biases to `theta_i = - sum_j w_ji / 2`: the nullclines of all neurons cross at the centers of their
-    /// functions, where rich dynamics are most likely.
+    /// Sets the biases to `theta_i = - sum_j w_ji / 2`. With these values, the nullclines of all neurons intersect at
+    /// the centers of their activation functions, where rich dynamics are most likely.
     ///
-    /// This holds for the logistic function and inputs at rest. With tanh, whose center is 0, the biases are 0.
+    /// The formula assumes the logistic function and inputs at rest. For the hyperbolic tangent, whose center is 0, the
+    /// biases are set to 0.
     ///
     /// Source: `[Mathayomchan2002]`. No deviation for the logistic function.
     ///
@@ -25,7 +26,7 @@ impl CtrnnLayout {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Length`]. Then the parameters are unchanged.
+    /// Returns [`Error::Length`]. In this case the parameters are unchanged.
     pub fn centre_crossing(&self, parameters: &mut [f32]) -> Result<(), Error> {
         Slice::Parameters.check(self.parameter_count(), parameters.len())?;
         let middle = self.activation().apply(0.0);
@@ -39,13 +40,14 @@ impl CtrnnLayout {
         Ok(())
     }
 
-    /// Draws a centre-crossing network: weights, and those of inputs, in `[-weight, weight)`, gains of 1, time constants in
-    /// `[shortest, longest)`, and the biases of [`centre_crossing`](Self::centre_crossing).
+    /// Draws a center-crossing network. All weights, including those of the inputs, are in `[-weight, weight)`, and
+    /// time constants are in `[shortest, longest)`. The gains are 1, and the biases are set by
+    /// [`centre_crossing`](Self::centre_crossing).
     ///
-    /// Draws one number for each weight and each time constant, in their order.
+    /// One number is drawn for each weight and each time constant, in the order of the parameters.
     ///
     /// # Errors
-    /// [`Error::Length`]. Then the parameters are unchanged and nothing is drawn.
+    /// Returns [`Error::Length`]. In this case the parameters are unchanged and no number is drawn.
     pub fn draw_centre_crossing(
         &self,
         stream: &mut Stream,

@@ -1,7 +1,7 @@
-//! One step of a continuous-time network, over the lanes of a [`Scalar`].
+//! One step of a continuous-time network, computed for the lanes of a [`Scalar`].
 //!
-//! Lanes are neurons, which depend on each other only through the outputs of the previous step. As in the kernel of layers, the
-//! width of the vectors does not change a bit.
+//! Each lane is a neuron. Within a step, neurons depend on each other only through the outputs of the previous step. As
+//! in the kernel of layers, the width of the vectors does not change the results.
 
 use core::f64::consts::LN_2;
 
@@ -42,8 +42,8 @@ pub(crate) struct Dynamics<'a, R = f32> {
 
 /// The coefficient of an integrator for a time constant and a time step.
 ///
-/// The exponential integrator moves the state to the net input by the fraction `1 - exp(-dt/tau)`. Above a half, the fraction
-/// `exp(-dt/tau)` back from the net input is more exact. A minus sign marks this second form.
+/// The exponential integrator moves the state to the net input by the fraction `1 - exp(-dt/tau)`. Above a half, the
+/// fraction `exp(-dt/tau)` back from the net input is more exact. A minus sign marks this second form.
 pub(crate) fn rate(integrator: Integrator, time_step: f64, time_constant: f64) -> f64 {
     let x = time_step / time_constant;
     match integrator {
@@ -108,7 +108,8 @@ impl<R: Real> Dynamics<'_, R> {
         }
     }
 
-    /// One stage of the neurons from `i` on, as many as there are lanes: the states, the sums of slopes, and the outputs.
+    /// One stage of the neurons from `i` on, as many as there are lanes: the states, the sums of slopes, and the
+    /// outputs.
     #[inline(always)]
     fn advance<S: Scalar<Real = R>>(&self, simd: S::Simd, stage: usize, i: usize) -> [S; 3] {
         let (y, net) = (S::load(simd, &self.y[i..]), S::load(simd, &self.net[i..]));

@@ -1,4 +1,4 @@
-//! Integrators of continuous-time networks.
+//! The integration methods of continuous-time networks.
 
 use core::fmt;
 use core::str::FromStr;
@@ -6,28 +6,30 @@ use core::str::FromStr;
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// The method that advances a [`Ctrnn`](crate::Ctrnn) from `t` to `t + dt` with constant external inputs.
+/// The method that integrates a [`Ctrnn`](crate::Ctrnn) from `t` to `t + dt` while the external inputs are constant.
 ///
-/// With `f_i(y) = ( -y_i + net_i(y) ) / tau_i` and the net input `net_i`:
+/// The methods use `f_i(y) = ( -y_i + net_i(y) ) / tau_i` with the net input `net_i`:
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
-    /// `y(t+dt) = y + dt f(y)`: first order, unstable where `tau < dt/2`.
+    /// The Euler method, `y(t+dt) = y + dt f(y)`. It is of first order and unstable if `tau < dt/2`.
     #[default]
     Euler,
-    /// `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`: first order, exact while `net` is constant, stable for every `tau`.
+    /// The exponential Euler method, `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`. It is of first order, exact
+    /// for constant `net`, and stable for every `tau`.
     ExponentialEuler,
-    /// The classical method of fourth order with four evaluations a step, unstable where `tau < dt/2.785`.
+    /// The classical fourth-order Runge-Kutta method with four evaluations per step. It is unstable if `tau <
+    /// dt/2.785`.
     #[cfg_attr(feature = "serde", serde(rename = "runge-kutta-4"))]
     RungeKutta4,
 }
 
 impl Integrator {
-    /// Every integrator, in the order of their declaration.
+    /// All integrators in the order of their declaration.
     pub const ALL: [Self; 3] = [Self::Euler, Self::ExponentialEuler, Self::RungeKutta4];
 
-    /// The name in configurations and logs: `euler`, `exponential-euler` or `runge-kutta-4`.
+    /// Returns the name that is used in configurations and logs. It is `euler`, `exponential-euler` or `runge-kutta-4`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Euler => "euler",
@@ -36,7 +38,8 @@ impl Integrator {
         }
     }
 
-    /// The smallest time constant [s] with which a single neuron does not diverge at this time step [s], 0 if all are stable.
+    /// Returns the smallest time constant [s] for which a single neuron does not diverge with the given time step [s].
+    /// It is 0 if the method is always stable.
     ///
     /// ```
     /// use farsa_nn::Integrator;
@@ -62,10 +65,11 @@ impl fmt::Display for Integrator {
 impl FromStr for Integrator {
     type Err = Error;
 
-    /// Finds the integrator of this name, ignoring case and hyphens. `RungeKutta4` is `runge-kutta-4`.
+    /// Parses the name of an integrator. Case and hyphens are ignored, so `RungeKutta4` is equivalent to
+    /// `runge-kutta-4`.
     ///
     /// # Errors
-    /// [`Error::Name`] for an unknown name.
+    /// Returns [`Error::Name`] if the name is unknown.
     fn from_str(name: &str) -> Result<Self, Error> {
         Self::ALL
             .into_iter()

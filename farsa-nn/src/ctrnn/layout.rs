@@ -1,40 +1,41 @@
-//! The shape of a continuous-time recurrent network and the order of its parameters.
+//! The layout of a continuous-time recurrent network, which also defines the order of its parameters.
 
 use core::ops::Range;
 
 use crate::activation::Activation;
 use crate::ctrnn::integrator::Integrator;
 
-/// The kind of a parameter of a [`CtrnnLayout`].
+/// The kind of a parameter in a [`CtrnnLayout`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum CtrnnParameter {
-    /// `s_ki`: from input `k` to neuron `i`.
+    /// The weight `s_ki` from input `k` to neuron `i`.
     InputWeight,
-    /// `w_ji`: from neuron `j` to neuron `i`.
+    /// The weight `w_ji` from neuron `j` to neuron `i`.
     Weight,
-    /// `theta_i`: added to the state of neuron `i`.
+    /// The bias `theta_i`, which is added to the state of neuron `i`.
     Bias,
-    /// `g_i`: the gain of neuron `i`, 1 in an experiment without gains.
+    /// The gain `g_i` of neuron `i`. It is 1 in experiments without gains.
     Gain,
-    /// `tau_i` [s]: the time constant of neuron `i`.
+    /// The time constant `tau_i` of neuron `i` [s].
     TimeConstant,
 }
 
 impl CtrnnParameter {
-    /// Every kind, in the order of the parameters.
+    /// All kinds in the order of the parameters.
     pub const ALL: [Self; 5] = [Self::InputWeight, Self::Weight, Self::Bias, Self::Gain, Self::TimeConstant];
 }
 
-/// The layout of a [`Ctrnn`](crate::Ctrnn): numbers of inputs `m`, neurons `n` and outputs, the neurons of inputs and outputs, and
-/// the integrator.
+/// The layout of a [`Ctrnn`](crate::Ctrnn). It defines the numbers of inputs `m`, neurons `n` and outputs, the neurons
+/// to which inputs and outputs belong, and the integrator.
 ///
-/// Weighted inputs reach every neuron. A direct input `k` is the external input of one neuron. The neurons of direct inputs are
-/// one range, and so are those of the outputs.
+/// Weighted inputs are connected to all neurons. A direct input is the external input of a single neuron. The neurons
+/// of direct inputs are consecutive, and so are those of the outputs.
 ///
-/// The parameters are one slice, source-major: all targets of one source together. `m` counts 0 if inputs are direct.
+/// All parameters are stored in one slice. Weights are ordered by source, so the weights to all targets of a source are
+/// consecutive. If inputs are direct, `m` is 0 in the following table.
 ///
 /// | kind | count | at |
 /// |---|---|---|
@@ -44,7 +45,7 @@ impl CtrnnParameter {
 /// | [`Gain`](CtrnnParameter::Gain) | `n` | `m*n + n*n + n + i` |
 /// | [`TimeConstant`](CtrnnParameter::TimeConstant) | `n` | `m*n + n*n + 2*n + i` |
 ///
-/// Counts saturate, as those of a [`LeakyLayout`](crate::LeakyLayout).
+/// All counts saturate, as in a [`LeakyLayout`](crate::LeakyLayout).
 ///
 /// ```
 /// use farsa_nn::{CtrnnLayout, Integrator};
@@ -67,25 +68,25 @@ pub struct CtrnnLayout {
     activation: Activation,
 }
 
-/// The parameters of a [`CtrnnLayout`] by kind, as returned by [`CtrnnLayout::split`].
+/// The parameters of a [`CtrnnLayout`], separated by kind. This is the result of [`CtrnnLayout::split`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CtrnnParts<'a> {
-    /// Weights from the inputs `[inputs x neurons]`, empty if inputs are direct.
+    /// The weights from the inputs `[inputs x neurons]`. The slice is empty if inputs are direct.
     pub input_weights: &'a [f32],
-    /// Weights between neurons `[neurons x neurons]`.
+    /// The weights between neurons `[neurons x neurons]`.
     pub weights: &'a [f32],
-    /// Biases `[neurons]`.
+    /// The biases of all neurons.
     pub biases: &'a [f32],
-    /// Gains `[neurons]`.
+    /// The gains of all neurons.
     pub gains: &'a [f32],
-    /// Time constants `[neurons]` [s].
+    /// The time constants of all neurons [s].
     pub time_constants: &'a [f32],
 }
 
 impl CtrnnLayout {
-    /// Builds a layout with weighted inputs and the outputs of the last neurons. The integrator is [`Integrator::Euler`], the
-    /// activation [`Activation::Logistic`].
+    /// Creates a layout with weighted inputs. The last neurons are the outputs. By default, the integrator is
+    /// [`Integrator::Euler`] and the activation function is [`Activation::Logistic`].
     pub const fn new(inputs: usize, neurons: usize, outputs: usize) -> Self {
         Self {
             inputs,
@@ -98,16 +99,16 @@ impl CtrnnLayout {
         }
     }
 
-    /// Makes input `k` the external input of neuron `first + k`, without weights.
+    /// Changes input `k` to the external input of neuron `first + k`, without a weight.
     ///
-    /// [`Ctrnn::new`](crate::Ctrnn::new) checks that the neurons exist.
+    /// The neurons are checked by [`Ctrnn::new`](crate::Ctrnn::new).
     pub const fn with_direct_inputs(self, first: usize) -> Self {
         Self { direct: Some(first), ..self }
     }
 
-    /// Uses the outputs of the neurons from `first` on.
+    /// Selects the neurons that are outputs, starting at neuron `first`.
     ///
-    /// [`Ctrnn::new`](crate::Ctrnn::new) checks that the neurons exist.
+    /// The neurons are checked by [`Ctrnn::new`](crate::Ctrnn::new).
     pub const fn with_outputs_from(self, first: usize) -> Self {
         Self { first_output: first, ..self }
     }
@@ -122,22 +123,22 @@ impl CtrnnLayout {
         Self { activation, ..self }
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Number of neurons.
+    /// Returns the number of neurons.
     pub const fn neurons(&self) -> usize {
         self.neurons
     }
 
-    /// Number of outputs.
+    /// Returns the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// The neurons of direct inputs, `None` if inputs are weighted.
+    /// Returns the neurons that receive direct inputs, or `None` if inputs are weighted.
     pub const fn direct_inputs(&self) -> Option<Range<usize>> {
         match self.direct {
             Some(first) => Some(first..first.saturating_add(self.inputs)),
@@ -145,39 +146,39 @@ impl CtrnnLayout {
         }
     }
 
-    /// The neurons of the outputs.
+    /// Returns the neurons that are outputs.
     pub const fn output_neurons(&self) -> Range<usize> {
         self.first_output..self.first_output.saturating_add(self.outputs)
     }
 
-    /// The integrator.
+    /// Returns the integrator.
     pub const fn integrator(&self) -> Integrator {
         self.integrator
     }
 
-    /// The activation function.
+    /// Returns the activation function.
     pub const fn activation(&self) -> Activation {
         self.activation
     }
 
-    /// Number of parameters, `m*n + n*n + 3*n`.
+    /// Returns the number of parameters, which is `m*n + n*n + 3*n`.
     pub const fn parameter_count(&self) -> usize {
         self.range(CtrnnParameter::TimeConstant).end
     }
 
-    /// Length of the state: `5*n` for direct inputs, `4*n + m` for weighted ones, and `2*n` more for
-    /// [`Integrator::RungeKutta4`].
+    /// Returns the length of the state. It is `5*n` for direct inputs and `4*n + m` for weighted ones. With
+    /// [`Integrator::RungeKutta4`] it is larger by `2*n`.
     ///
-    /// The order is: states `y` `[neurons]`, outputs `o` `[neurons]`, coefficients of the time constants `[neurons]`, workspace
-    /// of the sums `[neurons]`, inputs, workspace of the integrator. Only `y` is memory. The rest follows from it and from the
-    /// parameters.
+    /// The state contains the states `y` `[neurons]`, the outputs `o` `[neurons]`, the coefficients of the time
+    /// constants `[neurons]`, a workspace for sums `[neurons]`, the inputs, and the workspace of the integrator. Only
+    /// `y` is memory. Everything else is computed from it and from the parameters.
     pub const fn state_len(&self) -> usize {
         let inputs = if self.direct.is_some() { self.neurons } else { self.inputs };
         let vectors = if matches!(self.integrator, Integrator::RungeKutta4) { 6 } else { 4 };
         self.neurons.saturating_mul(vectors).saturating_add(inputs)
     }
 
-    /// The indices of the parameters of one kind.
+    /// Returns the indices of all parameters of a kind.
     pub const fn range(&self, kind: CtrnnParameter) -> Range<usize> {
         let n = self.neurons;
         let weights = if self.direct.is_some() { 0 } else { self.inputs.saturating_mul(n) };
@@ -193,12 +194,12 @@ impl CtrnnLayout {
         }
     }
 
-    /// The kind of the parameter at this index, `None` beyond the last.
+    /// Returns the kind of the parameter at the given index, or `None` if there is no such parameter.
     pub fn kind(&self, index: usize) -> Option<CtrnnParameter> {
         CtrnnParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
-    /// The kind of each parameter, in their order, for decoding a genome.
+    /// Returns an iterator over the kinds of all parameters. This is useful for decoding a genome.
     ///
     /// ```
     /// use farsa_nn::{CtrnnLayout, CtrnnParameter};
@@ -220,9 +221,9 @@ impl CtrnnLayout {
         CtrnnParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
-    /// Splits parameters [[`parameter_count`](Self::parameter_count)] by kind.
+    /// Separates parameters by kind. The length of the slice should be [`parameter_count`](Self::parameter_count).
     ///
-    /// A slice that is too short truncates the last kinds. Extra parameters are ignored.
+    /// If the slice is too short, the last kinds are truncated. Additional parameters are ignored.
     pub fn split<'a>(&self, parameters: &'a [f32]) -> CtrnnParts<'a> {
         let part = |kind| {
             let Range { start, end } = self.range(kind);

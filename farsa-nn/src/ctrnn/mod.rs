@@ -1,4 +1,4 @@
-//! The continuous-time recurrent network.
+//! Continuous-time recurrent networks.
 
 /// Biases that place every neuron where its function is steepest.
 mod centre_crossing;

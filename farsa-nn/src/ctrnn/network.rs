@@ -12,23 +12,26 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// A continuous-time recurrent neural network.
 ///
 /// Each neuron has a state `y_i`, an output `o_i`, a time constant `tau_i`, a bias `theta_i` and a gain `g_i`. With
-/// `sigma(x) = 1/(1 + exp(-x))`, or the function of [`CtrnnLayout::with_activation`], and external inputs `I_i`:
+/// external inputs `I_i` and `sigma(x) = 1/(1 + exp(-x))`, or the function that is set by
+/// [`CtrnnLayout::with_activation`]:
 ///
 /// ```text
 /// tau_i dy_i/dt = -y_i + sum_j w_ji o_j + I_i          o_j = sigma( g_j (y_j + theta_j) )
 /// ```
 ///
-/// `I_i` is `sum_k s_ki x_k`, or the input itself where inputs are direct. [`step`](crate::Controller::step) advances by one
-/// time step with constant inputs and writes the outputs at its end. Sums start at the external input and add the neurons
-/// in their order.
+/// The external input `I_i` is `sum_k s_ki x_k` for weighted inputs and the input itself for direct ones. Each call of
+/// [`step`](crate::Controller::step) advances the network by one time step with constant inputs and writes the outputs
+/// at its end. Sums start with the external input, and the neurons are added in their order.
 ///
-/// Only an overflow of the sums can make a state NaN. Its output is 0, so it does not spread, and it lasts until
-/// [`reset`](crate::Controller::reset). Inputs beyond [`INPUT_LIMIT`](Ctrnn::INPUT_LIMIT) count as the limit, NaN as 0.
+/// A state can become NaN only if a sum overflows. In this case its output is 0, so the NaN does not spread, and it
+/// remains until [`reset`](crate::Controller::reset) is called. Inputs are clamped to
+/// [`INPUT_LIMIT`](Ctrnn::INPUT_LIMIT), and NaN is treated as 0.
 ///
-/// For lesions, neurons are numbered as in the layout. A held neuron has its output held, and its state continues.
+/// For lesions, neurons are numbered as in the layout. The output of a lesioned neuron is constant, but its state
+/// continues to change.
 ///
-/// Source: `[Beer1995]` eq. 1, with the gains of `[Beer1996]`. Deviations: the initial state is `y = 0` where the source draws
-/// it, and there is more than one integrator.
+/// Source: `[Beer1995]` eq. 1, with the gains of `[Beer1996]`. Deviations: the initial state is `y = 0`, whereas the
+/// source draws it. Several integrators are available.
 ///
 /// ```
 /// use farsa_nn::{Controller, Ctrnn, CtrnnLayout};
@@ -51,7 +54,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// ```
 pub type Ctrnn<P, S> = Network<CtrnnModel, P, S>;
 
-/// The layout of a [`Ctrnn`] and its time step [s].
+/// The layout of a [`Ctrnn`], together with its time step in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CtrnnModel {
     pub(crate) layout: CtrnnLayout,
@@ -64,19 +67,21 @@ impl Ctrnn<(), ()> {
 }
 
 impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<CtrnnModel, P, S> {
-    /// Builds a network at rest (`y = 0`) from parameters [[`parameter_count`](CtrnnLayout::parameter_count)] and a state
-    /// [[`state_len`](CtrnnLayout::state_len)], which it overwrites. The time step has the unit of the time constants [s].
+    /// Creates a network with the given parameters and resets its state to `y = 0`. The slices must have the lengths
+    /// [`parameter_count`](CtrnnLayout::parameter_count) and [`state_len`](CtrnnLayout::state_len). The time step has
+    /// the same unit as the time constants [s].
     ///
     /// # Errors
-    /// [`Error::Layout`] for the time step or for neurons, [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`] if the time step or the neurons are invalid, [`Error::Length`] or
+    /// [`Error::Parameter`].
     pub fn new(layout: CtrnnLayout, time_step: f32, parameters: P, state: S) -> Result<Self, Error> {
         Self::at_rest(CtrnnModel { layout, time_step }, parameters, state)
     }
 
-    /// Sets the states `y` `[neurons]` and the outputs that follow from them.
+    /// Sets the states `y` of all neurons and computes the resulting outputs.
     ///
     /// # Errors
-    /// [`Error::Length`] or [`Error::State`]. Then the network is unchanged.
+    /// Returns [`Error::Length`] or [`Error::State`]. In this case the network is unchanged.
     pub fn set_states(&mut self, states: &[f32]) -> Result<(), Error> {
         Slice::State.check(self.model.layout.neurons(), states.len())?;
         if let Some(index) = states.iter().position(|y| !y.is_finite()) {
@@ -89,17 +94,17 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<CtrnnModel, P, S> {
 }
 
 impl<P, S> Network<CtrnnModel, P, S> {
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> CtrnnLayout {
         self.model.layout
     }
 
-    /// The time step [s].
+    /// Returns the time step [s].
     pub const fn time_step(&self) -> f32 {
         self.model.time_step
     }
 
-    /// The states `y` `[neurons]`.
+    /// Returns the states `y` of all neurons.
     pub fn states(&self) -> &[f32]
     where
         S: AsRef<[f32]>,
@@ -108,7 +113,7 @@ impl<P, S> Network<CtrnnModel, P, S> {
         state.get(..self.model.layout.neurons()).unwrap_or(state)
     }
 
-    /// The outputs `o` of all neurons `[neurons]`.
+    /// Returns the outputs `o` of all neurons.
     pub fn neuron_outputs(&self) -> &[f32]
     where
         S: AsRef<[f32]>,

@@ -1,15 +1,15 @@
-//! Bilateral symmetry: few genes, each for all parameters that are equal.
+//! Bilateral symmetry, in which each gene determines all parameters that are equal.
 
 use crate::block::description::Span;
 use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
 use crate::fault::{LayoutFault, Slice};
 
-/// A map from few genes to all parameters of a mirror-symmetric [`Ctrnn`](crate::Ctrnn).
+/// A mapping from a small number of genes to all parameters of a mirror-symmetric [`Ctrnn`](crate::Ctrnn).
 ///
-/// Neurons can also be alike, and links can be absent. A weight from `j` to `i` equals that from the mirror image of `j` to the
-/// mirror image of `i`. Biases, gains and time constants equal those of the mirror image. Genes are in the order of the first
-/// parameters that they fill.
+/// The weight from `j` to `i` equals the weight from the mirror image of `j` to the mirror image of `i`. Biases, gains
+/// and time constants equal those of the mirror image. In addition, neurons can be alike and links can be absent. Genes
+/// are ordered by the first parameter that they determine.
 ///
 /// ```
 /// use farsa_nn::block::Span;
@@ -55,11 +55,12 @@ enum Origin {
 }
 
 impl<'a> CtrnnSymmetry<'a> {
-    /// Builds a symmetry from the mirror image of each input `[inputs; empty where inputs are direct]` and of each neuron
-    /// `[neurons]`. An element in the middle is its own image.
+    /// Creates a symmetry. The slices contain the mirror image of each input and of each neuron. The list of inputs is
+    /// empty if inputs are direct. An element in the middle is its own mirror image.
     ///
     /// # Errors
-    /// [`Error::Length`], or [`Error::Layout`] for a missing mirror image or one with another image.
+    /// Returns [`Error::Length`], or [`Error::Layout`] if a mirror image does not exist or has a different mirror
+    /// image.
     pub fn new(layout: CtrnnLayout, inputs: &'a [usize], neurons: &'a [usize]) -> Result<Self, Error> {
         let weighted = if layout.direct_inputs().is_some() { 0 } else { layout.inputs() };
         for (images, expected) in [(inputs, weighted), (neurons, layout.neurons())] {
@@ -72,21 +73,21 @@ impl<'a> CtrnnSymmetry<'a> {
         Ok(Self { layout, inputs, neurons, links: None, alike: &[], gains: None })
     }
 
-    /// Limits links to these spans, each from all of one span to all of another, and to their mirror images. Other weights
-    /// between neurons are zero.
+    /// Restricts the links to the given pairs of spans and to their mirror images. All neurons of the first span are
+    /// connected to all neurons of the second one. All other weights between neurons are zero.
     ///
     /// # Errors
-    /// [`Error::Layout`] for a span of neurons that the layout does not have.
+    /// Returns [`Error::Layout`] if a span contains neurons that do not exist.
     pub fn with_links(self, links: &'a [(Span, Span)]) -> Result<Self, Error> {
         links.iter().try_for_each(|(sources, targets)| self.check(*sources).and(self.check(*targets)))?;
         Ok(Self { links: Some(links), ..self })
     }
 
-    /// Uses one bias, one gain and one time constant for all neurons of each of these spans.
+    /// Uses a common bias, gain and time constant for all neurons of a span.
     ///
     /// # Errors
-    /// [`Error::Layout`] for neurons that the layout does not have, for overlapping spans, or for mirror images that are not all
-    /// the neurons of one of the spans.
+    /// Returns [`Error::Layout`] if neurons do not exist or if spans overlap. The same error is returned if the mirror
+    /// images of a span are not exactly the neurons of another or the same span.
     pub fn with_alike(self, alike: &'a [Span]) -> Result<Self, Error> {
         for (index, span) in alike.iter().enumerate() {
             self.check(*span)?;
@@ -101,11 +102,11 @@ impl<'a> CtrnnSymmetry<'a> {
         Ok(Self { alike, ..self })
     }
 
-    /// Limits gain genes to the neurons of these spans and to their mirror images. Other gains are 1. Alike neurons follow the
-    /// first of them.
+    /// Restricts the genes for gains to the given neurons and to their mirror images. All other gains are 1. If neurons
+    /// are alike, the first of them determines if there is a gene.
     ///
     /// # Errors
-    /// [`Error::Layout`] for a span of neurons that the layout does not have.
+    /// Returns [`Error::Layout`] if a span contains neurons that do not exist.
     pub fn with_gains(self, gains: &'a [Span]) -> Result<Self, Error> {
         gains.iter().try_for_each(|span| self.check(*span))?;
         Ok(Self { gains: Some(gains), ..self })
@@ -116,23 +117,23 @@ impl<'a> CtrnnSymmetry<'a> {
         if span.end() > neurons { Err(LayoutFault::Neurons { first, count, neurons }.into()) } else { Ok(()) }
     }
 
-    /// Number of genes.
+    /// Returns the number of genes.
     pub fn gene_count(&self) -> usize {
         self.kinds().count()
     }
 
-    /// The kind of each gene, in their order, for decoding a genome.
+    /// Returns an iterator over the kinds of all genes. This is useful for decoding a genome.
     pub fn kinds(&self) -> impl Iterator<Item = CtrnnParameter> + use<'a> {
         let symmetry = *self;
         let genes = symmetry.layout.kinds().enumerate();
         genes.filter(move |(index, kind)| symmetry.origin(*kind, *index) == Origin::Gene).map(|(_, kind)| kind)
     }
 
-    /// Fills the parameters [[`parameter_count`](CtrnnLayout::parameter_count)] from decoded genes
-    /// [[`gene_count`](Self::gene_count)].
+    /// Computes all parameters from decoded genes. The slices must have the lengths
+    /// [`parameter_count`](CtrnnLayout::parameter_count) and [`gene_count`](Self::gene_count).
     ///
     /// # Errors
-    /// [`Error::Length`] for a slice of another length. Then the parameters are unchanged.
+    /// Returns [`Error::Length`] if a slice has a different length. In this case the parameters are unchanged.
     pub fn expand(&self, genes: &[f32], parameters: &mut [f32]) -> Result<(), Error> {
         Slice::Parameters.check(self.gene_count(), genes.len())?;
         Slice::Parameters.check(self.layout.parameter_count(), parameters.len())?;

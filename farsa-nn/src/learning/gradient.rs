@@ -1,4 +1,4 @@
-//! Back-propagation through time of the leaky recurrent network.
+//! Back-propagation through time for the leaky recurrent network.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -15,29 +15,33 @@ use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Loss {
-    /// `(O - T)^2`.
+    /// The squared error `(O - T)^2`.
     #[default]
     SquaredError,
-    /// `-T ln O - (1-T) ln(1-O)`, less the cost of `O = T`. Wrong outputs near 0 and 1 learn faster than by squared errors.
+    /// The cross entropy `-T ln O - (1-T) ln(1-O)`, minus its value for `O = T`. Wrong outputs near 0 and 1 are
+    /// corrected faster than with squared errors.
     CrossEntropy,
 }
 
-/// An example for a network: sensor values and target motor values, tick by tick from the start at rest.
+/// An example from which a network learns. It contains sensor values and target motor values for each tick, and the
+/// network starts at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demonstration<'a> {
-    /// Sensor values `[ticks x sensors]`.
+    /// The sensor values `[ticks x sensors]`.
     pub x: &'a [f32],
-    /// Target motor values `[ticks x outputs]`, in [0, 1].
+    /// The target motor values `[ticks x outputs]`, which are in [0, 1].
     pub wanted: &'a [f32],
 }
 
-/// The gradient of the cost of demonstrations by the parameters of a [`LeakyNetwork`](crate::LeakyNetwork), summed over them.
+/// The gradient of the cost with respect to the parameters of a [`LeakyNetwork`](crate::LeakyNetwork), summed over
+/// demonstrations.
 ///
-/// The network runs over each demonstration from its start at rest. Then the cost is propagated back through all its ticks. A
-/// demonstration of one tick is an example for a network without memory. Recurrent weights then have no effect, and with
-/// leaks of 1 ([`Leak::Filter`]) this is plain back-propagation.
+/// The network is run over each demonstration, starting at rest. Then the cost is propagated back through all ticks.
+/// Demonstrations with a single tick are examples for a network without memory. In this case the recurrent weights have
+/// no effect, and with leaks of 1 ([`Leak::Filter`]) the algorithm is plain back-propagation.
 ///
-/// Use `f64` for learning. `f32` needs half the memory. Every sum has a fixed order, so the bits are the same on every machine.
+/// For learning, `f64` is recommended, although `f32` needs only half the memory. Since all sums have a fixed order,
+/// the results are identical on every machine.
 ///
 /// Source: `[Rumelhart1986]` for back-propagation, `[Werbos1990]` through time. The equations are those of
 /// [`LeakyNetwork`](crate::LeakyNetwork), with the derivative of the leak.
@@ -67,16 +71,16 @@ pub struct Gradient<R> {
     ticks: usize,
     /// For each tick: responses `[hidden]`, activations `[hidden]`, motor values `[outputs]`.
     trace: Vec<R>,
-    /// The derivatives of the cost by the activations and by the responses of a tick `[hidden]` each, and through the logistic
-    /// functions of a layer `[hidden or outputs]`.
+    /// The derivatives of the cost by the activations and by the responses of a tick `[hidden]` each, and through the
+    /// logistic functions of a layer `[hidden or outputs]`.
     back: [Vec<R>; 3],
 }
 
 impl<R: Real> Gradient<R> {
-    /// Builds a gradient without demonstrations.
+    /// Creates a gradient without any demonstrations.
     ///
     /// # Errors
-    /// [`Error::Layout`] for the slope.
+    /// Returns [`Error::Layout`] if the slope is invalid.
     pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss) -> Result<Self, Error> {
         LayoutFault::check_slope(layout.slope())?;
         let zeros = |len| vec![R::default(); len];
@@ -85,59 +89,60 @@ impl<R: Real> Gradient<R> {
         Ok(Self { layout, leak, loss, sum, cost: R::default(), ticks: 0, trace: Vec::new(), back })
     }
 
-    /// The layout.
+    /// Returns the layout of the network.
     pub fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub fn leak(&self) -> Leak {
         self.leak
     }
 
-    /// The sum over the demonstrations since [`clear`](Self::clear)
-    /// [[`parameter_count`](LeakyLayout::parameter_count)].
+    /// Returns the sum of the gradients since the last call of [`clear`](Self::clear). It has one element per
+    /// parameter.
     pub fn sum(&self) -> &[R] {
         &self.sum
     }
 
-    /// The mutable sum: to take the mean, to freeze parameters, to clip.
+    /// Returns a mutable reference to the sum. It can be used to compute the mean, to freeze parameters or to clip the
+    /// gradient.
     pub fn sum_mut(&mut self) -> &mut [R] {
         &mut self.sum
     }
 
-    /// The cost per motor value of the demonstrations since [`clear`](Self::clear).
+    /// Returns the mean cost per motor value since the last call of [`clear`](Self::clear).
     pub fn mean_cost(&self) -> R {
         let values = self.ticks.saturating_mul(self.layout.outputs());
         if values == 0 { R::default() } else { self.cost / R::from_f64(values as f64) }
     }
 
-    /// Ticks of the demonstrations since [`clear`](Self::clear).
+    /// Returns the number of ticks since the last call of [`clear`](Self::clear).
     pub fn ticks(&self) -> usize {
         self.ticks
     }
 
-    /// Discards all demonstrations.
+    /// Removes all demonstrations.
     pub fn clear(&mut self) {
         self.sum.fill(R::default());
         (self.cost, self.ticks) = (R::default(), 0);
     }
 
-    /// Computes the cost of a demonstration under these parameters [[`parameter_count`](LeakyLayout::parameter_count)], a sum
-    /// over its ticks and motor values. The gradient is unchanged.
+    /// Computes the cost of a demonstration, which is summed over its ticks and motor values. The gradient is not
+    /// changed. The number of parameters must be [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors
-    /// [`Error::Length`], [`Error::Demonstration`].
+    /// Returns [`Error::Length`] or [`Error::Demonstration`].
     pub fn cost(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
         self.check(parameters, demonstration)?;
         Ok(self.run(parameters, demonstration))
     }
 
-    /// Adds the gradient of the cost of a demonstration under these parameters
-    /// [[`parameter_count`](LeakyLayout::parameter_count)] and returns the cost, a sum over its ticks and motor values.
+    /// Adds the gradient of a demonstration and returns its cost, which is summed over its ticks and motor values. The
+    /// number of parameters must be [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors
-    /// [`Error::Length`], [`Error::Demonstration`]. Then nothing is added.
+    /// Returns [`Error::Length`] or [`Error::Demonstration`]. In this case nothing is added.
     pub fn add(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
         let ticks = self.check(parameters, demonstration)?;
         let cost = self.run(parameters, demonstration);

@@ -14,9 +14,11 @@ use crate::learning::gradient::{Demonstration, Gradient, Loss};
 use crate::learning::optimizer::Optimizer;
 use crate::network::Model as _;
 
-/// Parameters of a [`LeakyNetwork`](crate::LeakyNetwork) that follow the [`Gradient`] of the cost of demonstrations.
+/// Trains the parameters of a [`LeakyNetwork`](crate::LeakyNetwork) with the [`Gradient`] of the cost of
+/// demonstrations.
 ///
-/// After each step leaks are clamped to [0, 1], and weights and biases to plus and minus [`limit`](Self::with_limit).
+/// After each step, leaks are clamped to [0, 1]. The absolute values of weights and biases are limited by
+/// [`limit`](Self::with_limit).
 ///
 /// ```
 /// use farsa_nn::learning::{Adam, Demonstration, Learner, Loss};
@@ -69,10 +71,11 @@ impl<R: Real> Mean<R> {
 }
 
 impl<R: Real, O: Optimizer<R>> Learner<R, O> {
-    /// Builds a learner with these parameters [[`parameter_count`](LeakyLayout::parameter_count)].
+    /// Creates a learner that starts with the given parameters. Their number must be
+    /// [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors
-    /// [`Error::Layout`] for the slope, [`Error::Length`] or [`Error::Parameter`].
+    /// Returns [`Error::Layout`] if the slope is invalid, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
         let gradient = Gradient::new(layout, leak, loss)?;
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
@@ -81,33 +84,34 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
     }
 
-    /// Limits weights and biases to plus and minus this value.
+    /// Limits the absolute value of all weights and biases.
     pub fn with_limit(self, limit: R) -> Self {
         Self { limit: Some(limit), ..self }
     }
 
-    /// Scales longer gradients to this norm. In a recurrent network long gradients occur where small changes have large effects,
-    /// so their norm has little meaning.
+    /// Limits the norm of the gradient. Longer gradients are scaled to this norm. This is useful for recurrent
+    /// networks, where the norm can become very large if small changes have large effects.
     pub fn with_max_gradient_norm(self, longest: R) -> Self {
         Self { longest: Some(longest), ..self }
     }
 
-    /// Adds a [`mean`](Self::mean) of the parameters over about this number of latest steps, at least one. Steps of constant
-    /// size oscillate around a minimum, and the mean is near its middle.
+    /// Enables a running [`mean`](Self::mean) of the parameters over approximately the given number of steps. Since
+    /// steps of constant size oscillate around a minimum, the mean is closer to it.
     ///
-    /// Source: \[Polyak1992\]. Deviation: a plain mean over the first steps only. Later, each step reduces the weight of the
-    /// previous ones by a factor of `1 - 1/steps`.
+    /// Source: \[Polyak1992\]. Deviation: only the first steps have equal weights. Later, each step reduces the weight
+    /// of the previous ones by a factor of `1 - 1/steps`.
     pub fn with_averaging(self, steps: u32) -> Self {
         let state = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
         Self { mean: Some(Mean { share: R::from_f64(1.0 / f64::from(steps.max(1))), state }), ..self }
     }
 
-    /// Takes one step along the mean gradient of these demonstrations. Returns their cost before it, per motor value.
+    /// Performs one step along the mean gradient of the demonstrations. Returns their cost per motor value before the
+    /// step.
     ///
-    /// Without demonstrations there is no step.
+    /// If there are no demonstrations, the parameters are not changed.
     ///
     /// # Errors
-    /// [`Error::Demonstration`]. Then nothing has changed.
+    /// Returns [`Error::Demonstration`]. In this case nothing is changed.
     pub fn learn<'d>(&mut self, demonstrations: impl IntoIterator<Item = Demonstration<'d>>) -> Result<R, Error> {
         self.gradient.clear();
         for demonstration in demonstrations {
@@ -144,10 +148,10 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         Ok(self.gradient.mean_cost())
     }
 
-    /// Computes the cost of these demonstrations per motor value, without learning.
+    /// Computes the cost of the demonstrations per motor value without learning.
     ///
     /// # Errors
-    /// [`Error::Demonstration`].
+    /// Returns [`Error::Demonstration`].
     pub fn cost<'d>(&mut self, demonstrations: impl IntoIterator<Item = Demonstration<'d>>) -> Result<R, Error> {
         let (mut sum, mut values) = (R::default(), 0);
         for demonstration in demonstrations {
@@ -157,32 +161,33 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         Ok(if values == 0 { sum } else { sum / R::from_f64(values as f64) })
     }
 
-    /// The optimizer, to change its rate.
+    /// Returns a mutable reference to the optimizer, for example to change its learning rate.
     pub fn optimizer_mut(&mut self) -> &mut O {
         &mut self.optimizer
     }
 
-    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
+    /// Returns the current parameters.
     pub fn parameters(&self) -> &[R] {
         &self.parameters
     }
 
-    /// The mean of the parameters over the latest steps [[`parameter_count`](LeakyLayout::parameter_count)]. Without
-    /// [`with_averaging`](Self::with_averaging) these are the parameters.
+    /// Returns the mean of the parameters over the latest steps. Without [`with_averaging`](Self::with_averaging) it
+    /// returns the current parameters.
     pub fn mean(&self) -> &[R] {
         self.mean.as_ref().and_then(|mean| mean.state.get(1..)).unwrap_or(&self.parameters)
     }
 
-    /// The state for resuming: the parameters, the memory of the optimizer, and with averaging the weight and the mean.
+    /// Returns the state that is needed to resume the training. It contains the parameters and the memory of the
+    /// optimizer. With averaging, it also contains the total weight and the mean.
     pub fn state(&self) -> impl Iterator<Item = R> + '_ {
         let mean = self.mean.iter().flat_map(|mean| &mean.state);
         self.parameters.iter().chain(&self.memory).chain(mean).copied()
     }
 
-    /// Resumes from the state of another learner with the same settings.
+    /// Restores a state that was returned by a learner with the same settings.
     ///
     /// # Errors
-    /// [`Error::Length`] or [`Error::Parameter`]. Then nothing has changed.
+    /// Returns [`Error::Length`] or [`Error::Parameter`]. In this case nothing is changed.
     pub fn set_state(&mut self, state: &[R]) -> Result<(), Error> {
         Slice::State.check(self.state().count(), state.len())?;
         if let Some(index) = state.iter().position(|value| !value.to_f64().is_finite()) {

@@ -1,31 +1,33 @@
-//! Optimizers: rules that follow a gradient downhill.
+//! Optimizers, which change parameters in the direction of a gradient.
 
 use farsa_num::Real;
 
-/// A rule that changes parameters by a gradient. The caller provides its memory.
+/// An optimizer, which minimizes a cost by means of its gradient.
 ///
-/// The rule itself is a few numbers. Its memory is a slice of initial zeros, so a checkpoint is a copy of two slices.
+/// An implementation contains only its settings. Its memory is a slice that is provided by the caller and initially
+/// zero, so a checkpoint consists of two slices.
 ///
 /// # For implementors
-/// - The same calls on the same memory give the same bits on every machine: + - * / and square root, in a fixed order.
-/// - Use the shorter length of `gradient` and `parameters`.
+/// - Equal calls with equal memory must produce equal bits on every machine. Use + - * / and square root in a fixed
+///   order.
+/// - If `gradient` and `parameters` have different lengths, use the shorter one.
 pub trait Optimizer<R: Real> {
-    /// Length of the memory for a number of parameters.
+    /// Returns the length of the memory that is required for the given number of parameters.
     fn memory_len(&self, parameters: usize) -> usize;
-    /// Changes the parameters by a gradient \[parameters\]. `memory` [[`memory_len`](Self::memory_len)] must be zeros before the
-    /// first step.
+    /// Changes the parameters according to a gradient. The memory must have the length
+    /// [`memory_len`](Self::memory_len), and it must be zero before the first step.
     fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]);
 }
 
-/// Steepest descent with momentum: `v = momentum*v - rate*g`, `p = p + v`.
+/// Gradient descent with momentum, `v = momentum*v - rate*g`, `p = p + v`.
 ///
-/// Source: `[Rumelhart1986]` eq. 9, for single steps. With momentum 0 it is plain descent.
+/// Source: `[Rumelhart1986]` eq. 9, for single steps. With a momentum of 0 it is plain gradient descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
-    /// Factor on the gradient.
+    /// The learning rate, by which the gradient is multiplied.
     pub rate: f64,
-    /// The share of a change that the next step keeps, [0, 1).
+    /// The fraction of a change that is added to the next one, in [0, 1).
     pub momentum: f64,
 }
 
@@ -43,23 +45,23 @@ impl<R: Real> Optimizer<R> for Momentum {
     }
 }
 
-/// Adam: every parameter takes steps of about `rate`, independent of the size of its gradient.
+/// The optimizer Adam. Each parameter changes by about `rate` in a step, independent of the magnitude of its gradient.
 ///
-/// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are stored as `1 - beta^t`, by repeated products, so the
-/// initial memory is zeros.
+/// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are stored as `1 - beta^t` and computed by
+/// repeated multiplication, so that the initial memory is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adam {
-    /// Size of a step.
+    /// The size of a step.
     pub rate: f64,
-    /// The shares of the mean gradient and of the mean of its squares that the next step keeps, each in [0, 1).
+    /// The decay rates of the mean gradient and of the mean squared gradient, each in [0, 1).
     pub decays: [f64; 2],
-    /// Added to the root of the mean square.
+    /// A small number that is added to the root of the mean squared gradient.
     pub epsilon: f64,
 }
 
 impl Adam {
-    /// Builds Adam with this step size and the other defaults of the source.
+    /// Creates an optimizer with the given step size. All other settings have the defaults of the source.
     pub const fn new(rate: f64) -> Self {
         Self { rate, decays: [0.9, 0.999], epsilon: 1e-8 }
     }

@@ -1,4 +1,4 @@
-//! The logistic function in integers: a table and a line between its entries.
+//! The logistic function in integer arithmetic, which is interpolated linearly between the entries of a table.
 
 /// Fraction bits of activations: 2^15 is 1.
 pub(crate) const ACTIVATION_BITS: u32 = 15;
@@ -36,8 +36,8 @@ const fn table() -> [u16; ENTRIES] {
     entries
 }
 
-/// 1/(1 + exp(-x)) with x = `sum` / 2^`bits`, in units of 2^-15. The result is in 0..=2^15, within 1.5 units, and never falls where
-/// `sum` rises. `logistic(-sum)` is 2^15 - `logistic(sum)`.
+/// 1/(1 + exp(-x)) with x = `sum` / 2^`bits`, in units of 2^-15. The result is in 0..=2^15, within 1.5 units, and never
+/// falls where `sum` rises. `logistic(-sum)` is 2^15 - `logistic(sum)`.
 ///
 /// `bits` is at most [`ARGUMENT_BITS`].
 #[inline(always)]

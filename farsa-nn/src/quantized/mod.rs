@@ -1,4 +1,4 @@
-//! The leaky network in integers, for processors without floating-point arithmetic.
+//! Leaky networks in integer arithmetic, for processors without floating-point instructions.
 
 /// The logistic function: a table and a line between its entries.
 mod logistic;

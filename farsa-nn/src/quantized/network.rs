@@ -1,4 +1,4 @@
-//! The leaky recurrent network in integers, for processors without floating-point arithmetic.
+//! The leaky recurrent network in integer arithmetic.
 
 use crate::controller::Controller;
 use crate::error::Error;
@@ -15,23 +15,25 @@ const BLOCK: usize = 8;
 /// Fraction bits of activations between steps. The lower half of them lets a slow neuron move.
 const STATE_BITS: u32 = 30;
 
-/// A [`LeakyNetwork`](crate::LeakyNetwork) of 16-bit parameters and 32-bit sums. A step has no float, no division and no
-/// multiplication wider than 32 bits.
+/// A [`LeakyNetwork`](crate::LeakyNetwork) with 16-bit parameters and 32-bit sums. A step uses neither floating-point
+/// numbers nor divisions, and no multiplication is wider than 32 bits.
 ///
-/// [`QuantizedScale::quantize`] converts the parameters of a `LeakyNetwork` of the same layout. The weights then include the
-/// slope of the logistic function, and the slope of the layout is unused. A step rounds each product once,
+/// Use [`QuantizedScale::quantize`] to convert the parameters of a `LeakyNetwork` with the same layout. The resulting
+/// weights include the slope of the logistic function, so the slope of the layout is not used. Each product is rounded
+/// once,
 ///
 /// ```text
 /// net_i = sum_j (w_ji I_j >> s) + sum_k (r_ki H_k >> s') + (beta_i >> s')
 /// ```
 ///
-/// and adds integers, so the order of the sums does not change a bit. Construction checks that the largest possible sum fits.
-/// The documentation of the crate has the measured effect on motor values.
+/// and the results are added as integers. Therefore the order of the sums does not matter. The constructor checks that
+/// no sum can overflow. The measured effect on motor values is documented in the README of the crate.
 ///
-/// As a [`Controller`] it reads and writes `f32`. Sensor values beyond the range of
-/// [`input_bits`](QuantizedScale::input_bits) take its ends. Motor values are multiples of 2^-15 in [0, 1 - 2^-15].
+/// As a [`Controller`], the network reads and writes `f32`. Sensor values are clamped to the range that is defined by
+/// [`input_bits`](QuantizedScale::input_bits). Motor values are multiples of 2^-15 in [0, 1 - 2^-15].
 ///
-/// Source: the equations of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the arithmetic.
+/// Source: the equations of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the
+/// arithmetic.
 #[derive(Clone, Debug)]
 pub struct QuantizedNetwork<P, S> {
     layout: LeakyLayout,
@@ -42,11 +44,11 @@ pub struct QuantizedNetwork<P, S> {
 }
 
 impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
-    /// Builds a network at rest from parameters [[`parameter_count`](LeakyLayout::parameter_count)] and a state
-    /// [[`state_len`](LeakyLayout::state_len)], which it sets to zero.
+    /// Creates a network with the given parameters and resets its state to zero. The slices must have the lengths
+    /// [`parameter_count`](LeakyLayout::parameter_count) and [`state_len`](LeakyLayout::state_len).
     ///
     /// # Errors
-    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`].
+    /// Returns [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`].
     pub fn new(
         layout: LeakyLayout,
         leak: Leak,
@@ -60,22 +62,21 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         Ok(Self { layout, leak, scale, parameters, state })
     }
 
-    /// Replaces the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and their scale, and returns the old
-    /// parameters. The state is unchanged, because its units are the same in every scale.
+    /// Replaces the parameters and their scale, and returns the previous parameters. Since the units of the state are
+    /// the same for all scales, the state is not changed.
     ///
     /// # Errors
-    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. Then the network is unchanged.
+    /// Returns [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. In this case the network is unchanged.
     pub fn set_parameters(&mut self, scale: QuantizedScale, parameters: P) -> Result<P, Error> {
         check(&self.layout, scale, parameters.as_ref(), |fixed| fixed)?;
         self.scale = scale;
         Ok(core::mem::replace(&mut self.parameters, parameters))
     }
 
-    /// Copies parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale over those of the network. The state
-    /// is unchanged.
+    /// Copies new parameters with the given scale into the network. The state is not changed.
     ///
     /// # Errors
-    /// [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. Then the network is unchanged.
+    /// Returns [`Error::Length`], [`Error::Parameter`] or [`Error::Sum`]. In this case the network is unchanged.
     pub fn copy_parameters(&mut self, scale: QuantizedScale, parameters: &[i16]) -> Result<(), Error>
     where
         P: AsMut<[i16]>,
@@ -86,14 +87,14 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         Ok(())
     }
 
-    /// Advances by one tick from the sensor values `x` `[sensors]`, in units of
-    /// 2^-[`input_bits`](QuantizedScale::input_bits), and overwrites the motor values `y` `[outputs]`, in units of
-    /// 2^-15, 0..=32767.
+    /// Advances the network by one tick. It reads the sensor values `x` in units of
+    /// 2^-[`input_bits`](QuantizedScale::input_bits) and overwrites the motor values `y`, which are in 0..=32767 in
+    /// units of 2^-15.
     ///
-    /// All values of `x` are valid. The shorter of two lengths counts.
+    /// All integers are valid sensor values. If a slice has the wrong length, the shorter length is used.
     ///
     /// # Panics
-    /// With debug assertions, when `x` or `y` has another length.
+    /// Panics if a slice has a different length and debug assertions are enabled.
     pub fn step_quantized(&mut self, x: &[i16], y: &mut [i16]) {
         debug_assert_eq!(x.len(), self.layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
@@ -168,34 +169,34 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         }
     }
 
-    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
+    /// Returns the parameters of the network.
     pub fn parameters(&self) -> &[i16] {
         self.parameters.as_ref()
     }
 }
 
 impl<P, S> QuantizedNetwork<P, S> {
-    /// The layout.
+    /// Returns the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
-    /// The reading of the leak.
+    /// Returns the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.leak
     }
 
-    /// The positions of the binary points.
+    /// Returns the scale, which defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.scale
     }
 
-    /// Returns the parameters and the state.
+    /// Returns the parameters and the state of the network.
     pub fn into_parts(self) -> (P, S) {
         (self.parameters, self.state)
     }
 
-    /// The activations `H(t)` `[hidden]` in units of 2^-30, 0..=2^30.
+    /// Returns the activations `H(t)` of the hidden neurons in units of 2^-30, from 0 to 2^30.
     pub fn hidden(&self) -> &[i32]
     where
         S: AsRef<[i32]>,

@@ -1,4 +1,4 @@
-//! The scale of the integers of a fixed-point network, and the conversion of real parameters.
+//! The scale of a fixed-point network, and the conversion of real parameters.
 
 use farsa_num::Scalar;
 
@@ -13,8 +13,8 @@ use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 /// Fraction bits of leaks: 2^14 is exactly 1.
 pub(crate) const LEAK_BITS: u32 = 14;
 
-/// The binary points of a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork): an integer `v` of `b` fraction bits
-/// is `v / 2^b`.
+/// The positions of the binary points in a [`QuantizedNetwork`](crate::quantized::QuantizedNetwork). An integer `v`
+/// with `b` fraction bits represents `v / 2^b`.
 ///
 /// | integers | fraction bits |
 /// |---|---|
@@ -53,14 +53,15 @@ impl TryFrom<SavedScale> for QuantizedScale {
 }
 
 impl QuantizedScale {
-    /// The fewest fraction bits of a sum, 10. With fewer, the error of the logistic function exceeds 1e-4.
+    /// The smallest number of fraction bits of a sum, which is 10. With fewer bits, the error of the logistic function
+    /// would exceed 1e-4.
     pub const SUM_BITS_MIN: u32 = 10;
 
-    /// Builds a scale from stored fraction bits.
+    /// Creates a scale from stored numbers of fraction bits.
     ///
     /// # Errors
-    /// [`Error::Layout`]: inputs and weights have at most 15 fraction bits. Sums have 10 to 20, and no more than a product of a
-    /// weight and an input.
+    /// Returns [`Error::Layout`] if inputs or weights have more than 15 fraction bits. The same error is returned if
+    /// the number for sums is outside 10..=20 or larger than that of a product of a weight and an input.
     pub const fn new(input_bits: u32, weight_bits: u32, sum_bits: u32) -> Result<Self, Error> {
         if input_bits > 15 {
             return Err(fraction_bits("inputs", input_bits, 0, 15));
@@ -76,17 +77,18 @@ impl QuantizedScale {
         Ok(Self { inputs: input_bits as u8, weights: weight_bits as u8, sums: sum_bits as u8 })
     }
 
-    /// Rounds the parameters of a [`LeakyNetwork`](crate::LeakyNetwork)
-    /// [[`parameter_count`](LeakyLayout::parameter_count)] to integers of a
-    /// [`QuantizedNetwork`](crate::quantized::QuantizedNetwork) for sensor values of `input_bits` fraction bits.
+    /// Converts the parameters of a [`LeakyNetwork`](crate::LeakyNetwork) to the integers of a
+    /// [`QuantizedNetwork`](crate::quantized::QuantizedNetwork). Sensor values must have `input_bits` fraction bits.
     ///
-    /// Weights and biases get as many fraction bits as possible, up to 15: the largest of them times the slope must be an `i16`.
-    /// Sums get as many as possible, up to 20: no sensor values may overflow one.
+    /// Weights and biases get as many fraction bits as possible, but at most 15. The largest of them, multiplied by the
+    /// slope, must fit into an `i16`. Sums also get as many fraction bits as possible, but at most 20. No sensor values
+    /// may cause an overflow.
     ///
     /// # Errors
-    /// [`Error::Layout`] for slope or fraction bits, [`Error::Length`] of either slice, [`Error::Parameter`], [`Error::Sum`] if sums
-    /// of 10 fraction bits could overflow. A weight that times the slope exceeds 32767 is such a parameter. `fixed` may be partly
-    /// written.
+    /// Returns [`Error::Layout`] if the slope or the fraction bits are invalid, [`Error::Length`] if a slice has the
+    /// wrong length, or [`Error::Parameter`]. The latter is also returned for a weight that exceeds 32767 after
+    /// multiplication by the slope. Returns [`Error::Sum`] if sums with 10 fraction bits could overflow. In these cases
+    /// `fixed` may have been partly written.
     ///
     /// ```
     /// use farsa_nn::quantized::{QuantizedNetwork, QuantizedScale};
@@ -145,29 +147,29 @@ impl QuantizedScale {
         }
     }
 
-    /// Fraction bits of the sensor values.
+    /// Returns the number of fraction bits of the sensor values.
     pub const fn input_bits(self) -> u32 {
         self.inputs as u32
     }
 
-    /// Fraction bits of weights and biases, which include the slope.
+    /// Returns the number of fraction bits of weights and biases, which include the slope.
     pub const fn weight_bits(self) -> u32 {
         self.weights as u32
     }
 
-    /// Fraction bits of the sums.
+    /// Returns the number of fraction bits of the sums.
     pub const fn sum_bits(self) -> u32 {
         self.sums as u32
     }
 
-    /// Rounds a sensor value to an integer. Values beyond `i16` take its ends, NaN is 0.
+    /// Rounds a sensor value to an integer. Values outside the range of `i16` are clamped, and NaN results in 0.
     pub fn input(self, x: f32) -> i16 {
         // Single precision, because processors without floating-point arithmetic run this too.
         let x = x * f32::from(1_u16 << self.input_bits());
         x.clamp(-32768.0, 32767.0).round_small() as i16
     }
 
-    /// Converts a motor value to its real value.
+    /// Converts a motor value to a real number.
     pub fn output(y: i16) -> f32 {
         f32::from(y) * (1.0 / 32768.0)
     }
