@@ -54,7 +54,7 @@ pub trait Handles {
 pub trait World: Handles {
     /// Advances the world by one control step, whose duration is [`World::time_step`].
     fn step(&mut self);
-    /// Returns the duration of a control step [s].
+    /// Returns the duration of a control step, in seconds.
     fn time_step(&self) -> f32;
 }
 
@@ -65,8 +65,8 @@ pub trait Kinematics: Handles {
     fn pose(&self, body: Self::Body) -> Pose;
     /// Returns the velocity of a body's origin and its angular velocity. Both are given in the axes of the world.
     fn velocity(&self, body: Self::Body) -> Twist;
-    /// Returns the origin of a body's frame [m]. This can be faster than [`pose`](Self::pose), because no quaternion is
-    /// needed.
+    /// Returns the origin of a body's frame, in meters. This can be faster than [`pose`](Self::pose), because no
+    /// quaternion is needed.
     fn origin(&self, body: Self::Body) -> [f32; 3] {
         self.pose(body).position
     }
@@ -77,7 +77,7 @@ pub trait Kinematics: Handles {
 pub trait Joints: Handles {
     /// Returns the angle [rad] or the displacement [m] of a joint.
     fn position(&self, joint: Self::Joint) -> f32;
-    /// Returns the speed of a joint [rad/s or m/s].
+    /// Returns the speed of a joint, in radians or meters per second.
     fn speed(&self, joint: Self::Joint) -> f32;
 }
 
@@ -87,8 +87,8 @@ pub trait Actuated: Handles {
     /// Sets the command of an actuator. It remains active until the next command.
     ///
     /// A muscle pair uses both values as the activations of agonist and antagonist in [0..1]. Most other actuators
-    /// ignore the second value. For a servo, the first value is the desired position [rad or m]. For a torque motor it
-    /// is the torque [N m or N], and for a velocity motor the speed [rad/s or m/s]. A custom law
+    /// ignore the second value. For a servo, the first value is the desired position, in radians or meters. For a
+    /// torque motor it is the torque [N m or N], and for a velocity motor the speed [rad/s or m/s]. A custom law
     /// ([`Held`](crate::actuators::Held)) uses both.
     ///
     /// For mobile robots, the first value is the speed of a wheel [rad/s], the brightness of an LED or the value of a
@@ -115,7 +115,7 @@ pub trait ExternalForces: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
-    /// The distance along the ray [m].
+    /// The distance along the ray, in meters.
     pub distance: f32,
     /// The outward unit normal of the surface, in the axes of the world.
     pub normal: [f32; 3],
@@ -127,7 +127,7 @@ pub struct Hit<B> {
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot cast rays (port `Rays`)")]
 pub trait Rays: Handles {
     /// Returns the first surface on a ray from `origin` [m] in the direction of the unit vector `direction`. The ray
-    /// ends after `range` [m]. All vectors are given in the axes of the world.
+    /// ends after `range`, in meters. All vectors are given in the axes of the world.
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
@@ -135,7 +135,7 @@ pub trait Rays: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seen<B> {
-    /// The distance along the ray [m].
+    /// The distance along the ray, in meters.
     pub distance: f32,
     /// The body that is visible, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
@@ -148,9 +148,9 @@ pub struct Seen<B> {
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
 pub trait Vision: Handles {
     /// Finds the first surface on each ray that starts at `from` [m] in the given directions. The directions are unit
-    /// vectors in the axes of the world, and rays end after `range` [m]. The body `but` is ignored, and bodies that
-    /// contain `from` are invisible. The results are written to `seen`. If the slices have different lengths, only the
-    /// common part is used.
+    /// vectors in the axes of the world, and rays end after `range`, in meters. The body `but` is ignored, and bodies
+    /// that contain `from` are invisible. The results are written to `seen`. If the slices have different lengths, only
+    /// the common part is used.
     fn look(
         &self,
         from: [f32; 3],
@@ -167,15 +167,16 @@ pub trait Vision: Handles {
 pub struct PairContact {
     /// The number of contact points with a normal force > 0.
     pub points: u32,
-    /// The force on the first body of the pair, in the axes of the world [N]. The opposite force acts on the second
-    /// body.
+    /// The force on the first body of the pair, in the axes of the world, in newtons. The opposite force acts on the
+    /// second body.
     pub force: [f32; 3],
-    /// The sum of the normal forces at all points [N].
+    /// The sum of the normal forces at all points, in newtons.
     pub normal_force: f32,
-    /// The mean position of the contact points in the world, weighted by normal force [m]. It is zero if there is no
-    /// contact.
+    /// The mean position of the contact points in the world, weighted by normal force, in meters. It is zero if there
+    /// is no contact.
     pub point: [f32; 3],
-    /// The largest penetration depth [m]. A negative value is the remaining distance, which only some worlds compute.
+    /// The largest penetration depth, in meters. A negative value is the remaining distance, which only some worlds
+    /// compute.
     pub depth: f32,
 }
 
@@ -201,11 +202,11 @@ pub trait Contacts: Handles {
 pub struct NearbySurface<B> {
     /// The body to which the surface belongs, or `None` for a wall.
     pub body: Option<B>,
-    /// The nearest point of the surface [m].
+    /// The nearest point of the surface, in meters.
     pub point: [f32; 2],
-    /// The distance to this point [m]. Inside a round body it is negative, and inside any other body it is 0.
+    /// The distance to this point, in meters. Inside a round body it is negative, and inside any other body it is 0.
     pub distance: f32,
-    /// The radius of a round body [m]. It is 0 for walls and for other shapes.
+    /// The radius of a round body, in meters. It is 0 for walls and for other shapes.
     pub radius: f32,
     /// The red, green and blue components of its color [0..1]. For a robot with LEDs this is the color of the LEDs.
     pub color: [f32; 3],
@@ -217,7 +218,7 @@ pub struct NearbySurface<B> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanarHit<B> {
-    /// The distance along the line [m].
+    /// The distance along the line, in meters.
     pub distance: f32,
     /// The body that is visible, or `None` for a wall.
     pub body: Option<B>,
@@ -231,7 +232,7 @@ pub struct PlanarHit<B> {
 pub struct Lamp<B> {
     /// The body that emits the light.
     pub body: B,
-    /// The center of the lamp [m].
+    /// The center of the lamp, in meters.
     pub position: [f32; 2],
     /// The intensity of the lamp. You can choose any unit.
     pub intensity: f32,
@@ -246,7 +247,7 @@ pub trait Sight: Handles {
     /// Note that the robot at `from` is reported as well.
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<Self::Body>));
     /// Returns the first surface on a line that starts at `from` [m] in the direction of the unit vector `direction`.
-    /// The line ends after `range` [m]. The body `but` is ignored, and bodies that contain `from` are invisible.
+    /// The line ends after `range`, in meters. The body `but` is ignored, and bodies that contain `from` are invisible.
     fn cast_planar(
         &self,
         from: [f32; 2],

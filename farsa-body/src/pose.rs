@@ -6,7 +6,7 @@ use farsa_num::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<R = f32> {
-    /// The position of the frame's origin in the reference frame [m].
+    /// The position of the frame's origin in the reference frame, in meters.
     pub position: [R; 3],
     /// The rotation from the frame to the reference frame as a unit quaternion [x, y, z, w].
     pub rotation: [R; 4],
@@ -16,9 +16,9 @@ pub struct Pose<R = f32> {
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Twist<R = f32> {
-    /// The velocity of the body's origin [m/s].
+    /// The velocity of the body's origin, in meters per second.
     pub linear: [R; 3],
-    /// The angular velocity [rad/s].
+    /// The angular velocity, in radians per second.
     pub angular: [R; 3],
 }
 
@@ -41,21 +41,21 @@ impl<R: Real> Pose<R> {
         Self { position: [o, o, o], rotation: [o, o, o, l] }
     }
 
-    /// Creates a pose without rotation at the given `position` [m].
+    /// Creates a pose without rotation at the given `position`, in meters.
     pub fn at(position: [R; 3]) -> Self {
         Self { position, ..Self::identity() }
     }
 
     /// Creates a pose on the ground at the position (x, y) [m]. The frame is rotated counter-clockwise about the
-    /// vertical axis by `heading` [rad].
+    /// vertical axis by `heading`, in radians.
     pub fn planar([x, y]: [R; 2], heading: R) -> Self {
         let o = R::from_f64(0.0);
         let (sine, cosine) = farsa_num::sin_cos(R::from_f64(0.5) * heading);
         Self { position: [x, y, o], rotation: [o, o, sine, cosine] }
     }
 
-    /// Returns the direction of the frame's x axis as seen from above [rad]. The angle is measured counter-clockwise
-    /// from the x axis of the reference frame.
+    /// Returns the direction of the frame's x axis as seen from above, in radians. The angle is measured
+    /// counter-clockwise from the x axis of the reference frame.
     pub fn heading(&self) -> R {
         let [x, y, z, w] = self.rotation;
         let (one, two) = (R::from_f64(1.0), R::from_f64(2.0));

@@ -13,7 +13,7 @@ pub struct Servo<R> {
     pub stiffness: R,
     /// The velocity gain [N m s/rad or N s/m].
     pub damping: R,
-    /// The largest effort that the servo can exert [N m or N].
+    /// The largest effort that the servo can exert, in newton meters or newtons.
     pub limit: R,
 }
 
@@ -21,7 +21,7 @@ pub struct Servo<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Torque<R> {
-    /// The largest effort that the motor can exert [N m or N].
+    /// The largest effort that the motor can exert, in newton meters or newtons.
     pub limit: R,
 }
 
@@ -31,7 +31,7 @@ pub struct Torque<R> {
 pub struct Velocity<R> {
     /// The torque per unit of speed error [N m s/rad or N s/m].
     pub gain: R,
-    /// The largest effort that the motor can exert [N m or N].
+    /// The largest effort that the motor can exert, in newton meters or newtons.
     pub limit: R,
 }
 

@@ -30,11 +30,11 @@ pub enum MuscleVariant {
 pub struct MusclePair<R> {
     /// The largest active tension of each muscle, Tmax [N].
     pub tension: R,
-    /// The moment arm of the muscles [m].
+    /// The moment arm of the muscles, in meters.
     pub moment_arm: R,
-    /// The joint position at which the agonist is shortest [rad].
+    /// The joint position at which the agonist is shortest, in radians.
     pub lower: R,
-    /// The joint position at which the agonist is longest [rad].
+    /// The joint position at which the agonist is longest, in radians.
     pub upper: R,
     /// The shortest length of a muscle.
     pub shortest: R,
@@ -54,17 +54,17 @@ pub struct MusclePair<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
-    /// The tension that results from the activation [N].
+    /// The tension that results from the activation, in newtons.
     pub active: S,
-    /// The tension that results from the length [N]. Below the rest length it is negative, but never more than 5 % of
-    /// the largest tension.
+    /// The tension that results from the length, in newtons. Below the rest length it is negative, but never more than
+    /// 5 % of the largest tension.
     pub passive: S,
-    /// The tension that results from the rate of length [N]. It is negative while the muscle shortens.
+    /// The tension that results from the rate of length, in newtons. It is negative while the muscle shortens.
     pub viscous: S,
 }
 
 impl<S: Scalar> Tension<S> {
-    /// Returns the sum of the components [N].
+    /// Returns the sum of the components, in newtons.
     #[inline(always)]
     pub fn total(self) -> S {
         self.active + self.passive + self.viscous
@@ -112,7 +112,7 @@ impl<R: Real> MusclePair<R> {
         (self.longest - self.shortest) / (self.upper - self.lower)
     }
 
-    /// Returns the lengths of the agonist and the antagonist at joint position `q` [rad].
+    /// Returns the lengths of the agonist and the antagonist at joint position `q`, in radians.
     #[inline(always)]
     pub fn lengths<S: Scalar<Real = R>>(&self, q: S) -> [S; 2] {
         let stroke = q.like(self.gear()) * (q - q.like(self.lower));

@@ -30,9 +30,9 @@ pub enum Orientation {
 pub struct Goal {
     /// The body that should be moved.
     pub body: BodyId,
-    /// The point in the frame of the body [m].
+    /// The point in the frame of the body, in meters.
     pub point: [f64; 3],
-    /// The desired position of the point in the world [m].
+    /// The desired position of the point in the world, in meters.
     pub position: [f64; 3],
     /// The desired orientation of the body.
     pub orientation: Orientation,

@@ -15,9 +15,9 @@ use crate::pose::{Pose, norm};
 pub struct Solution {
     /// The joint positions [rad or m], in the order of [`KinematicTree::joints`].
     pub joints: Vec<f64>,
-    /// The distance between the point and its desired position [m].
+    /// The distance between the point and its desired position, in meters.
     pub position_error: f64,
-    /// The angle between the actual and the desired orientation or direction [rad].
+    /// The angle between the actual and the desired orientation or direction, in radians.
     pub angle_error: f64,
 }
 
@@ -73,11 +73,11 @@ impl core::error::Error for InverseKinematicsError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct InverseKinematics {
-    /// The largest position error of a solution [m].
+    /// The largest position error of a solution, in meters.
     pub position_tolerance: f64,
-    /// The largest angle error of a solution [rad].
+    /// The largest angle error of a solution, in radians.
     pub angle_tolerance: f64,
-    /// The distance that is weighted like an angle of one radian [m].
+    /// The distance that is weighted like an angle of one radian, in meters.
     pub angle_weight: f64,
     /// The fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
     ///
@@ -164,7 +164,7 @@ fn check(tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<(), Inverse
 
 impl InverseKinematics {
     /// Searches joint positions for `goal`. The search begins at `start`, which contains one value per joint of the
-    /// tree [rad or m].
+    /// tree, in radians or meters.
     ///
     /// The start is clamped to the joint limits. Since the first attempt moves continuously from there, the previous
     /// solution is a good start when you follow a path of goals. Joints that do not move the body keep their clamped

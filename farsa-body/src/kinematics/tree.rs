@@ -89,7 +89,7 @@ impl KinematicTree {
         &self.joints
     }
 
-    /// Returns the ranges of these joints [rad or m].
+    /// Returns the ranges of these joints, in radians or meters.
     pub fn ranges(&self) -> &[[f64; 2]] {
         &self.ranges
     }
@@ -109,7 +109,7 @@ impl KinematicTree {
         self.ranges.iter().map(|[low, high]| low.max(0.0).min(*high)).collect()
     }
 
-    /// Computes the poses of all segments in the world at the joint positions `q` [rad or m].
+    /// Computes the poses of all segments in the world at the joint positions `q`, in radians or meters.
     ///
     /// If `q` is too short, the missing positions are 0.
     pub fn poses(&self, q: &[f64]) -> Vec<Pose<f64>> {

@@ -43,9 +43,9 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for Muscles<A> {
 pub struct ServoRange<A = ActuatorId> {
     /// The servo that is commanded.
     pub servo: A,
-    /// The desired position at a channel value of 0 [rad or m].
+    /// The desired position at a channel value of 0, in radians or meters.
     pub from: f32,
-    /// The desired position at a channel value of 1 [rad or m].
+    /// The desired position at a channel value of 1, in radians or meters.
     pub to: f32,
 }
 

@@ -61,7 +61,8 @@ pub struct SpeedAndTurn<A = ActuatorId> {
 }
 
 impl<A> SpeedAndTurn<A> {
-    /// Creates a motor for the left and the right wheel. Their largest speed in both directions is `largest` [rad/s].
+    /// Creates a motor for the left and the right wheel. Their largest speed in both directions is `largest`, in
+    /// radians per second.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.

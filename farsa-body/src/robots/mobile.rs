@@ -10,12 +10,12 @@ use crate::ports::{ActuatorId, BodyId, JointId};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InfraredRing {
-    /// The directions of the sensors, counter-clockwise from straight ahead [rad]. They also determine the positions of
-    /// the sensors on the hull.
+    /// The directions of the sensors, counter-clockwise from straight ahead, in radians. They also determine the
+    /// positions of the sensors on the hull.
     pub angles: Vec<f64>,
     /// The range of the sensors, measured from the hull [m].
     pub range: f64,
-    /// Half the opening angle of the cone in which a sensor detects objects [rad].
+    /// Half the opening angle of the cone in which a sensor detects objects, in radians.
     pub aperture: f64,
     /// The number of rays that sample the cone of each sensor.
     pub rays: usize,
@@ -28,19 +28,19 @@ pub struct InfraredRing {
 pub struct MobileRobot {
     /// The name of the robot.
     pub name: String,
-    /// The radius of the hull [m].
+    /// The radius of the hull, in meters.
     pub radius: f64,
-    /// The height of the robot [m].
+    /// The height of the robot, in meters.
     pub height: f64,
-    /// The radius of the wheels [m].
+    /// The radius of the wheels, in meters.
     pub wheel_radius: f64,
-    /// The distance between the wheels [m].
+    /// The distance between the wheels, in meters.
     pub track: f64,
-    /// The largest angular speed of a wheel in both directions [rad/s].
+    /// The largest angular speed of a wheel in both directions, in radians per second.
     pub max_wheel_speed: f64,
     /// The ring of infrared sensors.
     pub infrared: InfraredRing,
-    /// The positions of the ground color sensors in the frame of the robot [m].
+    /// The positions of the ground color sensors in the frame of the robot, in meters.
     pub ground: Vec<[f64; 2]>,
     /// The red, green and blue components of the hull's color [0..1], which is visible when no LED is on.
     pub color: [f64; 3],
@@ -178,7 +178,7 @@ pub struct MobileParts {
     pub body: BodyId,
     /// The left and the right wheel.
     pub wheels: [JointId; 2],
-    /// The motors of the left and the right wheel. Their commands are speeds [rad/s].
+    /// The motors of the left and the right wheel. Their commands are speeds, in radians per second.
     pub motors: [ActuatorId; 2],
     /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses [0..1].
     pub leds: Option<[ActuatorId; 3]>,

@@ -29,7 +29,7 @@ impl MobileRobot {
     /// The fraction of the mass that belongs to the two wheels \[chosen\].
     pub const WHEEL_SHARE: f64 = 0.1;
 
-    /// Returns the mass that results from [`DENSITY`](Self::DENSITY) [kg].
+    /// Returns the mass that results from [`DENSITY`](Self::DENSITY), in kilograms.
     pub fn mass(&self) -> f64 {
         Self::DENSITY * (PI * self.radius * self.radius * self.height)
     }

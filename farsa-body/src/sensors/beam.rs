@@ -9,7 +9,7 @@ use crate::ports::{Kinematics, Rays};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Beam {
-    /// The point at which the ray leaves the hull [m].
+    /// The point at which the ray leaves the hull, in meters.
     pub from: [f32; 2],
     /// The direction of the ray as a unit vector.
     pub direction: [f32; 2],
@@ -40,7 +40,7 @@ impl Beam {
     }
 
     /// Returns one of several rays that cover a field of view [rad] around straight ahead, ordered from left to right.
-    /// They start at the position `from` in the frame of the robot [m].
+    /// They start at the position `from` in the frame of the robot, in meters.
     ///
     /// The field of view is divided into equal parts, and each ray is in the middle of a part. Therefore the rays are
     /// evenly distributed even if the field of view is a full circle.

@@ -9,7 +9,7 @@ use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 pub struct Point<B = BodyId> {
     /// The body to which the point is fixed.
     pub body: B,
-    /// The position of the point in the frame of the body [m].
+    /// The position of the point in the frame of the body, in meters.
     pub at: [f32; 3],
 }
 
@@ -19,7 +19,7 @@ impl<B: Copy> Point<B> {
         Self { body, at: [0.0; 3] }
     }
 
-    /// Returns the position of the point in the world [m].
+    /// Returns the position of the point in the world, in meters.
     pub fn position<W: Kinematics<Body = B> + ?Sized>(&self, world: &W) -> [f32; 3] {
         world.pose(self.body).transform(self.at)
     }
@@ -84,7 +84,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for TargetPosition<B> 
     }
 }
 
-/// A sensor with one channel that measures the height of a point above the origin of the world [m].
+/// A sensor with one channel that measures the height of a point above the origin of the world, in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Height<B = BodyId> {

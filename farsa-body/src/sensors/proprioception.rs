@@ -17,7 +17,7 @@ pub struct JointPosition<J = JointId> {
 }
 
 impl<J> JointPosition<J> {
-    /// Creates a sensor that reads 0 at the joint position `from` and 1 at `to` [rad or m].
+    /// Creates a sensor that reads 0 at the joint position `from` and 1 at `to`, in radians or meters.
     ///
     /// # Errors
     /// Returns [`ChannelError::Range`] if the two positions are equal or not finite.
@@ -41,8 +41,8 @@ impl<J: Copy, W: Joints<Joint = J> + ?Sized> Sensor<W> for JointPosition<J> {
     }
 }
 
-/// A sensor with one channel that measures the speed of a joint [rad/s or m/s]. Wrap it in [`crate::wrappers::Scaled`]
-/// to use other units.
+/// A sensor with one channel that measures the speed of a joint, in radians or meters per second. Wrap it in
+/// [`crate::wrappers::Scaled`] to use other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointSpeed<J = JointId> {

@@ -62,8 +62,8 @@ pub struct Traction<B = BodyId, J = JointId> {
 }
 
 impl<B, J> Traction<B, J> {
-    /// Creates a sensor for a robot with a left and a right wheel of the given radius [m]. A difference of `largest`
-    /// [m/s] results in a reading of 1.
+    /// Creates a sensor for a robot with a left and a right wheel of the given radius, in meters. A difference of
+    /// `largest` [m/s] results in a reading of 1.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if a number is not finite or not > 0.

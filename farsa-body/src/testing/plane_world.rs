@@ -112,7 +112,7 @@ struct Met {
 }
 
 impl PlaneWorld {
-    /// The duration of a control step [s].
+    /// The duration of a control step, in seconds.
     pub const TIME_STEP: f32 = 0.05;
 
     /// Creates an empty world.
@@ -120,12 +120,12 @@ impl PlaneWorld {
         Self::default()
     }
 
-    /// Adds a wall between two points [m].
+    /// Adds a wall between two points, in meters.
     pub fn add_wall(&mut self, ends: [[f32; 2]; 2], color: [f32; 3]) {
         self.walls.push(Wall { ends, color });
     }
 
-    /// Adds a disc or an upright cylinder with the given center and radius [m].
+    /// Adds a disc or an upright cylinder with the given center and radius, in meters.
     pub fn add_disc(&mut self, centre: [f32; 2], radius: f32, color: [f32; 3]) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color, intensity: None, robot: None })
     }

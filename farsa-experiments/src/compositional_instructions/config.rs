@@ -8,36 +8,36 @@ use crate::compositional_instructions::instruction::{Action, Color, Condition, I
 /// The arm, which consists of two segments and is seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// The lengths of the segments \[m\].
+    /// The lengths of the segments, in meters.
     pub lengths: [f64; 2],
-    /// The masses of the segments \[kg\].
+    /// The masses of the segments, in kilograms.
     pub masses: [f64; 2],
-    /// The radius of both segments \[m\].
+    /// The radius of both segments, in meters.
     pub radius: f64,
     /// The largest rotation of each joint to either side, in degrees.
     pub ranges: [f64; 2],
-    /// The largest speed that the network can command for each joint \[rad/s\].
+    /// The largest speed that the network can command for each joint, in radians per second.
     pub speeds: [f64; 2],
     /// The torque per unit of difference between the commanded and the actual speed \[N m s/rad\].
     pub gains: [f64; 2],
-    /// The largest torque of each motor \[N m\].
+    /// The largest torque of each motor, in newton meters.
     pub torques: [f64; 2],
 }
 
 /// The three objects and the places where a trial puts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objects {
-    /// The radius of an object \[m\].
+    /// The radius of an object, in meters.
     pub radius: f64,
-    /// The mass of an object \[kg\].
+    /// The mass of an object, in kilograms.
     pub mass: f64,
     /// The coefficient of friction between an object and the ground.
     pub ground_friction: f64,
     /// The coefficient of friction between the arm and an object, and between two objects.
     pub friction: f64,
-    /// The mean distance of the objects from the base of the arm \[m\].
+    /// The mean distance of the objects from the base of the arm, in meters.
     pub distance: f64,
-    /// The largest deviation from that distance \[m\].
+    /// The largest deviation from that distance, in meters.
     pub distance_spread: f64,
     /// The bearings of the three places, from left to right, in degrees.
     pub bearings: [f64; 3],
@@ -52,7 +52,7 @@ pub struct Camera {
     pub view: f64,
     /// The number of rays that are cast in each sector.
     pub rays: u32,
-    /// The largest distance at which an object is visible \[m\].
+    /// The largest distance at which an object is visible, in meters.
     pub range: f64,
 }
 
@@ -74,15 +74,15 @@ pub struct Start {
 pub struct Judging {
     /// The length of the period at the end of a trial that is taken into account, in seconds.
     pub window: f64,
-    /// The displacement of an object that has no effect on the reward \[m\].
+    /// The displacement of an object that has no effect on the reward, in meters.
     pub still: f64,
-    /// The additional displacement at which the reward falls to zero \[m\].
+    /// The additional displacement at which the reward falls to zero, in meters.
     pub span: f64,
-    /// Like `span`, but for the target of TOUCH \[m\].
+    /// Like `span`, but for the target of TOUCH, in meters.
     pub span_touched: f64,
-    /// The displacement that earns the maximum reward for MOVE \[m\].
+    /// The displacement that earns the maximum reward for MOVE, in meters.
     pub far: f64,
-    /// The distance from the surface of the centered target below which the tip earns a reward for reaching \[m\].
+    /// The distance from the surface of the centered target below which the tip earns a reward for reaching, in meters.
     pub reach: f64,
     /// The weight of reaching in the reward for TOUCH and MOVE, between 0 and 1.
     pub reach_share: f64,
@@ -91,13 +91,13 @@ pub struct Judging {
     /// The minimum shares of the final period that count as a success. The first applies to INDICATE and IGNORE, the
     /// second to TOUCH.
     pub least_shares: [f64; 2],
-    /// The largest displacement of the target that is allowed in a successful trial of INDICATE or IGNORE \[m\].
+    /// The largest displacement of the target that is allowed in a successful trial of INDICATE or IGNORE, in meters.
     pub most_still: f64,
-    /// The largest displacement of the target that is allowed in a successful trial of TOUCH \[m\].
+    /// The largest displacement of the target that is allowed in a successful trial of TOUCH, in meters.
     pub most_touched: f64,
-    /// The smallest displacement of the target that is required in a successful trial of MOVE \[m\].
+    /// The smallest displacement of the target that is required in a successful trial of MOVE, in meters.
     pub least_moved: f64,
-    /// The largest displacement of any other object that is allowed in a successful trial \[m\].
+    /// The largest displacement of any other object that is allowed in a successful trial, in meters.
     pub most_other: f64,
 }
 
@@ -135,7 +135,7 @@ pub struct Config {
     pub objects: Objects,
     /// The camera at the base.
     pub camera: Camera,
-    /// The distance between two surfaces below which they count as touching \[m\].
+    /// The distance between two surfaces below which they count as touching, in meters.
     pub touch_margin: f64,
     /// The posture of the arm at the start.
     pub start: Start,

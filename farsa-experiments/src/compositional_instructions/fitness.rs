@@ -14,11 +14,11 @@ pub struct Observation {
     pub seen: [[bool; 3]; 3],
     /// True for each object that is touched by the second segment, in the order of the colors.
     pub touched: [bool; 3],
-    /// The distance between each object and its initial place \[m\].
+    /// The distance between each object and its initial place, in meters.
     pub displaced: [f64; 3],
-    /// The distance between the tip of the second segment and the surface of each object \[m\].
+    /// The distance between the tip of the second segment and the surface of each object, in meters.
     pub tip: [f64; 3],
-    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left \[m\].
+    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left, in meters.
     pub ahead: [[f64; 2]; 3],
 }
 
@@ -118,7 +118,7 @@ impl RewardTotals {
         &self.last
     }
 
-    /// Returns the displacement of the target, followed by the largest displacement of the other objects \[m\].
+    /// Returns the displacement of the target, followed by the largest displacement of the other objects, in meters.
     pub fn displaced(&self, target: Color) -> [f64; 2] {
         let others = Color::ALL.into_iter().filter(|color| *color != target);
         let farthest = others.map(|color| self.last.displaced[color.index()]).fold(0.0, f64::max);

@@ -18,7 +18,7 @@ pub struct Pole {
 pub struct Cart {
     /// The mass of the cart, M \[kg\].
     pub mass: f64,
-    /// The friction between the cart and the track \[N\]. It does not depend on the speed.
+    /// The friction between the cart and the track, in newtons. It does not depend on the speed.
     pub friction: f64,
     /// The acceleration of gravity \[m/s^2\].
     pub gravity: f64,
@@ -29,13 +29,13 @@ pub struct Cart {
 /// The state of the cart and the poles at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartState {
-    /// The position of the cart on the track \[m\].
+    /// The position of the cart on the track, in meters.
     pub position: f64,
-    /// The velocity of the cart \[m/s\].
+    /// The velocity of the cart, in meters per second.
     pub velocity: f64,
-    /// The angles of the poles from the upright position \[rad\]. Positive angles lean towards positive positions.
+    /// The angles of the poles from the upright position, in radians. Positive angles lean towards positive positions.
     pub angles: [f64; 2],
-    /// The angular velocities of the poles \[rad/s\].
+    /// The angular velocities of the poles, in radians per second.
     pub angular_velocities: [f64; 2],
 }
 

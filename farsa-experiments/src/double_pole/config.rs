@@ -27,11 +27,11 @@ pub struct Config {
     pub angle: f64,
     /// The angle at which a pole counts as fallen, in degrees.
     pub most_angle: f64,
-    /// The largest distance of the cart from the middle of the track \[m\].
+    /// The largest distance of the cart from the middle of the track, in meters.
     pub most_position: f64,
-    /// The largest force that the network can apply \[N\].
+    /// The largest force that the network can apply, in newtons.
     pub force: f64,
-    /// The smallest force that the network can apply \[N\].
+    /// The smallest force that the network can apply, in newtons.
     pub least_force: f64,
     /// The number of hidden neurons in the network.
     pub hidden: u32,

@@ -28,13 +28,13 @@ impl<W> ReachingWorld for W where W: Kinematics + Joints + Handles<Body = BodyId
 /// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Reaching {
-    /// The position of the target \[m\]. By default each trial draws a random target.
+    /// The position of the target, in meters. By default each trial draws a random target.
     pub target: Option<[f64; 3]>,
     /// The step at which the target moves to a different position, if it moves at all.
     pub jump: Option<u32>,
     /// If true, the trunk keeps its initial posture.
     pub locked_torso: bool,
-    /// An additional mass that is attached to the hand \[kg\].
+    /// An additional mass that is attached to the hand, in kilograms.
     pub load: f64,
 }
 
@@ -103,12 +103,12 @@ impl<C: Reacher> ReachEpisode<C> {
         &self.y
     }
 
-    /// Returns the position of the center of the palm \[m\].
+    /// Returns the position of the center of the palm, in meters.
     pub fn hand(&self) -> [f64; 3] {
         self.hand
     }
 
-    /// Returns the current position of the target \[m\].
+    /// Returns the current position of the target, in meters.
     pub fn target(&self) -> [f64; 3] {
         self.targets[usize::from(self.asked.jump.is_some_and(|at| self.steps >= at))]
     }

@@ -47,7 +47,7 @@ pub struct Scene {
     pub robot: Robot,
     /// The configuration from which the scene was built.
     pub config: Config,
-    /// The center of the palm in the frame of the hand \[m\].
+    /// The center of the palm in the frame of the hand, in meters.
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,
@@ -135,12 +135,12 @@ impl Scene {
         Options { time_step, substeps, ..Options::default() }
     }
 
-    /// Returns the lower and upper limits of the six joints \[rad\].
+    /// Returns the lower and upper limits of the six joints, in radians.
     pub fn ranges(&self) -> [[f64; 2]; 6] {
         self.controlled.map(|driven| driven.range)
     }
 
-    /// Returns the initial angles of the six joints \[rad\].
+    /// Returns the initial angles of the six joints, in radians.
     pub fn start(&self) -> [f64; 6] {
         self.controlled.map(|driven| driven.start)
     }
@@ -159,13 +159,13 @@ impl Scene {
         KinematicTree::new(&robot)
     }
 
-    /// Draws the target of a trial from the stream of [`Domain::Start`] \[m\]. It is uniformly distributed in the
+    /// Draws the target of a trial from the stream of [`Domain::Start`], in meters. It is uniformly distributed in the
     /// volume and the same for all individuals of a generation.
     pub fn target(&self, id: EpisodeId) -> [f64; 3] {
         self.draw(&mut self.stream(id))
     }
 
-    /// Draws two independent targets for a trial \[m\]. Both are uniformly distributed in the volume.
+    /// Draws two independent targets for a trial, in meters. Both are uniformly distributed in the volume.
     pub fn two_targets(&self, id: EpisodeId) -> [[f64; 3]; 2] {
         let mut stream = self.stream(id);
         [self.draw(&mut stream), self.draw(&mut stream)]

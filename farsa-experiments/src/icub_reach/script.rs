@@ -50,8 +50,8 @@ impl Script {
         Ok(Self { config: scene.config, tree, palm_centre, start, ranges, stiffness, poses, found: None })
     }
 
-    /// Computes joint angles that move the hand to the given position \[m\]. Among all solutions, angles close to the
-    /// initial posture are preferred.
+    /// Computes joint angles that move the hand to the given position, in meters. Among all solutions, angles close to
+    /// the initial posture are preferred.
     ///
     /// # Errors
     /// Returns [`InverseKinematicsError::NotReached`] with the closest solution if the position is out of reach.

@@ -10,12 +10,12 @@ pub struct RewardTotals {
 }
 
 impl RewardTotals {
-    /// Starts with the given distance between the hand and the target \[m\].
+    /// Starts with the given distance between the hand and the target, in meters.
     pub fn new(start: f64) -> Self {
         Self { start, last: start, sum: 0.0, count: 0 }
     }
 
-    /// Adds the distance after a step \[m\]. Set `counts` to true if the step belongs to the final period.
+    /// Adds the distance after a step, in meters. Set `counts` to true if the step belongs to the final period.
     pub fn add(&mut self, distance: f64, counts: bool) {
         self.last = distance;
         if counts {
@@ -24,23 +24,24 @@ impl RewardTotals {
         }
     }
 
-    /// Returns the distance at the start \[m\].
+    /// Returns the distance at the start, in meters.
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Returns the distance after the last step \[m\].
+    /// Returns the distance after the last step, in meters.
     pub fn last(&self) -> f64 {
         self.last
     }
 
-    /// Returns the mean distance in the final period \[m\]. If there was no such step yet, it is the last distance.
+    /// Returns the mean distance in the final period, in meters. If there was no such step yet, it is the last
+    /// distance.
     pub fn mean(&self) -> f64 {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }
     }
 
     /// Computes the fitness, which is 1 minus the ratio of the mean distance and the start distance. The start distance
-    /// is at least `least` \[m\]. The result is between 0 and 1, or NaN.
+    /// is at least `least`, in meters. The result is between 0 and 1, or NaN.
     pub fn fitness(&self, least: f64) -> f64 {
         1.0 - (self.mean() / self.start.max(least)).clamp(0.0, 1.0)
     }

@@ -57,17 +57,17 @@ pub struct Config {
     pub time_step: f64,
     /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The x and y coordinates of the middle of the area in which the ball is placed \[m\].
+    /// The x and y coordinates of the middle of the area in which the ball is placed, in meters.
     pub area_centre: [f64; 2],
-    /// The size of that area along x and y \[m\].
+    /// The size of that area along x and y, in meters.
     pub area_size: [f64; 2],
-    /// The size of the area that is used for the tests \[m\]. It has the same middle and is divided into cells.
+    /// The size of the area that is used for the tests, in meters. It has the same middle and is divided into cells.
     pub tested_size: [f64; 2],
-    /// The radius of the ball \[m\].
+    /// The radius of the ball, in meters.
     pub ball_radius: f64,
-    /// The mass of the ball \[kg\].
+    /// The mass of the ball, in kilograms.
     pub ball_mass: f64,
-    /// The height of the table top \[m\].
+    /// The height of the table top, in meters.
     pub table_top: f64,
     /// The initial pitch, roll and yaw of the trunk, in degrees.
     pub torso: [f64; 3],
@@ -87,7 +87,7 @@ pub struct Config {
     pub tracking: bool,
     /// The fraction of the angle to the ball that the head corrects in each step.
     pub head_gain: f64,
-    /// The largest speed at which the desired angles of the neck can change \[rad/s\].
+    /// The largest speed at which the desired angles of the neck can change, in radians per second.
     pub head_speed: f64,
     /// The number of hidden neurons.
     pub hidden: u32,
@@ -95,7 +95,7 @@ pub struct Config {
     pub weight_range: f64,
     /// The length of the period at the end of a trial in which touch and height are rewarded, in seconds.
     pub window: f64,
-    /// The height above the table at which the ball counts as lifted and the reward for height is largest \[m\].
+    /// The height above the table at which the ball counts as lifted and the reward for height is largest, in meters.
     pub height: f64,
     /// The time for which the ball must be held up at the end of a successful trial, in seconds.
     pub hold: f64,

@@ -12,13 +12,13 @@ const ONE_TOUCH: f64 = 0.25;
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The center of the palm \[m\].
+    /// The center of the palm, in meters.
     pub palm: [f64; 3],
-    /// The center of the ball \[m\].
+    /// The center of the ball, in meters.
     pub ball: [f64; 3],
-    /// The distance from the center of the palm to the surface of the ball \[m\]. It is zero inside the ball.
+    /// The distance from the center of the palm to the surface of the ball, in meters. It is zero inside the ball.
     pub distance: f64,
-    /// The height of the lowest point of the ball above the table \[m\].
+    /// The height of the lowest point of the ball above the table, in meters.
     pub height: f64,
     /// The number of parts of the hand that touch the ball.
     pub touching: u32,
@@ -72,7 +72,7 @@ pub struct Score {
     pub steps: u32,
     /// The number of consecutive steps up to the last one in which the ball was lifted and held.
     pub held: u32,
-    /// The largest height at which the ball was held \[m\].
+    /// The largest height at which the ball was held, in meters.
     pub highest: f64,
     /// True if the ball has fallen off the table.
     pub fallen: bool,
@@ -83,7 +83,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Starts a trial with the given distance between the hand and the ball \[m\].
+    /// Starts a trial with the given distance between the hand and the ball, in meters.
     pub fn new(distance: f64) -> Self {
         Self { start: distance, ..Self::default() }
     }

@@ -114,7 +114,7 @@ impl Scene {
         self.icub.joint(joint).map_err(|error: IcubError| wrong(&error))
     }
 
-    /// Returns the limits of the joint with the given name \[rad\].
+    /// Returns the limits of the joint with the given name, in radians.
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::actuator`].
@@ -128,8 +128,8 @@ impl Scene {
         self.parts.iter().map(|part| part.on_ball)
     }
 
-    /// Draws the x and y coordinates of the ball for a trial \[m\]. The area is divided into twelve parts, and twelve
-    /// consecutive trials use each part once.
+    /// Draws the x and y coordinates of the ball for a trial, in meters. The area is divided into twelve parts, and
+    /// twelve consecutive trials use each part once.
     ///
     /// The coordinates are drawn from the stream of [`Domain::Start`], so all individuals of a generation have the same
     /// starts.
@@ -138,8 +138,8 @@ impl Scene {
         self.place_of(id, [part / GRID[1], part % GRID[1]], GRID, self.config.area_size)
     }
 
-    /// Draws the position of the ball for a trial from one cell of the tested area \[m\]. The argument `cells` gives
-    /// the number of cells along x and y.
+    /// Draws the position of the ball for a trial from one cell of the tested area, in meters. The argument `cells`
+    /// gives the number of cells along x and y.
     pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
         self.place_of(id, cell, cells, self.config.tested_size)
     }
@@ -152,7 +152,7 @@ impl Scene {
         })
     }
 
-    /// Moves the robot to its initial posture and places the ball on the table at the given coordinates \[m\].
+    /// Moves the robot to its initial posture and places the ball on the table at the given coordinates, in meters.
     pub fn arrange<W>(&self, world: &mut W, [x, y]: [f64; 2])
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,

@@ -20,7 +20,7 @@ pub struct PushConfig {
     pub steps: u32,
     /// The length, width and height of the box.
     pub size: [f64; 3],
-    /// The mass of the box \[kg\].
+    /// The mass of the box, in kilograms.
     pub mass: f64,
     /// The coefficient of friction between the box and the ground.
     pub friction: f64,
@@ -121,7 +121,7 @@ impl PushConfig {
         0.5 * farsa_num::Scalar::sqrt(a * a + b * b)
     }
 
-    /// Returns the maximum speed of the robot \[m/s\].
+    /// Returns the maximum speed of the robot, in meters per second.
     pub fn speed(&self) -> f64 {
         self.robot.max_wheel_speed * self.robot.wheel_radius
     }

@@ -29,11 +29,11 @@ pub struct PushTrial {
     pub steps: u32,
     /// The number of steps in which the robot touched the box.
     pub touched: u32,
-    /// The horizontal distance between the first and the last position of the box \[m\].
+    /// The horizontal distance between the first and the last position of the box, in meters.
     pub moved: f64,
-    /// The length of the path of the box \[m\].
+    /// The length of the path of the box, in meters.
     pub way: f64,
-    /// The largest speed of the box at the end of a step \[m/s\].
+    /// The largest speed of the box at the end of a step, in meters per second.
     pub fastest: f64,
     /// True if a measured value was not finite.
     pub failed: bool,

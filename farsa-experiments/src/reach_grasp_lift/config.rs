@@ -54,7 +54,7 @@ pub struct Config {
     pub sweeps: u32,
     /// The creep of a sticking contact, as tangential speed per impulse of a dynamics step \[m/s per N s\].
     pub slip: f64,
-    /// The natural frequency of a joint's stop \[rad/s\].
+    /// The natural frequency of a joint's stop, in radians per second.
     pub limit_frequency: f64,
     /// The number of control steps of a trial.
     pub steps: u32,
@@ -70,11 +70,11 @@ pub struct Config {
     pub sphere_displacement: f64,
     /// Defines which individuals share the displacements.
     pub displacement: Displacement,
-    /// The point in which the axes of the joints J1 to J3 intersect \[m\].
+    /// The point in which the axes of the joints J1 to J3 intersect, in meters.
     pub shoulder: [f64; 3],
     /// The variant of the muscle model.
     pub muscles: MuscleVariant,
-    /// The moment arm of the muscles \[m\].
+    /// The moment arm of the muscles, in meters.
     pub moment_arm: f64,
     /// The factor that reduces the passive tension of the muscles in the original program.
     pub passive_reduction: f64,
@@ -88,25 +88,25 @@ pub struct Config {
     pub servo_stiffness: f64,
     /// The velocity gain of the finger servos \[N m s/rad\].
     pub servo_damping: f64,
-    /// The largest force of a finger tendon \[N\].
+    /// The largest force of a finger tendon, in newtons.
     pub servo_force: f64,
-    /// The moment arm of a finger tendon \[m\].
+    /// The moment arm of a finger tendon, in meters.
     pub tendon_radius: f64,
     /// The passive damping of the hand joints \[N m s/rad\].
     pub hand_damping: f64,
-    /// The radius of the sphere \[m\].
+    /// The radius of the sphere, in meters.
     pub sphere_radius: f64,
-    /// The mass of the sphere \[kg\].
+    /// The mass of the sphere, in kilograms.
     pub sphere_mass: f64,
-    /// The lower and the upper end of the table top along x \[m\].
+    /// The lower and the upper end of the table top along x, in meters.
     pub table_x: [f64; 2],
-    /// The lower and the upper end of the table top along y \[m\].
+    /// The lower and the upper end of the table top along y, in meters.
     pub table_y: [f64; 2],
-    /// The depth of the table, which is a solid block below z = 0 \[m\].
+    /// The depth of the table, which is a solid block below z = 0, in meters.
     pub table_depth: f64,
     /// The coefficient of sliding friction, which is the same for all surfaces.
     pub friction: f64,
-    /// The rolling friction between the sphere and the table \[m\].
+    /// The rolling friction between the sphere and the table, in meters.
     pub rolling_friction: f64,
     /// The normal stiffness of each contact point \[N/m\].
     pub contact_stiffness: f64,
@@ -193,8 +193,8 @@ impl Config {
         Self { labels, ..Self::default() }
     }
 
-    /// Returns the x and y coordinates of the sphere's center at the start of a trial, without random displacement
-    /// \[m\].
+    /// Returns the x and y coordinates of the sphere's center at the start of a trial, without random displacement, in
+    /// meters.
     pub fn sphere_start(&self, trial: usize) -> [f64; 2] {
         let [tx, ty] = [0, 1].map(|k| self.sphere_positions[2 * (trial % TRIALS) + k] / 100.0);
         match self.sphere_frame {

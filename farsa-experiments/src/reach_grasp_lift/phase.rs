@@ -35,9 +35,9 @@ pub struct Observation {
     pub on_table: bool,
     /// The height of the sphere's center above the table top, in centimeters.
     pub height: f64,
-    /// The position of the palm's center in the world \[m\]. Only distances enter the reward.
+    /// The position of the palm's center in the world, in meters. Only distances enter the reward.
     pub palm: [f64; 3],
-    /// The centroid of the fingertips and the center of the palm in the world \[m\].
+    /// The centroid of the fingertips and the center of the palm in the world, in meters.
     pub grasp_centre: [f64; 3],
 }
 

@@ -30,14 +30,14 @@ pub struct Timetable {
     /// The durations of reaching the way-point, descending, closing and lifting, in seconds. The lifted posture is held
     /// for the rest of the trial.
     pub durations: [f64; 4],
-    /// The height of the palm's center above the table at the way-point \[m\].
+    /// The height of the palm's center above the table at the way-point, in meters.
     pub way_point: f64,
-    /// The height of the palm's center above the table during the grasp \[m\]. It is chosen below the top of the
+    /// The height of the palm's center above the table during the grasp, in meters. It is chosen below the top of the
     /// sphere, so that the palm presses gently.
     pub palm: f64,
-    /// The distance from the palm's center to the sphere in the direction of the fingertips \[m\].
+    /// The distance from the palm's center to the sphere in the direction of the fingertips, in meters.
     pub ahead: f64,
-    /// The height by which the hand is lifted \[m\].
+    /// The height by which the hand is lifted, in meters.
     pub lift: f64,
     /// The positions of the nine servo groups when the hand is closed around the sphere.
     pub closed: [f64; 9],
@@ -165,8 +165,8 @@ fn seven(joints: &[f64]) -> [f64; 7] {
 }
 
 impl GraspPlan {
-    /// Plans the grasp of a sphere at the given position on the table \[m\]. The arm starts at the posture `start`,
-    /// which contains the angles of J1..J27 in radians.
+    /// Plans the grasp of a sphere at the given position on the table, in meters. The arm starts at the posture
+    /// `start`, which contains the angles of J1..J27 in radians.
     ///
     /// # Errors
     /// Returns [`InverseKinematicsError`] if the sphere is out of reach.

@@ -28,16 +28,16 @@ pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 /// The initial state of a walk. Angles are measured forward from the normal of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Launch {
-    /// The angles of the stance leg and the swing leg \[rad\].
+    /// The angles of the stance leg and the swing leg, in radians.
     pub angles: [f64; 2],
-    /// The angular velocities of the stance leg and the swing leg \[rad/s\].
+    /// The angular velocities of the stance leg and the swing leg, in radians per second.
     pub rates: [f64; 2],
 }
 
 /// The environment of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// The slope of the ground, which descends in the walking direction \[rad\].
+    /// The slope of the ground, which descends in the walking direction, in radians.
     pub slope: f64,
     /// The acceleration of gravity \[m/s2\].
     pub gravity: f64,
@@ -54,15 +54,15 @@ pub struct Walk {
 /// Mean values over the last steps of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pace {
-    /// The backward lean of the leading leg at footfalls \[rad\].
+    /// The backward lean of the leading leg at footfalls, in radians.
     pub angle: f64,
-    /// The angular velocity of that leg after the footfalls \[rad/s\].
+    /// The angular velocity of that leg after the footfalls, in radians per second.
     pub rate: f64,
-    /// The angular velocity of the leg that starts to swing \[rad/s\].
+    /// The angular velocity of the leg that starts to swing, in radians per second.
     pub swing_rate: f64,
     /// The duration of a step, in seconds.
     pub period: f64,
-    /// The length of a step \[m\].
+    /// The length of a step, in meters.
     pub length: f64,
 }
 
@@ -177,7 +177,7 @@ impl Brain {
         self.network.observed()
     }
 
-    /// Returns the torque that was commanded in the last step \[N m\].
+    /// Returns the torque that was commanded in the last step, in newton meters.
     pub fn torque(&self) -> f64 {
         self.torque
     }
@@ -204,8 +204,8 @@ impl WalkerEpisode {
         Self { walk, launch, gait, brain, noted: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
-    /// Returns the distance between the first stance and the last footfall \[m\]. It is NaN after a numerical failure,
-    /// and 0 if the walker gained energy from errors of the simulation.
+    /// Returns the distance between the first stance and the last footfall, in meters. It is NaN after a numerical
+    /// failure, and 0 if the walker gained energy from errors of the simulation.
     pub fn distance(&self) -> f64 {
         match self.gait.end() {
             Some(End::Broken) => f64::NAN,

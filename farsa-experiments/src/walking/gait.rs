@@ -69,10 +69,10 @@ pub struct Footfall {
     pub time: f64,
     /// The index of the foot, which is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
-    /// The position at which the sole touched the ground \[m\].
+    /// The position at which the sole touched the ground, in meters.
     pub place: f64,
-    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model
-    /// \[rad\].
+    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model, in
+    /// radians.
     pub angle: f64,
     /// The angular velocities \[rad/s\] after the impact of this leg and of the leg that then swings, forward of the
     /// ground's normal. They correspond to `theta'` and `theta' - phi'` of the walking model at the footfall. Both are
@@ -311,7 +311,7 @@ impl Gait {
         self.steps
     }
 
-    /// Returns the distance between the first position of the stance foot and the last footfall \[m\].
+    /// Returns the distance between the first position of the stance foot and the last footfall, in meters.
     pub fn distance(&self) -> f64 {
         self.footfalls[1].place - self.started
     }
@@ -341,7 +341,7 @@ impl Gait {
         self.end
     }
 
-    /// Returns the work of the motor and the change of the walker's energy since the start \[J\].
+    /// Returns the work of the motor and the change of the walker's energy since the start, in joules.
     pub fn energies(&self) -> [f64; 2] {
         [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
     }

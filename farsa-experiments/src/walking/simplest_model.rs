@@ -48,7 +48,7 @@ pub struct WalkingModel {
 /// The error that is returned for a slope without a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeError {
-    /// The slope \[rad\].
+    /// The slope, in radians.
     pub slope: f64,
 }
 
@@ -73,7 +73,7 @@ pub struct ModelStep {
 /// A periodic gait, in which every step is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelGait {
-    /// The angle `theta*` of the stance leg just after a strike \[rad\].
+    /// The angle `theta*` of the stance leg just after a strike, in radians.
     pub angle: f64,
     /// The angular velocity `theta'*` of the stance leg \[rad sqrt(gravity / leg length)\].
     pub rate: f64,

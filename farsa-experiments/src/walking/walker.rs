@@ -20,13 +20,13 @@ const RAIL: f64 = 1e-9;
 /// A pair of legs that are rigidly connected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legs {
-    /// The distance from the hip to the sole \[m\].
+    /// The distance from the hip to the sole, in meters.
     pub length: f64,
-    /// The mass of the shanks, which is uniformly distributed between hip and sole \[kg\].
+    /// The mass of the shanks, which is uniformly distributed between hip and sole, in kilograms.
     pub mass: f64,
-    /// The mass at the sole \[kg\].
+    /// The mass at the sole, in kilograms.
     pub foot_mass: f64,
-    /// The radius of the round sole, whose center is on the leg \[m\].
+    /// The radius of the round sole, whose center is on the leg, in meters.
     pub foot_radius: f64,
 }
 
@@ -47,10 +47,10 @@ pub struct Legs {
 pub struct Walker {
     /// The outer and the inner legs.
     pub legs: [Legs; 2],
-    /// The mass at the hip \[kg\].
+    /// The mass at the hip, in kilograms.
     pub hip_mass: f64,
-    /// The distance between the outer feet \[m\]. The distance between the inner feet is half as large. It is used in
-    /// drawings and does not affect the motion in the plane.
+    /// The distance between the outer feet, in meters. The distance between the inner feet is half as large. It is used
+    /// in drawings and does not affect the motion in the plane.
     pub hip_spacing: f64,
     /// The coefficient of friction between the feet and the ground.
     pub friction: f64,
@@ -60,7 +60,7 @@ pub struct Walker {
     pub damping_ratio: f64,
     /// The largest angle between the inner and the outer legs, in both directions \[rad\].
     pub hip_range: f64,
-    /// The largest torque of the motor at the hip \[N m\]. A value of 0 removes the motor.
+    /// The largest torque of the motor at the hip, in newton meters. A value of 0 removes the motor.
     pub torque: f64,
 }
 
@@ -121,7 +121,7 @@ impl Legs {
 }
 
 impl Walker {
-    /// Returns the total mass \[kg\].
+    /// Returns the total mass, in kilograms.
     pub fn mass(&self) -> f64 {
         self.hip_mass + self.legs.iter().map(|legs| legs.mass + legs.foot_mass).sum::<f64>()
     }
@@ -186,7 +186,7 @@ impl Walker {
         (robot, parts)
     }
 
-    /// Computes the sum of the kinetic and the potential energy of a [`Posture`] under the given gravity \[J\].
+    /// Computes the sum of the kinetic and the potential energy of a [`Posture`] under the given gravity, in joules.
     pub fn energy(&self, posture: &Posture, gravity: [f64; 3]) -> f64 {
         let mut energy = 0.0;
         let mut add = |mass: f64, [x, z]: [f64; 2], [u, w]: [f64; 2]| {
@@ -212,13 +212,13 @@ impl Walker {
 /// The position and the velocity of a walker in its plane.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Posture {
-    /// The x and z coordinates of the hip \[m\].
+    /// The x and z coordinates of the hip, in meters.
     pub hip: [f64; 2],
-    /// The velocity of the hip \[m/s\].
+    /// The velocity of the hip, in meters per second.
     pub velocity: [f64; 2],
-    /// The backward rotation of the outer and the inner legs from the normal of the ground \[rad\].
+    /// The backward rotation of the outer and the inner legs from the normal of the ground, in radians.
     pub angles: [f64; 2],
-    /// The angular velocities of the legs \[rad/s\].
+    /// The angular velocities of the legs, in radians per second.
     pub rates: [f64; 2],
 }
 

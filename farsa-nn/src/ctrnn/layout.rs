@@ -80,7 +80,7 @@ pub struct CtrnnParts<'a> {
     pub biases: &'a [f32],
     /// The gains of all neurons.
     pub gains: &'a [f32],
-    /// The time constants of all neurons [s].
+    /// The time constants of all neurons, in seconds.
     pub time_constants: &'a [f32],
 }
 

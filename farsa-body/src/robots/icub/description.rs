@@ -61,7 +61,7 @@ pub enum JointControl {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Icub {
-    /// The position of the root link in the world [m].
+    /// The position of the root link in the world, in meters.
     pub root: [f64; 3],
     /// The chains that are actuated, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
@@ -69,11 +69,11 @@ pub struct Icub {
     pub posture: IcubPosture,
     /// The interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
     pub control: JointControl,
-    /// The position error at which a servo reaches the maximum effort of its joint [rad].
+    /// The position error at which a servo reaches the maximum effort of its joint, in radians.
     pub saturation_angle: f64,
-    /// The ratio of the damping and the stiffness of a servo [s].
+    /// The ratio of the damping and the stiffness of a servo, in seconds.
     pub servo_time: f64,
-    /// The speed error at which a velocity motor reaches the maximum effort of its joint [rad/s].
+    /// The speed error at which a velocity motor reaches the maximum effort of its joint, in radians per second.
     pub saturation_speed: f64,
     /// The viscous damping of the joints of the torso, the neck and the arms, relative to their effort [s/rad]. Its
     /// inverse is the highest speed.
@@ -115,8 +115,8 @@ impl Icub {
     pub const CHEST: BodyId = BodyId(2);
     /// The body of the head.
     pub const HEAD: BodyId = BodyId(5);
-    /// The centers of the left and the right eye in the frame of the head [m]. Their distance is 68 mm, and they cannot
-    /// move.
+    /// The centers of the left and the right eye in the frame of the head, in meters. Their distance is 68 mm, and they
+    /// cannot move.
     ///
     /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011], which describes a different
     /// version of the neck than the file.
@@ -129,7 +129,7 @@ impl Icub {
         BodyId(side.arm().bodies().end as u16 - 1)
     }
 
-    /// Returns the point on the inner side of a palm that is used as its center, in the frame of the palm [m].
+    /// Returns the point on the inner side of a palm that is used as its center, in the frame of the palm, in meters.
     pub fn palm_centre(&self, side: Side) -> [f64; 3] {
         on_side(side, self.hand.palm_centre)
     }
@@ -139,8 +139,8 @@ impl Icub {
         [1, 2, 3].map(|i| BodyId((side.hand().bodies().start + 4 * finger as usize + i) as u16))
     }
 
-    /// Returns the distal phalange of a finger and the position of its tip in this frame [m]. The tip is the end of the
-    /// capsule's axis.
+    /// Returns the distal phalange of a finger and the position of its tip in this frame, in meters. The tip is the end
+    /// of the capsule's axis.
     pub fn fingertip(&self, side: Side, finger: Finger) -> (BodyId, [f64; 3]) {
         (Self::phalanges(side, finger)[2], on_side(side, self.hand.fingertip(finger)))
     }
@@ -165,7 +165,7 @@ impl Icub {
         Ok(ActuatorId(first + i as u16))
     }
 
-    /// Returns the limits of the joint with the given name [rad]. Rigid joints are supported as well.
+    /// Returns the limits of the joint with the given name, in radians. Rigid joints are supported as well.
     ///
     /// # Errors
     /// Returns [`IcubError::Joint`] if there is no such joint.
@@ -174,7 +174,7 @@ impl Icub {
         Ok(self.ranges(chain)[i])
     }
 
-    /// Returns the limits of the joints of a chain [rad].
+    /// Returns the limits of the joints of a chain, in radians.
     pub fn ranges(&self, chain: Chain) -> Vec<[f64; 2]> {
         match chain.parts() {
             [] => self.hand.ranges().to_vec(),
@@ -182,7 +182,7 @@ impl Icub {
         }
     }
 
-    /// Returns the initial angles of the actuated joints in the order of [`Robot::joints`] [rad].
+    /// Returns the initial angles of the actuated joints in the order of [`Robot::joints`], in radians.
     pub fn start(&self) -> Vec<f64> {
         let actuated = Chain::ALL.into_iter().filter(|chain| self.actuated.contains(chain));
         actuated.flat_map(|chain| self.posture.chain(chain)).copied().collect()

@@ -22,7 +22,7 @@ pub struct IcubPosture {
 }
 
 impl IcubPosture {
-    /// Returns the joint angles of a chain [rad].
+    /// Returns the joint angles of a chain, in radians.
     pub fn chain(&self, chain: Chain) -> &[f64] {
         match chain {
             Chain::Torso => &self.torso,
@@ -34,7 +34,7 @@ impl IcubPosture {
         }
     }
 
-    /// Returns a mutable reference to the joint angles of a chain [rad].
+    /// Returns a mutable reference to the joint angles of a chain, in radians.
     pub fn chain_mut(&mut self, chain: Chain) -> &mut [f64] {
         match chain {
             Chain::Torso => &mut self.torso,
