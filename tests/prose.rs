@@ -311,5 +311,5 @@ fn documents_have_their_sizes() {
     let documents = all.iter().filter(|path| path.extension().is_some_and(|extension| extension == "md"));
     let sum: u64 = documents.map(|path| fs::metadata(path).expect("a file").len()).sum();
     println!("all documents have {sum} bytes");
-    assert!(sum <= 335_000, "all documents have {sum} bytes, at most 335 000");
+    assert!(sum <= 330_000, "all documents have {sum} bytes, at most 330 000");
 }

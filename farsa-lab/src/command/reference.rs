@@ -38,7 +38,8 @@ fn item(argument: &Arg) -> String {
 /// Returns the text of a subcommand: its purpose, its usage and its own options.
 fn section(command: &mut Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
-    let usage = command.render_usage().to_string().replace("Usage: ", "");
+    let usage =
+        command.render_usage().to_string().replace("Usage: ", "").replace("[OPTIONS] ", "").replace(" [OPTIONS]", "");
     let arguments = command.get_arguments().filter(|argument| !argument.is_hide_set() && !is_common(argument));
     let arguments = arguments.filter(|argument| argument.get_id() != "help").map(item);
     let mut text = format!("{about}: `{usage}`\n\n{}", arguments.collect::<String>());
