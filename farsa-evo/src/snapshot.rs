@@ -79,6 +79,22 @@ impl<'s> StateReader<'s> {
         row.iter_mut().try_for_each(|x| self.real().map(|found| *x = found))
     }
 
+    /// A row of numbers within a range, both ends included.
+    pub(crate) fn row(&mut self, row: &mut [f64], what: &'static str, [low, high]: [f64; 2]) -> Result<(), EvoError> {
+        self.reals(row)?;
+        let wrong = row.iter().find(|x| !(low..=high).contains(*x));
+        wrong.map_or(Ok(()), |x| Err(EvoError::state_content(what, x.to_bits())))
+    }
+
+    /// Indices of individuals of a population of this size.
+    pub(crate) fn individuals(&mut self, count: usize, population: usize) -> Result<Vec<u32>, EvoError> {
+        let mut individual = || match self.u32()? {
+            found if (found as usize) < population => Ok(found),
+            found => Err(EvoError::no_such_individual(found as usize, population)),
+        };
+        (0..count).map(|_| individual()).collect()
+    }
+
     /// The genes of a population, none of them above the largest.
     pub(crate) fn genes(&mut self, population: &mut Population, largest: u16) -> Result<(), EvoError> {
         for genome in population.iter_mut() {
@@ -96,6 +112,11 @@ impl<'s> StateReader<'s> {
 /// Appends the genes of a population.
 pub(crate) fn push_genes(state: &mut Vec<u8>, population: &Population) {
     state.extend(population.as_slice().iter().flat_map(|gene| gene.to_le_bytes()));
+}
+
+/// Appends indices.
+pub(crate) fn push_indices(state: &mut Vec<u8>, indices: &[u32]) {
+    state.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
 }
 
 /// Appends a row of numbers.

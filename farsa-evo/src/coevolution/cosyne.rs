@@ -3,14 +3,17 @@
 use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
+use core::iter::repeat_n;
 
 use farsa_num::{Domain, Stream, exp, ln, sin_cos};
 
 use crate::error::{EvoError, check_rate, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::real::bounds::uniform;
+use crate::search::{Algorithm, Search, Step};
+use crate::snapshot::{StateReader, push_indices, push_reals};
+use crate::strategy::RecordKind;
 
 /// Which weights change places within their subpopulation before the next generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,82 +127,61 @@ const PERMUTATION: u32 = 1;
 /// assert!(champion.fitness.get() > -0.1);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+pub type Cosyne = Search<CosyneOrigins>;
+
+/// The state of [`Cosyne`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cosyne {
-    config: CosyneConfig,
-    seed: u64,
-    generation: u32,
+pub struct CosyneOrigins {
     /// The place of each gene in the previous generation [individuals x genes]. Empty in generation 0.
     origins: Vec<u32>,
-    population: Population<f64>,
 }
 
-impl Cosyne {
-    /// A search at its random initial generation.
-    ///
-    /// # Errors
-    /// The errors of [`CosyneConfig::validate`].
-    pub fn new(config: CosyneConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let mut population = Population::new(config.population, config.genes())?;
-        for (individual, genes) in population.iter_mut().enumerate() {
-            let mut stream = Stream::new(seed, Domain::InitialGenome, 0, individual as u32, 0);
-            for gene in genes {
-                *gene = stream.range_f64(-config.range, config.range);
-            }
-        }
-        Ok(Self { config, seed, generation: 0, origins: Vec::new(), population })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &CosyneConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// Crosses two parents: one of them for each gene of the first child, the other for the second child \[genes\].
-    fn cross(&self, [first, second]: [u32; 2], stream: &mut Stream, children: &mut [Vec<u32>; 2]) {
-        let [one, other] = children;
-        one.clear();
-        other.clear();
-        for &segment in &self.config.segments {
-            let cut = stream.below(segment as u32 + 1) as usize;
-            for gene in 0..segment {
-                let (a, b) = if gene < cut { (first, second) } else { (second, first) };
-                one.push(a);
-                other.push(b);
-            }
+/// Crosses two parents: one of them for each gene of the first child, the other for the second child \[genes\].
+fn cross(segments: &[usize], [first, second]: [u32; 2], stream: &mut Stream, children: &mut [Vec<u32>; 2]) {
+    let [one, other] = children;
+    one.clear();
+    other.clear();
+    for &segment in segments {
+        let cut = stream.below(segment as u32 + 1) as usize;
+        for gene in 0..segment {
+            let (a, b) = if gene < cut { (first, second) } else { (second, first) };
+            one.push(a);
+            other.push(b);
         }
     }
+}
 
-    /// Replaces the worst by offspring of the best, in a population that is sorted.
-    fn breed(&self, generation: u32, order: &[usize], population: &mut Population<f64>, origins: &mut [u32]) {
-        let CosyneConfig { parents, offspring, mutation_rate, mutation_scale, .. } = self.config;
-        let (size, genes) = (population.len(), population.genome_len());
+impl CosyneOrigins {
+    /// Replaces the worst by offspring of the best of an `old` population, in one that is sorted.
+    fn breed(
+        &mut self,
+        step: &Step<'_, CosyneConfig>,
+        old: &Population<f64>,
+        order: &[usize],
+        sorted: &mut Population<f64>,
+    ) {
+        let CosyneConfig { segments, parents, offspring, mutation_rate, mutation_scale, .. } = step.config;
+        let (size, genes) = (sorted.len(), sorted.genome_len());
         let first = (size - offspring) * genes;
-        let origins = origins.get_mut(first..).unwrap_or_default();
-        let pairs = population.as_mut_slice().get_mut(first..).unwrap_or_default().chunks_mut(2 * genes);
+        let origins = self.origins.get_mut(first..).unwrap_or_default();
+        let pairs = sorted.as_mut_slice().get_mut(first..).unwrap_or_default().chunks_mut(2 * genes);
         let mut children = [Vec::with_capacity(genes), Vec::with_capacity(genes)];
         for (pair, (new, origins)) in pairs.zip(origins.chunks_mut(2 * genes)).enumerate() {
-            let mut stream = Stream::new(self.seed, Domain::Mutation, 0, pair as u32, generation);
-            let mut draw = || stream.below(parents as u32);
+            let mut stream = step.stream(pair);
+            let mut draw = || stream.below(*parents as u32);
             let one = draw();
             let mut other = draw();
-            while other == one && parents > 1 {
+            while other == one && *parents > 1 {
                 other = draw();
             }
             let of = |rank: u32| order.get(rank as usize).map_or(0, |individual| *individual as u32);
-            self.cross([of(one), of(other)], &mut stream, &mut children);
+            cross(segments, [of(one), of(other)], &mut stream, &mut children);
             for ((new, origins), from) in new.chunks_mut(genes).zip(origins.chunks_mut(genes)).zip(&children) {
                 origins.copy_from_slice(from);
                 for (index, (gene, from)) in new.iter_mut().zip(from).enumerate() {
-                    let inherited = self.population.get(*from as usize).and_then(|genes| genes.get(index));
+                    let inherited = old.get(*from as usize).and_then(|genes| genes.get(index));
                     *gene = inherited.copied().unwrap_or_default();
-                    if stream.uniform_f64() < mutation_rate {
+                    if stream.uniform_f64() < *mutation_rate {
                         *gene += mutation_scale * cauchy(&mut stream);
                     }
                 }
@@ -208,13 +190,13 @@ impl Cosyne {
     }
 
     /// Permutes the weights of the individuals that are no offspring, each subpopulation by itself.
-    fn permute(&self, generation: u32, chances: &[f64], population: &mut Population<f64>, origins: &mut [u32]) {
+    fn permute(&mut self, step: &Step<'_, CosyneConfig>, chances: &[f64], population: &mut Population<f64>) {
         let genes = population.genome_len();
         let mut marked: Vec<usize> = Vec::with_capacity(chances.len());
         for gene in 0..genes {
-            let mut stream = Stream::new(self.seed, Domain::Mutation, PERMUTATION, gene as u32, generation);
+            let mut stream = Stream::new(step.seed, Domain::Mutation, PERMUTATION, gene as u32, step.generation);
             marked.clear();
-            match self.config.permutation {
+            match step.config.permutation {
                 Permutation::All => marked.extend(0..chances.len()),
                 Permutation::ByFitness => {
                     let chosen = chances.iter().enumerate().filter(|(_, chance)| stream.uniform_f64() < **chance);
@@ -225,15 +207,9 @@ impl Cosyne {
                 let other = stream.below(last as u32 + 1) as usize;
                 let (a, b) = (marked[last] * genes + gene, marked[other] * genes + gene);
                 population.as_mut_slice().swap(a, b);
-                origins.swap(a, b);
+                self.origins.swap(a, b);
             }
         }
-    }
-
-    /// Bytes of a state at a generation.
-    fn state_length(&self, generation: u32) -> usize {
-        let bytes = if generation == 0 { 8 } else { 12 };
-        4 + bytes * self.population.as_slice().len()
     }
 }
 
@@ -262,87 +238,65 @@ fn chances(fitness: &[Fitness], genes: usize) -> Vec<f64> {
     fitness.iter().map(chance).collect()
 }
 
-impl Strategy<f64> for Cosyne {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for CosyneOrigins {
+    type Gene = f64;
+    type Config = CosyneConfig;
+    const HAS_PARENTS: bool = true;
+
+    fn start(step: &Step<'_, CosyneConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let CosyneConfig { population, range, .. } = *step.config;
+        step.config.validate()?;
+        let bounds = vec![[-range, range]; step.config.genes()];
+        Ok((Self { origins: Vec::new() }, uniform(step, population, &bounds)?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let generation = next_generation(self.generation, self.population.len(), fitness)?;
-        let order = Fitness::ranking(fitness);
-        let genes = self.population.genome_len();
-        let mut population = self.population.clone();
-        let mut origins = vec![0; population.as_slice().len()];
-        for ((row, origins), &from) in population.iter_mut().zip(origins.chunks_mut(genes)).zip(&order) {
-            row.copy_from_slice(self.population.get(from).unwrap_or_default());
-            origins.fill(from as u32);
+    fn advance(&mut self, step: &Step<'_, CosyneConfig>, fitness: &[Fitness], genomes: &mut Population<f64>) {
+        let (order, old, genes) = (Fitness::ranking(fitness), genomes.clone(), genomes.genome_len());
+        self.origins = order.iter().flat_map(|&from| repeat_n(from as u32, genes)).collect();
+        for (row, &from) in genomes.iter_mut().zip(&order) {
+            row.copy_from_slice(old.get(from).unwrap_or_default());
         }
-        self.breed(generation, &order, &mut population, &mut origins);
+        self.breed(step, &old, &order, genomes);
         let sorted: Vec<Fitness> = order.iter().filter_map(|&individual| fitness.get(individual)).copied().collect();
         let chances = chances(&sorted, genes);
-        let kept = chances.get(..sorted.len() - self.config.offspring).unwrap_or_default();
-        self.permute(generation, kept, &mut population, &mut origins);
-        (self.generation, self.origins, self.population) = (generation, origins, population);
-        Ok(())
+        let kept = chances.get(..sorted.len() - step.config.offspring).unwrap_or_default();
+        self.permute(step, kept, genomes);
     }
 
-    fn record_kind(&self) -> RecordKind {
-        match self.config.permutation {
+    fn record_kind(config: &CosyneConfig) -> RecordKind {
+        match config.permutation {
             Permutation::All => RecordKind::Order,
             Permutation::ByFitness => RecordKind::Values,
         }
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn genealogy(&self) -> Option<&dyn Genealogy> {
-        Some(self)
-    }
-}
-
-impl Genealogy for Cosyne {
     /// All whose weights it has, in rising order.
-    fn parents_of(&self, individual: usize) -> Vec<usize> {
-        let origins = self.origins.chunks(self.population.genome_len()).nth(individual).unwrap_or_default();
+    fn parents_of(&self, step: &Step<'_, CosyneConfig>, individual: usize) -> Vec<usize> {
+        let origins = self.origins.chunks(step.config.genes()).nth(individual).unwrap_or_default();
         let mut parents: Vec<usize> = origins.iter().map(|&origin| origin as usize).collect();
         parents.sort_unstable();
         parents.dedup();
         parents
     }
-}
 
-impl Snapshot for Cosyne {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(self.state_length(self.generation));
-        state.extend(self.generation.to_le_bytes());
-        state.extend(self.origins.iter().flat_map(|origin| origin.to_le_bytes()));
-        push_reals(&mut state, self.population.as_slice());
-        state
+    fn state_length(&self, step: &Step<'_, CosyneConfig>, genes: usize) -> usize {
+        if step.generation == 0 { 8 * genes } else { 12 * genes }
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let generation = StateReader::new(state, state.len())?.u32()?;
-        let mut reader = StateReader::new(state, self.state_length(generation))?;
-        reader.u32()?;
-        let size = self.population.len();
-        let mut origins = Vec::new();
-        for _ in 0..if generation == 0 { 0 } else { self.population.as_slice().len() } {
-            let origin = reader.u32()?;
-            if origin as usize >= size {
-                return Err(EvoError::no_such_individual(origin as usize, size));
-            }
-            origins.push(origin);
-        }
-        let mut population = Population::new(size, self.population.genome_len())?;
-        reader.reals(population.as_mut_slice())?;
-        (self.generation, self.origins, self.population) = (generation, origins, population);
-        Ok(())
+    fn save(&self, _: &CosyneConfig, genomes: &Population<f64>, saved: &mut Vec<u8>) {
+        push_indices(saved, &self.origins);
+        push_reals(saved, genomes.as_slice());
+    }
+
+    fn restore(
+        &mut self,
+        step: &Step<'_, CosyneConfig>,
+        reader: &mut StateReader<'_>,
+        genomes: &mut Population<f64>,
+    ) -> Result<(), EvoError> {
+        let origins = if step.generation == 0 { 0 } else { genomes.as_slice().len() };
+        self.origins = reader.individuals(origins, genomes.len())?;
+        reader.reals(genomes.as_mut_slice())
     }
 }
 

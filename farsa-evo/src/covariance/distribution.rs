@@ -3,12 +3,13 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Domain, Scalar, Stream, exp};
+use farsa_num::{Scalar, Stream, exp};
 
 use crate::covariance::coefficients::Coefficients;
 use crate::covariance::linear::{add_rows, add_scaled, dot};
 use crate::error::EvoError;
 use crate::population::Population;
+use crate::search::stream;
 use crate::snapshot::{StateReader, push_reals};
 
 /// The limits of a step size.
@@ -256,17 +257,9 @@ impl<C: Matrix> Distribution<C> {
     }
 }
 
-/// The stream of an individual of a generation.
-pub(crate) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
-    let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
-    Stream::new(seed, domain, 0, individual as u32, generation)
-}
-
 /// Reads a row of numbers within limits.
 pub(crate) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f64; 2]) -> Result<(), EvoError> {
-    reader.reals(row)?;
-    let wrong = row.iter().find(|x| !(limits[0]..=limits[1]).contains(*x));
-    wrong.map_or(Ok(()), |x| Err(EvoError::state_content("a number within its limits", x.to_bits())))
+    reader.row(row, "a number within its limits", limits)
 }
 
 /// The weighted sum of rows for each of many sums [sums x n], the rows taken in blocks that stay in the cache.

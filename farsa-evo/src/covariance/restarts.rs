@@ -6,12 +6,13 @@ use alloc::vec::Vec;
 use farsa_num::{Domain, Stream, exp, ln};
 
 use crate::covariance::config::CmaEsConfig;
-use crate::covariance::distribution::{Distribution, Matrix, STEP_SIZES, stream};
+use crate::covariance::distribution::{Distribution, Matrix, STEP_SIZES};
 use crate::covariance::full::Full;
 use crate::covariance::termination::{LONGEST, Progress};
 use crate::error::{EvoError, check_range};
 use crate::fitness::Fitness;
 use crate::population::Population;
+use crate::search::stream;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Strategy, next_generation};
 

@@ -11,8 +11,7 @@ use super::utilities::{rewards, scaled};
 use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader};
-use crate::strategy::{Strategy, next_generation};
+use crate::search::{Algorithm, Row, Search, Step};
 
 /// The configuration of [`Ars`].
 #[derive(Clone, Debug, PartialEq)]
@@ -76,62 +75,45 @@ impl ArsConfig {
 ///
 /// Individuals 2k and 2k + 1 are direction k, which adds and subtracts the noise of the stream (seed,
 /// [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, k, generation), in generation 0 with
-/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](Strategy::diagnostics) are the
+/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](crate::Strategy::diagnostics) are the
 /// Euclidean lengths of the latest step and of the point.
+pub type Ars = Search<ArsState>;
+
+/// The state of [`Ars`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ars {
-    config: ArsConfig,
+pub struct ArsState {
     samples: Mirrored,
 }
 
 impl Ars {
-    /// A search at its first generation.
-    ///
-    /// # Errors
-    /// The errors of [`ArsConfig::validate`].
-    pub fn new(config: ArsConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let samples = Mirrored::new(config.mean.clone(), config.directions, config.noise, seed)?;
-        Ok(Self { config, samples })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &ArsConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.samples.seed
-    }
-
     /// The point \[genes\] around which the individuals lie.
     pub fn mean(&self) -> &[f64] {
-        &self.samples.mean
+        &self.state.samples.mean
     }
+}
 
-    /// The top directions by the fitness of the better of their two individuals, equals by index, in order of index.
-    fn top(&self, fitness: &[Fitness]) -> Vec<usize> {
-        let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
-        let mut top = Fitness::ranking(&better);
-        top.truncate(self.config.top_directions);
-        top.sort_unstable();
-        top
-    }
+/// The top directions by the fitness of the better of their two individuals, equals by index, in order of index.
+fn top(fitness: &[Fitness], count: usize) -> Vec<usize> {
+    let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
+    let mut top = Fitness::ranking(&better);
+    top.truncate(count);
+    top.sort_unstable();
+    top
+}
 
+impl ArsState {
     /// Moves the point by the rewards [top directions x 2] of the top directions.
-    fn update(&mut self, top: &[usize], rewards: &[f64]) {
+    fn update(&mut self, step_size: f64, top: &[usize], rewards: &[f64]) {
         let count = rewards.len() as f64;
         let mean = rewards.iter().sum::<f64>() / count;
         let variance = rewards.iter().map(|reward| (reward - mean) * (reward - mean)).sum::<f64>() / count;
         let deviation = Scalar::sqrt(variance);
-        self.samples.step = 0.0;
         if deviation > 0.0 {
             let mut step = vec![0.0; self.samples.mean.len()];
             for (row, pair) in top.iter().zip(rewards.chunks_exact(2)) {
                 self.samples.directions.add(*row, (pair[0] - pair[1]) / deviation, &mut step);
             }
-            let scale = self.config.step_size / top.len() as f64;
+            let scale = step_size / top.len() as f64;
             for x in &mut step {
                 *x *= scale;
             }
@@ -140,45 +122,39 @@ impl Ars {
     }
 }
 
-impl Strategy<f64> for Ars {
-    fn generation(&self) -> u32 {
-        self.samples.generation
+impl Algorithm for ArsState {
+    type Gene = f64;
+    type Config = ArsConfig;
+
+    fn start(step: &Step<'_, ArsConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let ArsConfig { mean, directions, .. } = step.config;
+        step.config.validate()?;
+        let samples = Mirrored::new(mean, *directions);
+        Ok((Self { samples }, Population::new(2 * directions, mean.len())?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.samples.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.samples.generation, self.samples.population.len(), fitness)?;
+    fn advance(&mut self, step: &Step<'_, ArsConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
         self.samples.step = 0.0;
         if let Some(rewards) = rewards(fitness) {
-            let top = self.top(fitness);
+            let top = top(fitness, step.config.top_directions);
             let used = top.iter().filter_map(|row| rewards.get(2 * row..2 * row + 2)).flatten().copied().collect();
-            self.update(&top, &scaled(used));
+            self.update(step.config.step_size, &top, &scaled(used));
         }
-        self.samples.begin(next);
-        Ok(())
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
+    fn draw(&mut self, step: &Step<'_, ArsConfig>, genomes: &mut Population<f64>) {
+        self.samples.draw(step, step.config.noise, genomes);
     }
 
-    fn diagnostics(&self) -> Vec<f64> {
+    fn diagnostics(&self, _: &ArsConfig) -> Vec<f64> {
         self.samples.diagnostics()
     }
-}
 
-impl Snapshot for Ars {
-    fn save(&self) -> Vec<u8> {
-        self.samples.save()
+    fn rows(&self) -> Vec<&[f64]> {
+        self.samples.rows()
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let mut reader = StateReader::new(state, Mirrored::bytes(self.samples.mean.len()))?;
-        let samples = self.samples.read(&mut reader)?;
-        self.samples.restore(samples);
-        Ok(())
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        self.samples.rows_mut()
     }
 }

@@ -3,40 +3,31 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::noise::{Directions, Noise, Spread};
+use super::noise::{Directions, Spread};
 use super::optimizer::norm;
-use super::settings::{bounded, read_length, read_point};
-use crate::error::EvoError;
+use super::settings::{bounded, point_row};
 use crate::population::Population;
-use crate::snapshot::{StateReader, push_reals};
+use crate::search::{Row, Step};
 
-/// A point, and the individuals at x + sigma z and x - sigma z for each of its directions z.
+/// A point x, from which individuals are drawn at x + sigma z and x - sigma z for each of its directions z.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mirrored {
-    pub(super) seed: u64,
-    pub(super) generation: u32,
     /// The point x \[genes\].
     pub(super) mean: Vec<f64>,
-    sigma: f64,
     /// Length of the latest step.
     pub(super) step: f64,
     /// The directions of this generation.
     pub(super) directions: Directions,
-    pub(super) population: Population<f64>,
 }
 
 impl Mirrored {
-    pub(super) fn new(mean: Vec<f64>, pairs: usize, sigma: f64, seed: u64) -> Result<Self, EvoError> {
-        let population = Population::new(2 * pairs, mean.len())?;
-        let directions = Directions::new(pairs, mean.len());
-        let mut samples = Self { seed, generation: 0, mean, sigma, step: 0.0, directions, population };
-        samples.sample();
-        Ok(samples)
+    pub(super) fn new(mean: &[f64], pairs: usize) -> Self {
+        Self { mean: mean.to_vec(), step: 0.0, directions: Directions::new(pairs, mean.len()) }
     }
 
-    fn sample(&mut self) {
-        let noise = Noise { seed: self.seed, generation: self.generation };
-        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Same(self.sigma));
+    /// Draws the individuals of a generation.
+    pub(super) fn draw<C>(&mut self, step: &Step<'_, C>, sigma: f64, genomes: &mut Population<f64>) {
+        self.directions.mirror(|row| step.stream(row), genomes, &self.mean, Spread::Same(sigma));
     }
 
     /// Adds a step \[genes\] to the point, which stays within 1e100 of zero.
@@ -45,37 +36,16 @@ impl Mirrored {
         self.step = norm(step);
     }
 
-    /// Draws the individuals of a generation.
-    pub(super) fn begin(&mut self, generation: u32) {
-        self.generation = generation;
-        self.sample();
-    }
-
     /// The lengths of the latest step and of the point.
     pub(super) fn diagnostics(&self) -> Vec<f64> {
         vec![self.step, norm(&self.mean)]
     }
 
-    pub(super) const fn bytes(genes: usize) -> usize {
-        12 + 8 * genes
+    pub(super) fn rows(&self) -> Vec<&[f64]> {
+        vec![core::slice::from_ref(&self.step), &self.mean]
     }
 
-    pub(super) fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &[self.step]);
-        push_reals(&mut state, &self.mean);
-        state
-    }
-
-    /// Reads generation, length of the step and point.
-    pub(super) fn read(&self, reader: &mut StateReader<'_>) -> Result<(u32, f64, Vec<f64>), EvoError> {
-        Ok((reader.u32()?, read_length(reader)?, read_point(reader, self.mean.len())?))
-    }
-
-    /// Takes what was read, and draws the individuals again.
-    pub(super) fn restore(&mut self, (generation, step, mean): (u32, f64, Vec<f64>)) {
-        (self.step, self.mean) = (step, mean);
-        self.begin(generation);
+    pub(super) fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        vec![(core::slice::from_mut(&mut self.step), "a length", [0.0, f64::MAX]), point_row(&mut self.mean)]
     }
 }

@@ -3,20 +3,14 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Domain, Stream};
+use farsa_num::Stream;
 
 use crate::population::Population;
+use crate::search::Step;
 use crate::vectors::vectorized;
 
 /// Numbers drawn at a time: few enough to stay in the fastest memory, and even, for normal numbers come in pairs.
 const BLOCK: usize = 256;
-
-/// The standard normal numbers of a generation, row after row. Each row has its stream.
-#[derive(Clone, Copy)]
-pub(super) struct Noise {
-    pub(super) seed: u64,
-    pub(super) generation: u32,
-}
 
 /// The standard deviations of the genes: one for all, or one for each.
 #[derive(Clone, Copy)]
@@ -44,7 +38,7 @@ impl Directions {
     /// individual 2k + 1 subtracts it.
     pub(super) fn mirror(
         &mut self,
-        noise: Noise,
+        stream: impl Fn(usize) -> Stream,
         population: &mut Population<f64>,
         center: &[f64],
         spread: Spread<'_>,
@@ -53,7 +47,7 @@ impl Directions {
         let genes = self.genes.max(1);
         let rows = self.numbers.chunks_exact_mut(genes);
         for (row, (numbers, pair)) in rows.zip(population.as_mut_slice().chunks_exact_mut(2 * genes)).enumerate() {
-            let mut stream = noise.stream(row);
+            let mut stream = stream(row);
             let (plus, minus) = pair.split_at_mut(genes);
             let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
             for (block, (((plus, minus), center), numbers)) in blocks.zip(numbers.chunks_mut(BLOCK)).enumerate() {
@@ -109,20 +103,10 @@ fn add_moments(numbers: &[f64], weights: [f64; 2], first: &mut [f64], second: &m
     );
 }
 
-impl Noise {
-    /// The stream of a row, which is the number of an individual or of a pair.
-    fn stream(self, row: usize) -> Stream {
-        let domain = if self.generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
-        Stream::new(self.seed, domain, 0, row as u32, self.generation)
-    }
-
-    /// Draws a whole row.
-    pub(super) fn fill(self, row: usize, numbers: &mut [f64]) {
-        self.stream(row).fill_normal(numbers);
-    }
-
+/// The standard normal numbers of a generation, row after row. Each individual has a row from its stream.
+impl<C> Step<'_, C> {
     /// Adds a row, weighted, to a sum \[genes\], and its squares less 1, weighted, to another.
-    pub(super) fn add_moments(self, row: usize, weights: [f64; 2], first: &mut [f64], second: &mut [f64]) {
+    pub(super) fn add_moments(&self, row: usize, weights: [f64; 2], first: &mut [f64], second: &mut [f64]) {
         let mut stream = self.stream(row);
         let mut numbers = [0.0; BLOCK];
         for (first, second) in first.chunks_mut(BLOCK).zip(second.chunks_mut(BLOCK)) {
@@ -132,9 +116,9 @@ impl Noise {
     }
 
     /// Makes one genome of each row: the center and the scaled noise.
-    pub(super) fn spread(self, population: &mut Population<f64>, center: &[f64], sigmas: &[f64]) {
+    pub(super) fn spread(&self, population: &mut Population<f64>, center: &[f64], sigmas: &[f64]) {
         for (row, genes) in population.iter_mut().enumerate() {
-            self.fill(row, genes);
+            self.stream(row).fill_normal(genes);
             for ((gene, center), sigma) in genes.iter_mut().zip(center).zip(sigmas) {
                 *gene = center + sigma * *gene;
             }
@@ -152,10 +136,10 @@ mod tests {
         let genes = 2 * BLOCK + 7;
         let center: Vec<f64> = (0..genes).map(|gene| gene as f64).collect();
         let sigmas: Vec<f64> = (0..genes).map(|gene| 1.0 + 0.01 * gene as f64).collect();
-        let noise = Noise { seed: 5, generation: 2 };
+        let step = Step { config: &(), seed: 5, generation: 2 };
         let made = |spread: Spread<'_>| {
             let mut population = Population::new(4, genes).unwrap();
-            Directions::new(2, genes).mirror(noise, &mut population, &center, spread);
+            Directions::new(2, genes).mirror(|row| step.stream(row), &mut population, &center, spread);
             population
         };
         let (same, each) = (made(Spread::Same(1.0)), made(Spread::Each(&sigmas)));

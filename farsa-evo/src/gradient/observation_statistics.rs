@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::settings::{LARGEST, point};
+use super::settings::{LARGEST, point, point_row};
 use crate::error::{EvoError, check_range};
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
@@ -184,8 +184,10 @@ impl Snapshot for ObservationStatistics {
         let channels = self.channels();
         let mut reader = StateReader::new(state, 8 + 16 * channels)?;
         let count = reader.u64()?;
-        let mean = super::settings::read_point(&mut reader, channels)?;
-        let squares = super::settings::read(&mut reader, channels, "a sum of squares", [0.0, LARGEST_SQUARES])?;
+        let (mut mean, mut squares) = (vec![0.0; channels], vec![0.0; channels]);
+        for (row, what, range) in [point_row(&mut mean), (&mut squares, "a sum of squares", [0.0, LARGEST_SQUARES])] {
+            reader.row(row, what, range)?;
+        }
         if count == 0 && mean.iter().chain(&squares).any(|x| *x != 0.0) {
             return Err(EvoError::state_content("a number of observations", count));
         }

@@ -10,8 +10,8 @@ use super::utilities::centered_ranks;
 use crate::error::{EvoError, check_range};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader};
-use crate::strategy::{RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Row, Search, Step};
+use crate::strategy::RecordKind;
 
 /// The configuration of [`OpenAiEs`].
 #[derive(Clone, Debug, PartialEq)]
@@ -77,55 +77,37 @@ impl OpenAiEsConfig {
 ///
 /// Individuals 2k and 2k + 1 are pair k, which adds and subtracts the noise of the stream (seed,
 /// [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, k, generation), in generation 0 with
-/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](Strategy::diagnostics) are the
+/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](crate::Strategy::diagnostics) are the
 /// Euclidean lengths of the latest step and of the point.
+pub type OpenAiEs = Search<OpenAiEsState>;
+
+/// The state of [`OpenAiEs`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct OpenAiEs {
-    config: OpenAiEsConfig,
+pub struct OpenAiEsState {
     memory: Memory,
     samples: Mirrored,
 }
 
 impl OpenAiEs {
-    /// A search at its first generation.
-    ///
-    /// # Errors
-    /// The errors of [`OpenAiEsConfig::validate`].
-    pub fn new(config: OpenAiEsConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let memory = Memory::new(config.optimizer, config.mean.len());
-        let samples = Mirrored::new(config.mean.clone(), config.pairs, config.sigma, seed)?;
-        Ok(Self { config, memory, samples })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &OpenAiEsConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.samples.seed
-    }
-
     /// The point \[genes\] around which the individuals lie.
     pub fn mean(&self) -> &[f64] {
-        &self.samples.mean
+        &self.state.samples.mean
     }
 }
 
-impl Strategy<f64> for OpenAiEs {
-    fn generation(&self) -> u32 {
-        self.samples.generation
+impl Algorithm for OpenAiEsState {
+    type Gene = f64;
+    type Config = OpenAiEsConfig;
+
+    fn start(step: &Step<'_, OpenAiEsConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let OpenAiEsConfig { mean, pairs, optimizer, .. } = step.config;
+        step.config.validate()?;
+        let state = Self { memory: Memory::new(*optimizer, mean.len()), samples: Mirrored::new(mean, *pairs) };
+        Ok((state, Population::new(2 * pairs, mean.len())?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.samples.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.samples.generation, self.samples.population.len(), fitness)?;
-        let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = self.config;
+    fn advance(&mut self, step: &Step<'_, OpenAiEsConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
+        let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = *step.config;
         let mut gradient = vec![0.0; self.samples.mean.len()];
         for (row, pair) in centered_ranks(fitness).chunks_exact(2).enumerate() {
             self.samples.directions.add(row, pair[0] - pair[1], &mut gradient);
@@ -137,36 +119,25 @@ impl Strategy<f64> for OpenAiEs {
         self.memory.step(optimizer, learning_rate, &mut gradient);
         self.samples.advance(&gradient);
         self.samples.step = self.samples.step.min(f64::MAX);
-        self.samples.begin(next);
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn draw(&mut self, step: &Step<'_, OpenAiEsConfig>, genomes: &mut Population<f64>) {
+        self.samples.draw(step, step.config.sigma, genomes);
+    }
+
+    fn record_kind(_: &OpenAiEsConfig) -> RecordKind {
         RecordKind::Order
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn diagnostics(&self) -> Vec<f64> {
+    fn diagnostics(&self, _: &OpenAiEsConfig) -> Vec<f64> {
         self.samples.diagnostics()
     }
-}
 
-impl Snapshot for OpenAiEs {
-    fn save(&self) -> Vec<u8> {
-        let mut state = self.samples.save();
-        self.memory.push(&mut state);
-        state
+    fn rows(&self) -> Vec<&[f64]> {
+        [self.samples.rows(), self.memory.rows()].concat()
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let (genes, optimizer) = (self.samples.mean.len(), self.config.optimizer);
-        let mut reader = StateReader::new(state, Mirrored::bytes(genes) + Memory::bytes(optimizer, genes))?;
-        let samples = self.samples.read(&mut reader)?;
-        self.memory = Memory::read(optimizer, &mut reader, genes)?;
-        self.samples.restore(samples);
-        Ok(())
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        self.samples.rows_mut().into_iter().chain(self.memory.rows_mut()).collect()
     }
 }

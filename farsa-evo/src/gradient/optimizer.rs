@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::settings::{LARGEST, decay, positive, read};
+use super::settings::{LARGEST, decay, positive};
 use crate::error::EvoError;
-use crate::snapshot::{StateReader, push_reals};
+use crate::search::Row;
 
 /// The optimizer of [`OpenAiEs`](crate::gradient::OpenAiEs).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,25 +81,22 @@ impl Memory {
         }
     }
 
-    pub(super) fn bytes(optimizer: Optimizer, genes: usize) -> usize {
-        match optimizer {
-            Optimizer::Adam { .. } => Adam::bytes(genes),
-            Optimizer::Momentum { .. } => 8 * genes,
-        }
-    }
-
-    pub(super) fn push(&self, state: &mut Vec<u8>) {
+    pub(super) fn rows(&self) -> Vec<&[f64]> {
         match self {
-            Self::Adam(adam) => adam.push(state),
-            Self::Momentum(velocity) => push_reals(state, velocity),
+            Self::Adam(Adam { powers, first, second }) => vec![powers, first, second],
+            Self::Momentum(velocity) => vec![velocity],
         }
     }
 
-    pub(super) fn read(optimizer: Optimizer, reader: &mut StateReader<'_>, genes: usize) -> Result<Self, EvoError> {
-        Ok(match optimizer {
-            Optimizer::Adam { .. } => Self::Adam(Adam::read(reader, genes)?),
-            Optimizer::Momentum { .. } => Self::Momentum(read(reader, genes, "a velocity", [-1e110, 1e110])?),
-        })
+    pub(super) fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        match self {
+            Self::Adam(Adam { powers, first, second }) => vec![
+                (powers, "a power of a decay", [0.0, 1.0]),
+                (first, "a mean gradient", [-1e110, 1e110]),
+                (second, "a mean square", [0.0, 1e220]),
+            ],
+            Self::Momentum(velocity) => vec![(velocity, "a velocity", [-1e110, 1e110])],
+        }
     }
 }
 
@@ -130,23 +127,6 @@ impl Adam {
             *second = beta2 * *second + (1.0 - beta2) * (*g * *g);
             *g = rate * (*first / scale1) / (Scalar::sqrt(*second / scale2) + epsilon);
         }
-    }
-
-    pub(super) const fn bytes(genes: usize) -> usize {
-        8 * (2 + 2 * genes)
-    }
-
-    pub(super) fn push(&self, state: &mut Vec<u8>) {
-        push_reals(state, &self.powers);
-        push_reals(state, &self.first);
-        push_reals(state, &self.second);
-    }
-
-    pub(super) fn read(reader: &mut StateReader<'_>, genes: usize) -> Result<Self, EvoError> {
-        let powers = read(reader, 2, "a power of a decay", [0.0, 1.0])?;
-        let first = read(reader, genes, "a mean gradient", [-1e110, 1e110])?;
-        let second = read(reader, genes, "a mean square", [0.0, 1e220])?;
-        Ok(Self { powers: powers.try_into().unwrap_or([1.0; 2]), first, second })
     }
 }
 
@@ -185,13 +165,9 @@ impl ClipUp {
         norm(&self.velocity)
     }
 
-    pub(super) fn read(reader: &mut StateReader<'_>, genes: usize) -> Result<Self, EvoError> {
+    pub(super) fn row(&mut self) -> Row<'_> {
         // Twice the largest speed: clipping rounds.
-        Ok(Self { velocity: read(reader, genes, "a velocity", [-2.0 * LARGEST, 2.0 * LARGEST])? })
-    }
-
-    pub(super) fn push(&self, state: &mut Vec<u8>) {
-        push_reals(state, &self.velocity);
+        (&mut self.velocity, "a velocity", [-2.0 * LARGEST, 2.0 * LARGEST])
     }
 }
 

@@ -5,16 +5,15 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use super::noise::{Directions, Noise, Spread};
+use super::noise::{Directions, Spread};
 use super::optimizer::ClipUp;
-use super::settings::{bounded, bounded_size, decay, learning_rate, point, positive, read_point, read_sizes};
-use super::utilities::centered_ranks;
-use super::utilities::rewards;
+use super::settings::{bounded, bounded_size, decay, ends, learning_rate, point, point_row, positive, sizes_row};
+use super::utilities::{centered_ranks, rewards};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Row, Search, Step};
+use crate::strategy::RecordKind;
 
 /// The reward of an individual in [`Pgpe`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,71 +110,37 @@ impl PgpeConfig {
 ///
 /// Individuals 2k and 2k + 1 are pair k, which adds and subtracts the noise of the stream (seed,
 /// [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, k, generation), in generation 0 with
-/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](Strategy::diagnostics) are the speed of
+/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](crate::Strategy::diagnostics) are the speed of
 /// the center and the smallest and the largest standard deviation.
+pub type Pgpe = Search<PgpeState>;
+
+/// The state of [`Pgpe`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pgpe {
-    config: PgpeConfig,
-    seed: u64,
-    generation: u32,
+pub struct PgpeState {
     mean: Vec<f64>,
     sigmas: Vec<f64>,
     clip_up: ClipUp,
     /// The noise of this generation.
     directions: Directions,
-    population: Population<f64>,
 }
 
 impl Pgpe {
-    /// A search at its first generation.
-    ///
-    /// # Errors
-    /// The errors of [`PgpeConfig::validate`].
-    pub fn new(config: PgpeConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let genes = config.mean.len();
-        let population = Population::new(2 * config.pairs, genes)?;
-        let (mean, sigmas) = (config.mean.clone(), vec![config.sigma; genes]);
-        let directions = Directions::new(config.pairs, genes);
-        let clip_up = ClipUp::new(genes);
-        let mut strategy = Self { config, seed, generation: 0, mean, sigmas, clip_up, directions, population };
-        strategy.sample();
-        Ok(strategy)
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &PgpeConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
     /// The center \[genes\] of the generation that waits for its fitness.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
+        &self.state.mean
     }
 
     /// The standard deviations \[genes\] of the generation that waits for its fitness.
     pub fn sigmas(&self) -> &[f64] {
-        &self.sigmas
+        &self.state.sigmas
     }
+}
 
-    fn noise(&self) -> Noise {
-        Noise { seed: self.seed, generation: self.generation }
-    }
-
-    fn sample(&mut self) {
-        let noise = self.noise();
-        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Each(&self.sigmas));
-    }
-
+impl PgpeState {
     /// Moves the center and the standard deviations by the rewards \[individuals\].
-    fn update(&mut self, rewards: &[f64]) {
+    fn update(&mut self, config: &PgpeConfig, rewards: &[f64]) {
         let genes = self.mean.len();
-        let (count, pairs) = (rewards.len() as f64, self.config.pairs as f64);
+        let (count, pairs) = (rewards.len() as f64, config.pairs as f64);
         // b, the mean reward, divided before the sum so that it cannot overflow.
         let baseline = rewards.iter().map(|reward| reward / count).sum::<f64>();
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes]);
@@ -184,7 +149,7 @@ impl Pgpe {
             self.directions.add_moments(row, weights, &mut first, &mut second);
         }
         first.iter_mut().zip(&self.sigmas).for_each(|(g, sigma)| *g *= sigma / pairs);
-        let PgpeConfig { step_size, max_speed, momentum, sigma_learning_rate, sigma_max_change, .. } = self.config;
+        let PgpeConfig { step_size, max_speed, momentum, sigma_learning_rate, sigma_max_change, .. } = *config;
         self.clip_up.step(&first, step_size, max_speed, momentum);
         for (mean, velocity) in self.mean.iter_mut().zip(self.clip_up.velocity()) {
             *mean = bounded(*mean + velocity);
@@ -197,65 +162,49 @@ impl Pgpe {
     }
 }
 
-impl Strategy<f64> for Pgpe {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for PgpeState {
+    type Gene = f64;
+    type Config = PgpeConfig;
+
+    fn start(step: &Step<'_, PgpeConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let PgpeConfig { mean, sigma, pairs, .. } = step.config;
+        step.config.validate()?;
+        let genes = mean.len();
+        let (sigmas, directions) = (vec![*sigma; genes], Directions::new(*pairs, genes));
+        let state = Self { mean: mean.clone(), sigmas, clip_up: ClipUp::new(genes), directions };
+        Ok((state, Population::new(2 * pairs, genes)?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation, self.population.len(), fitness)?;
-        let rewards = match self.config.fitness {
+    fn advance(&mut self, step: &Step<'_, PgpeConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
+        let rewards = match step.config.fitness {
             PgpeFitness::CenteredRanks => Some(centered_ranks(fitness)),
             PgpeFitness::Raw => rewards(fitness),
         };
         if let Some(rewards) = rewards {
-            self.update(&rewards);
+            self.update(step.config, &rewards);
         }
-        self.generation = next;
-        self.sample();
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
-        match self.config.fitness {
+    fn draw(&mut self, step: &Step<'_, PgpeConfig>, genomes: &mut Population<f64>) {
+        self.directions.mirror(|row| step.stream(row), genomes, &self.mean, Spread::Each(&self.sigmas));
+    }
+
+    fn record_kind(config: &PgpeConfig) -> RecordKind {
+        match config.fitness {
             PgpeFitness::CenteredRanks => RecordKind::Order,
             PgpeFitness::Raw => RecordKind::Values,
         }
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
+    fn diagnostics(&self, _: &PgpeConfig) -> Vec<f64> {
+        [vec![self.clip_up.speed()], ends(&self.sigmas)].concat()
     }
 
-    fn diagnostics(&self) -> Vec<f64> {
-        let sigmas = || self.sigmas.iter().copied();
-        let ends = [sigmas().reduce(f64::min), sigmas().reduce(f64::max)];
-        [Some(self.clip_up.speed())].into_iter().chain(ends).flatten().collect()
-    }
-}
-
-impl Snapshot for Pgpe {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &self.mean);
-        push_reals(&mut state, &self.sigmas);
-        self.clip_up.push(&mut state);
-        state
+    fn rows(&self) -> Vec<&[f64]> {
+        vec![&self.mean, &self.sigmas, self.clip_up.velocity()]
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let genes = self.mean.len();
-        let mut reader = StateReader::new(state, 4 + 24 * genes)?;
-        let generation = reader.u32()?;
-        let (mean, sigmas) = (read_point(&mut reader, genes)?, read_sizes(&mut reader, genes)?);
-        let clip_up = ClipUp::read(&mut reader, genes)?;
-        (self.generation, self.mean, self.sigmas, self.clip_up) = (generation, mean, sigmas, clip_up);
-        self.sample();
-        Ok(())
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        vec![point_row(&mut self.mean), sizes_row(&mut self.sigmas), self.clip_up.row()]
     }
 }

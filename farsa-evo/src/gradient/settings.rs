@@ -1,10 +1,9 @@
 //! Ranges of the numbers of configurations and states.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::{EvoError, check_range, check_setting};
-use crate::snapshot::StateReader;
+use crate::search::Row;
 
 /// The largest magnitude of a gene's mean and of a step size: products of two of them with noise stay finite.
 pub(super) const LARGEST: f64 = 1e100;
@@ -47,33 +46,18 @@ pub(super) fn bounded_size(sigma: f64) -> f64 {
     sigma.clamp(SMALLEST, LARGEST)
 }
 
-/// Reads numbers that are in a range, both ends included.
-pub(super) fn read(
-    reader: &mut StateReader<'_>,
-    count: usize,
-    what: &'static str,
-    range: [f64; 2],
-) -> Result<Vec<f64>, EvoError> {
-    let mut row = vec![0.0; count];
-    reader.reals(&mut row)?;
-    let [low, high] = range;
-    let wrong = row.iter().find(|x| !(low..=high).contains(*x));
-    wrong.map_or(Ok(()), |x| Err(EvoError::state_content(what, x.to_bits())))?;
-    Ok(row)
+/// The coordinates of a search point in a saved state.
+pub(super) fn point_row(point: &mut [f64]) -> Row<'_> {
+    (point, "a coordinate of a search point", [-LARGEST, LARGEST])
 }
 
-/// Reads the coordinates of a search point.
-pub(super) fn read_point(reader: &mut StateReader<'_>, genes: usize) -> Result<Vec<f64>, EvoError> {
-    read(reader, genes, "a coordinate of a search point", [-LARGEST, LARGEST])
+/// Step sizes in a saved state.
+pub(super) fn sizes_row(sizes: &mut [f64]) -> Row<'_> {
+    (sizes, "a step size", [SMALLEST, LARGEST])
 }
 
-/// Reads step sizes.
-pub(super) fn read_sizes(reader: &mut StateReader<'_>, count: usize) -> Result<Vec<f64>, EvoError> {
-    read(reader, count, "a step size", [SMALLEST, LARGEST])
-}
-
-/// Reads one number that is not negative.
-pub(super) fn read_length(reader: &mut StateReader<'_>) -> Result<f64, EvoError> {
-    let row = read(reader, 1, "a length", [0.0, f64::MAX])?;
-    Ok(row.first().copied().unwrap_or_default())
+/// The smallest and the largest step size.
+pub(super) fn ends(sizes: &[f64]) -> Vec<f64> {
+    let sizes = || sizes.iter().copied();
+    sizes().reduce(f64::min).into_iter().chain(sizes().reduce(f64::max)).collect()
 }

@@ -5,14 +5,13 @@ use alloc::vec::Vec;
 
 use farsa_num::{Scalar, exp, ln};
 
-use super::noise::Noise;
-use super::settings::{at_least, bounded, bounded_size, learning_rate, point, positive, read_point, read_sizes};
+use super::settings::{at_least, bounded, bounded_size, ends, learning_rate, point, point_row, positive, sizes_row};
 use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Row, Search, Step};
+use crate::strategy::RecordKind;
 
 /// The configuration of [`Snes`].
 #[derive(Clone, Debug, PartialEq)]
@@ -79,76 +78,46 @@ impl SnesConfig {
 ///
 /// Individual i of a generation draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial
 /// 0, i, generation), that of generation 0 with [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome).
-/// [`diagnostics`](Strategy::diagnostics) are the smallest and the largest standard deviation.
+/// [`diagnostics`](crate::Strategy::diagnostics) are the smallest and the largest standard deviation.
+pub type Snes = Search<SnesState>;
+
+/// The state of [`Snes`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Snes {
-    config: SnesConfig,
-    seed: u64,
-    generation: u32,
+pub struct SnesState {
     utilities: Vec<f64>,
     mean: Vec<f64>,
     sigmas: Vec<f64>,
-    population: Population<f64>,
 }
 
 impl Snes {
-    /// A search at its first generation.
-    ///
-    /// # Errors
-    /// The errors of [`SnesConfig::validate`].
-    pub fn new(config: SnesConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let population = Population::new(config.population, config.mean.len())?;
-        let (mean, sigmas) = (config.mean.clone(), vec![config.sigma; config.mean.len()]);
-        let utilities = utilities(config.population);
-        let mut strategy = Self { config, seed, generation: 0, utilities, mean, sigmas, population };
-        strategy.sample();
-        Ok(strategy)
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &SnesConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
     /// The mean \[genes\] of the generation that waits for its fitness.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
+        &self.state.mean
     }
 
     /// The standard deviations \[genes\] of the generation that waits for its fitness.
     pub fn sigmas(&self) -> &[f64] {
-        &self.sigmas
-    }
-
-    fn sample(&mut self) {
-        let noise = Noise { seed: self.seed, generation: self.generation };
-        noise.spread(&mut self.population, &self.mean, &self.sigmas);
+        &self.state.sigmas
     }
 }
 
-impl Strategy<f64> for Snes {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for SnesState {
+    type Gene = f64;
+    type Config = SnesConfig;
+
+    fn start(step: &Step<'_, SnesConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let SnesConfig { mean, sigma, population, .. } = step.config;
+        step.config.validate()?;
+        let state = Self { utilities: utilities(*population), mean: mean.clone(), sigmas: vec![*sigma; mean.len()] };
+        Ok((state, Population::new(*population, mean.len())?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation, self.population.len(), fitness)?;
-        let noise = Noise { seed: self.seed, generation: self.generation };
+    fn advance(&mut self, step: &Step<'_, SnesConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
         let (mut first, mut second) = (vec![0.0; self.mean.len()], vec![0.0; self.mean.len()]);
         for (individual, weight) in weights(fitness, &self.utilities).into_iter().enumerate() {
-            noise.add_moments(individual, [weight; 2], &mut first, &mut second);
+            step.previous().add_moments(individual, [weight; 2], &mut first, &mut second);
         }
-        let (mean_rate, sigma_rate) = (self.config.mean_learning_rate, 0.5 * self.config.sigma_learning_rate);
+        let (mean_rate, sigma_rate) = (step.config.mean_learning_rate, 0.5 * step.config.sigma_learning_rate);
         // mu <- mu + eta_mu sigma grad_mu, sigma <- sigma exp(eta_sigma / 2 grad_sigma). [Wierstra2014] algorithm 6.
         for ((mean, sigma), (first, second)) in
             self.mean.iter_mut().zip(&mut self.sigmas).zip(first.iter().zip(&second))
@@ -156,41 +125,25 @@ impl Strategy<f64> for Snes {
             *mean = bounded(*mean + mean_rate * *sigma * first);
             *sigma = bounded_size(*sigma * exp(sigma_rate * second));
         }
-        self.generation = next;
-        self.sample();
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn draw(&mut self, step: &Step<'_, SnesConfig>, genomes: &mut Population<f64>) {
+        step.spread(genomes, &self.mean, &self.sigmas);
+    }
+
+    fn record_kind(_: &SnesConfig) -> RecordKind {
         RecordKind::Order
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
+    fn diagnostics(&self, _: &SnesConfig) -> Vec<f64> {
+        ends(&self.sigmas)
     }
 
-    fn diagnostics(&self) -> Vec<f64> {
-        let sigmas = || self.sigmas.iter().copied();
-        [sigmas().reduce(f64::min), sigmas().reduce(f64::max)].into_iter().flatten().collect()
-    }
-}
-
-impl Snapshot for Snes {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &self.mean);
-        push_reals(&mut state, &self.sigmas);
-        state
+    fn rows(&self) -> Vec<&[f64]> {
+        vec![&self.mean, &self.sigmas]
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let genes = self.mean.len();
-        let mut reader = StateReader::new(state, 4 + 16 * genes)?;
-        let generation = reader.u32()?;
-        let (mean, sigmas) = (read_point(&mut reader, genes)?, read_sizes(&mut reader, genes)?);
-        (self.generation, self.mean, self.sigmas) = (generation, mean, sigmas);
-        self.sample();
-        Ok(())
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        vec![point_row(&mut self.mean), sizes_row(&mut self.sigmas)]
     }
 }

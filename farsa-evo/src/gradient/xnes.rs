@@ -2,20 +2,18 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::slice::{from_mut, from_ref};
 
 use farsa_num::{Scalar, exp, ln};
 
 use super::matrix_exponential::{exponential, mirror, multiply};
-use super::noise::Noise;
-use super::settings::{
-    LARGEST, at_least, bounded, bounded_size, learning_rate, point, positive, read, read_point, read_sizes,
-};
+use super::settings::{LARGEST, at_least, bounded, bounded_size, learning_rate, point, point_row, positive, sizes_row};
 use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
-use crate::strategy::{RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Row, Search, Step};
+use crate::strategy::RecordKind;
 
 /// The most genes: a matrix of 8 MiB, and some 10^10 products a generation.
 const MOST_GENES: usize = 1024;
@@ -97,85 +95,44 @@ impl XnesConfig {
 ///
 /// Individual i of a generation draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial
 /// 0, i, generation), that of generation 0 with [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome).
-/// [`diagnostics`](Strategy::diagnostics) is sigma.
+/// [`diagnostics`](crate::Strategy::diagnostics) is sigma.
+pub type Xnes = Search<XnesState>;
+
+/// The state of [`Xnes`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Xnes {
-    config: XnesConfig,
-    seed: u64,
-    generation: u32,
+pub struct XnesState {
     utilities: Vec<f64>,
     mean: Vec<f64>,
     sigma: f64,
     /// The normalized factor B of the covariance [genes x genes].
     shape: Vec<f64>,
-    population: Population<f64>,
 }
 
 impl Xnes {
-    /// A search at its first generation.
-    ///
-    /// # Errors
-    /// The errors of [`XnesConfig::validate`].
-    pub fn new(config: XnesConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let genes = config.mean.len();
-        let population = Population::new(config.population, genes)?;
-        let (mean, sigma, mut shape) = (config.mean.clone(), config.sigma, vec![0.0; genes * genes]);
-        shape.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal = 1.0);
-        let utilities = utilities(config.population);
-        let mut strategy = Self { config, seed, generation: 0, utilities, mean, sigma, shape, population };
-        strategy.sample();
-        Ok(strategy)
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &XnesConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
     /// The mean \[genes\] of the generation that waits for its fitness.
     pub fn mean(&self) -> &[f64] {
-        &self.mean
+        &self.state.mean
     }
 
     /// The step size of the generation that waits for its fitness.
     pub fn sigma(&self) -> f64 {
-        self.sigma
+        self.state.sigma
     }
 
     /// The shape B [genes x genes, row after row]: the covariance of a generation is sigma^2 B B^T.
     pub fn shape(&self) -> &[f64] {
-        &self.shape
+        &self.state.shape
     }
+}
 
-    fn noise(&self) -> Noise {
-        Noise { seed: self.seed, generation: self.generation }
-    }
-
-    fn sample(&mut self) {
-        let noise = self.noise();
-        let mut numbers = vec![0.0; self.mean.len()];
-        for (individual, genes) in self.population.iter_mut().enumerate() {
-            noise.fill(individual, &mut numbers);
-            let turned = rows_times(&self.shape, &numbers);
-            for ((gene, mean), turned) in genes.iter_mut().zip(&self.mean).zip(turned) {
-                *gene = mean + self.sigma * turned;
-            }
-        }
-    }
-
+impl XnesState {
     /// The natural gradient of the mean \[genes\], and that of the exponent [genes x genes].
-    fn gradients(&self, fitness: &[Fitness]) -> (Vec<f64>, Vec<f64>) {
-        let (noise, genes) = (self.noise(), self.mean.len());
+    fn gradients(&self, step: &Step<'_, XnesConfig>, fitness: &[Fitness]) -> (Vec<f64>, Vec<f64>) {
+        let genes = self.mean.len();
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes * genes]);
         let mut numbers = vec![0.0; genes];
         for (individual, weight) in weights(fitness, &self.utilities).into_iter().enumerate() {
-            noise.fill(individual, &mut numbers);
+            step.stream(individual).fill_normal(&mut numbers);
             for (i, (row, x)) in second.chunks_exact_mut(genes).zip(&numbers).enumerate() {
                 let scaled = weight * x;
                 row[i..].iter_mut().zip(&numbers[i..]).for_each(|(sum, y)| *sum += scaled * y);
@@ -193,30 +150,34 @@ fn rows_times<'m>(matrix: &'m [f64], vector: &'m [f64]) -> impl Iterator<Item = 
     matrix.chunks_exact(vector.len()).map(move |row| row.iter().zip(vector).map(|(x, y)| x * y).sum())
 }
 
-impl Strategy<f64> for Xnes {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for XnesState {
+    type Gene = f64;
+    type Config = XnesConfig;
+
+    fn start(step: &Step<'_, XnesConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let XnesConfig { mean, sigma, population, .. } = step.config;
+        step.config.validate()?;
+        let genes = mean.len();
+        let mut shape = vec![0.0; genes * genes];
+        shape.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal = 1.0);
+        let state = Self { utilities: utilities(*population), mean: mean.clone(), sigma: *sigma, shape };
+        Ok((state, Population::new(*population, genes)?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation, self.population.len(), fitness)?;
-        let genes = self.mean.len();
-        let (first, mut second) = self.gradients(fitness);
+    fn advance(&mut self, step: &Step<'_, XnesConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
+        let (genes, config) = (self.mean.len(), step.config);
+        let (first, mut second) = self.gradients(&step.previous(), fitness);
         // mu <- mu + eta sigma B grad_delta. [Wierstra2014] algorithm 5.
-        let step = self.config.mean_learning_rate * self.sigma;
+        let rate = config.mean_learning_rate * self.sigma;
         let moves: Vec<f64> = rows_times(&self.shape, &first).collect();
-        self.mean.iter_mut().zip(moves).for_each(|(mean, turned)| *mean = bounded(*mean + step * turned));
+        self.mean.iter_mut().zip(moves).for_each(|(mean, turned)| *mean = bounded(*mean + rate * turned));
 
         // The trace of the gradient grows sigma, the rest turns and stretches B.
         let growth = second.iter().step_by(genes + 1).sum::<f64>() / genes as f64;
-        self.sigma = bounded_size(self.sigma * exp(0.5 * self.config.sigma_learning_rate * growth));
+        self.sigma = bounded_size(self.sigma * exp(0.5 * config.sigma_learning_rate * growth));
         second.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal -= growth);
         for x in &mut second {
-            *x *= 0.5 * self.config.shape_learning_rate;
+            *x *= 0.5 * config.shape_learning_rate;
         }
         if let Some(factor) = exponential(&second, genes) {
             let shape = multiply(&self.shape, &factor, genes);
@@ -224,43 +185,33 @@ impl Strategy<f64> for Xnes {
                 self.shape = shape;
             }
         }
-        self.generation = next;
-        self.sample();
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn draw(&mut self, step: &Step<'_, XnesConfig>, genomes: &mut Population<f64>) {
+        let mut numbers = vec![0.0; self.mean.len()];
+        for (individual, genes) in genomes.iter_mut().enumerate() {
+            step.stream(individual).fill_normal(&mut numbers);
+            let turned = rows_times(&self.shape, &numbers);
+            for ((gene, mean), turned) in genes.iter_mut().zip(&self.mean).zip(turned) {
+                *gene = mean + self.sigma * turned;
+            }
+        }
+    }
+
+    fn record_kind(_: &XnesConfig) -> RecordKind {
         RecordKind::Order
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn diagnostics(&self) -> Vec<f64> {
+    fn diagnostics(&self, _: &XnesConfig) -> Vec<f64> {
         vec![self.sigma]
     }
-}
 
-impl Snapshot for Xnes {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::new();
-        state.extend(self.generation.to_le_bytes());
-        push_reals(&mut state, &self.mean);
-        push_reals(&mut state, &[self.sigma]);
-        push_reals(&mut state, &self.shape);
-        state
+    fn rows(&self) -> Vec<&[f64]> {
+        vec![&self.mean, from_ref(&self.sigma), &self.shape]
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let genes = self.mean.len();
-        let mut reader = StateReader::new(state, 4 + 8 * (genes + 1 + genes * genes))?;
-        let generation = reader.u32()?;
-        let (mean, sigma) = (read_point(&mut reader, genes)?, read_sizes(&mut reader, 1)?);
-        let shape = read(&mut reader, genes * genes, "an element of a shape", [-LARGEST, LARGEST])?;
-        (self.generation, self.mean, self.shape) = (generation, mean, shape);
-        self.sigma = sigma.first().copied().unwrap_or(self.sigma);
-        self.sample();
-        Ok(())
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        let Self { mean, sigma, shape, .. } = self;
+        vec![point_row(mean), sizes_row(from_mut(sigma)), (shape, "an element of a shape", [-LARGEST, LARGEST])]
     }
 }

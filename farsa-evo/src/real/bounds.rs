@@ -4,6 +4,7 @@ use farsa_num::Stream;
 
 use crate::error::{EvoError, check_setting};
 use crate::population::Population;
+use crate::search::Step;
 
 /// The largest size of a bound, so that sums and differences of genes stay finite.
 const LARGEST: f64 = 1e100;
@@ -25,6 +26,15 @@ pub(crate) fn draw_within(genes: &mut [f64], bounds: &[[f64; 2]], stream: &mut S
     for (gene, &[low, high]) in genes.iter_mut().zip(bounds) {
         *gene = stream.range_f64(low, high);
     }
+}
+
+/// Draws the individuals of generation 0 uniformly within their bounds.
+pub(crate) fn uniform<C>(step: &Step<'_, C>, size: usize, bounds: &[[f64; 2]]) -> Result<Population<f64>, EvoError> {
+    let mut population = Population::new(size, bounds.len())?;
+    for (individual, genes) in population.iter_mut().enumerate() {
+        draw_within(genes, bounds, &mut step.stream(individual));
+    }
+    Ok(population)
 }
 
 /// Reflects a finite number at the ends of a range as often as necessary. Returns the low end of a range of zero width.

@@ -3,14 +3,174 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Domain, Stream, exp};
+use farsa_num::{Scalar, Stream, exp};
 
-use crate::error::EvoError;
+use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::real::evolution_strategy_config::{EvolutionStrategyConfig, LARGEST, Recombination, StepSizes, Survival};
-use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Search, Step};
+use crate::snapshot::{StateReader, between_states, push_reals};
+use crate::strategy::RecordKind;
+
+/// The largest size of a gene or a step size of a configuration. Genes grow no further than by steps of this size.
+const LARGEST: f64 = 1e100;
+
+/// Which individuals are selected from, \[Beyer2002\].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Survival {
+    /// (mu, lambda): the offspring alone.
+    Comma,
+    /// (mu + lambda), parents and offspring. Parents keep their fitness.
+    Plus,
+    /// (mu + lambda) where the parents are evaluated again in every generation.
+    PlusEvaluatedAgain,
+}
+
+/// The recombination of the genes, or the step sizes, of rho parents, \[Beyer2002\].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Recombination {
+    /// No recombination. The values are those of the first drawn parent.
+    None,
+    /// The mean of all rho parents.
+    Intermediate,
+    /// Each from one of the rho parents, drawn for it.
+    Discrete,
+}
+
+/// The number of step sizes of an individual and their learning rates, \[Beyer2002\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum StepSizes {
+    /// One for all genes: `sigma e^(tau N)`.
+    One {
+        /// The learning rate tau, 0 to 10.
+        tau: f64,
+    },
+    /// One for each gene: `sigma_i e^(tau_0 N) e^(tau N_i)`.
+    PerGene {
+        /// The learning rate `tau_0` of what all have in common, 0 to 10.
+        tau_0: f64,
+        /// The learning rate tau of each, 0 to 10.
+        tau: f64,
+    },
+}
+
+impl StepSizes {
+    /// One step size, with tau = 1 / sqrt(n) of n genes.
+    pub fn one(genes: usize) -> Self {
+        Self::One { tau: 1.0 / Scalar::sqrt(genes.max(1) as f64) }
+    }
+
+    /// A step size for each gene, with `tau_0` = 1 / sqrt(2 n) and tau = 1 / sqrt(2 sqrt(n)) of n genes.
+    pub fn per_gene(genes: usize) -> Self {
+        let n = genes.max(1) as f64;
+        Self::PerGene { tau_0: 1.0 / Scalar::sqrt(2.0 * n), tau: 1.0 / Scalar::sqrt(2.0 * Scalar::sqrt(n)) }
+    }
+
+    /// Step sizes of an individual with the given number of genes.
+    fn count(self, genes: usize) -> usize {
+        match self {
+            Self::One { .. } => 1,
+            Self::PerGene { .. } => genes,
+        }
+    }
+}
+
+/// The configuration of [`EvolutionStrategy`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EvolutionStrategyConfig {
+    /// Where the search begins \[genes\], -1e100 to 1e100.
+    pub mean: Vec<f64>,
+    /// The first step size sigma, in the unit of the genes, `smallest_step` to 1e100.
+    pub initial_step: f64,
+    /// The number of parents mu, 1 to the number of offspring.
+    pub parents: usize,
+    /// The number of offspring lambda of a generation.
+    pub offspring: usize,
+    /// The mixing number rho, the number of different parents of a child, 1 to mu. No effect without recombination.
+    pub mixing: usize,
+    /// Which individuals are selected from.
+    pub survival: Survival,
+    /// Recombination of genes.
+    pub recombination: Recombination,
+    /// Recombination of step sizes.
+    pub step_recombination: Recombination,
+    /// Number and learning rates of step sizes.
+    pub step_sizes: StepSizes,
+    /// The step size that is never undercut, in the unit of the genes, 1e-100 to 1e100.
+    pub smallest_step: f64,
+}
+
+impl EvolutionStrategyConfig {
+    /// A (15/15, 100) strategy that begins around `mean` \[genes\] with this step size. It has intermediate recombination
+    /// of genes and step sizes, and one step size for each gene. Its learning rates are those of \[Beyer2002\]. (15, 100)
+    /// is the classical choice of its authors, the smallest step of 1e-12 is ours.
+    pub fn new(mean: Vec<f64>, initial_step: f64) -> Self {
+        let step_sizes = StepSizes::per_gene(mean.len());
+        Self {
+            mean,
+            initial_step,
+            parents: 15,
+            offspring: 100,
+            mixing: 15,
+            survival: Survival::Comma,
+            recombination: Recombination::Intermediate,
+            step_recombination: Recombination::Intermediate,
+            step_sizes,
+            smallest_step: 1e-12,
+        }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        let Self { parents, offspring, mixing, initial_step, smallest_step, .. } = *self;
+        Population::check(offspring, self.mean.len())?;
+        if parents == 0 {
+            return Err(EvoError::no_parents());
+        }
+        check_setting(parents <= offspring, "the number of parents", parents as f64, "1 to the number of offspring")?;
+        Population::check(self.asked(), self.mean.len())?;
+        let mixed = (1..=parents).contains(&mixing);
+        check_setting(mixed, "the mixing number", mixing as f64, "1 to the number of parents")?;
+        for &x in &self.mean {
+            check_setting((-LARGEST..=LARGEST).contains(&x), "a mean", x, "-1e100 to 1e100")?;
+        }
+        let steps = 1e-100..=LARGEST;
+        check_setting(steps.contains(&smallest_step), "the smallest step size", smallest_step, "1e-100 to 1e100")?;
+        let within = (smallest_step..=LARGEST).contains(&initial_step);
+        check_setting(within, "the first step size", initial_step, "the smallest to 1e100")?;
+        let rate = |name, tau| check_setting((0.0..=10.0).contains(&tau), name, tau, "0 to 10");
+        match self.step_sizes {
+            StepSizes::One { tau } => rate("tau", tau),
+            StepSizes::PerGene { tau_0, tau } => rate("tau_0", tau_0).and_then(|()| rate("tau", tau)),
+        }
+    }
+
+    /// Individuals of a generation that are evaluated.
+    fn asked(&self) -> usize {
+        match self.survival {
+            Survival::Comma | Survival::Plus => self.offspring,
+            Survival::PlusEvaluatedAgain => self.parents.saturating_add(self.offspring),
+        }
+    }
+
+    /// Number of evaluated individuals that are parents, from generation 1 on.
+    fn asked_parents(&self) -> usize {
+        self.asked() - self.offspring
+    }
+
+    /// Parents of a child.
+    fn parents_of_one(&self) -> usize {
+        let alone = [self.recombination, self.step_recombination] == [Recombination::None; 2];
+        if alone { 1 } else { self.mixing }
+    }
+}
 
 /// The largest size that a gene can have: some 2^32 steps of the largest kind.
 const FARTHEST: f64 = 1e120;
@@ -22,10 +182,10 @@ const FARTHEST: f64 = 1e120;
 /// sizes by e^(tau N), and then adds normal numbers of these standard deviations to its genes. Individuals are ranked by
 /// fitness, equals by index (parents before offspring), failed ones last.
 ///
-/// Child `i` of the offspring of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The
+/// Child `i` of the offspring of generation `g` draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, `i`, `g`). The
 /// draws are its parents (as swaps in a list) and, for discrete recombination, the parents of its step sizes and genes. A
 /// row of normal numbers follows: the common one of all step sizes, one for each of several step sizes, one for each gene.
-/// Individuals of generation 0 are normal around the mean with the first step size, from (seed, [`Domain::InitialGenome`],
+/// Individuals of generation 0 are normal around the mean with the first step size, from (seed, [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome),
 /// trial 0, `i`, 0).
 ///
 /// Source: \[Beyer2002\]. Deviations: generation 0 has as many individuals as every other, and its mu best are the first
@@ -40,16 +200,15 @@ const FARTHEST: f64 = 1e120;
 /// assert!(champion.fitness.get() > -1e-9);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+pub type EvolutionStrategy = Search<EvolutionStrategyState>;
+
+/// The state of [`EvolutionStrategy`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct EvolutionStrategy {
-    config: EvolutionStrategyConfig,
-    seed: u64,
-    generation: u32,
+pub struct EvolutionStrategyState {
     /// The selected individuals, best first \[mu\]. Empty in generation 0.
     parents: Vec<Individual>,
     /// The step sizes of those that wait for their fitness [individuals x step sizes].
     steps: Vec<f64>,
-    population: Population<f64>,
 }
 
 /// A selected individual.
@@ -64,77 +223,28 @@ struct Individual {
 }
 
 impl EvolutionStrategy {
-    /// A search at its random initial generation.
-    ///
-    /// # Errors
-    /// The errors of [`EvolutionStrategyConfig::validate`].
-    pub fn new(config: EvolutionStrategyConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let genes = config.mean.len();
-        let mut population = Population::new(config.asked(), genes)?;
-        for (individual, row) in population.iter_mut().enumerate() {
-            Stream::new(seed, Domain::InitialGenome, 0, individual as u32, 0).fill_normal(row);
-            for (gene, mean) in row.iter_mut().zip(&config.mean) {
-                *gene = mean + config.initial_step * *gene;
-            }
-        }
-        let steps = vec![config.initial_step; config.asked() * config.step_sizes.count(genes)];
-        Ok(Self { config, seed, generation: 0, parents: Vec::new(), steps, population })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &EvolutionStrategyConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
     /// The step sizes of the individuals that wait for their fitness [individuals x (1 or genes)], in the unit of the
     /// genes.
     pub fn step_sizes(&self) -> &[f64] {
-        &self.steps
+        &self.state.steps
     }
 
     /// The fitness that the current parents keep, best first \[mu\]. Empty in generation 0 and without [`Survival::Plus`].
     pub fn parent_fitness(&self) -> Vec<Fitness> {
-        let kept = if self.config.survival == Survival::Plus { self.parents.as_slice() } else { &[] };
-        kept.iter().map(|parent| parent.fitness).collect()
+        self.state.kept(&self.config).iter().map(|parent| parent.fitness).collect()
     }
+}
 
+impl EvolutionStrategyConfig {
     /// Step sizes of an individual.
     fn width(&self) -> usize {
-        self.config.step_sizes.count(self.config.mean.len())
-    }
-
-    fn stream(&self, child: usize, generation: u32) -> Stream {
-        Stream::new(self.seed, Domain::Mutation, 0, child as u32, generation)
-    }
-
-    /// The mu best of those that are selected from.
-    fn select(&self, fitness: &[Fitness]) -> Vec<Individual> {
-        let plus = self.config.survival == Survival::Plus;
-        let kept: &[Individual] = if plus { &self.parents } else { &[] };
-        let all: Vec<Fitness> = kept.iter().map(|parent| parent.fitness).chain(fitness.iter().copied()).collect();
-        let asked = |index: usize| Individual {
-            genes: self.population.get(index).unwrap_or_default().to_vec(),
-            steps: self.steps.chunks_exact(self.width()).nth(index).unwrap_or_default().to_vec(),
-            fitness: fitness.get(index).copied().filter(|_| plus).unwrap_or(Fitness::WORST),
-            origin: Some(index as u32),
-        };
-        let individual = |index: usize| match kept.get(index) {
-            Some(parent) => Individual { origin: None, ..parent.clone() },
-            None => asked(index - kept.len()),
-        };
-        Fitness::ranking(&all).into_iter().take(self.config.parents).map(individual).collect()
+        self.step_sizes.count(self.mean.len())
     }
 
     /// The parents of a child, as indices of the parents.
     fn draw_parents(&self, stream: &mut Stream) -> Vec<usize> {
-        let mut indices: Vec<usize> = (0..self.config.parents).collect();
-        let rho = self.config.parents_of_one();
+        let mut indices: Vec<usize> = (0..self.parents).collect();
+        let rho = self.parents_of_one();
         for slot in 0..rho {
             let rest = (indices.len() - slot) as u32;
             indices.swap(slot, slot + stream.below(rest) as usize);
@@ -145,35 +255,62 @@ impl EvolutionStrategy {
 
     /// Makes a child of these parents.
     fn make(&self, parents: &[Individual], genes: &mut [f64], steps: &mut [f64], stream: &mut Stream) {
-        let config = &self.config;
         let drawn = self.draw_parents(stream);
         let chosen: Vec<&Individual> = drawn.into_iter().filter_map(|parent| parents.get(parent)).collect();
-        recombine(config.step_recombination, &chosen, |parent| &parent.steps, steps, stream);
-        recombine(config.recombination, &chosen, |parent| &parent.genes, genes, stream);
-        let own = if matches!(config.step_sizes, StepSizes::One { .. }) { 0 } else { steps.len() };
+        recombine(self.step_recombination, &chosen, |parent| &parent.steps, steps, stream);
+        recombine(self.recombination, &chosen, |parent| &parent.genes, genes, stream);
+        let own = if matches!(self.step_sizes, StepSizes::One { .. }) { 0 } else { steps.len() };
         let mut normal = vec![0.0; 1 + own + genes.len()];
         stream.fill_normal(&mut normal);
         let (of_steps, of_genes) = normal.split_at(1 + own);
         let common = of_steps.first().copied().unwrap_or_default();
         for (index, step) in steps.iter_mut().enumerate() {
-            let power = match config.step_sizes {
+            let power = match self.step_sizes {
                 StepSizes::One { tau } => tau * common,
                 StepSizes::PerGene { tau_0, tau } => {
                     tau_0 * common + tau * of_steps.get(1 + index).copied().unwrap_or_default()
                 }
             };
-            *step = (*step * exp(power)).clamp(config.smallest_step, LARGEST);
+            *step = (*step * exp(power)).clamp(self.smallest_step, LARGEST);
         }
         for ((gene, normal), step) in genes.iter_mut().zip(of_genes).zip(steps.iter().cycle()) {
             *gene = (*gene + step * normal).clamp(-FARTHEST, FARTHEST);
         }
     }
 
-    /// Bytes of a state at a generation.
-    fn state_length(&self, generation: u32) -> usize {
-        let row = 8 * (self.config.mean.len() + self.width());
-        let parents = if generation == 0 { 0 } else { self.config.parents };
-        4 + parents * (12 + row) + self.config.asked() * row
+    /// Reads step sizes and genes that are possible.
+    fn read_rows(&self, reader: &mut StateReader<'_>, steps: &mut [f64], genes: &mut [f64]) -> Result<(), EvoError> {
+        reader.row(steps, "a step size", [self.smallest_step, LARGEST])?;
+        reader.row(genes, "a gene of -1e120 to 1e120", [-FARTHEST, FARTHEST])
+    }
+}
+
+impl EvolutionStrategyState {
+    /// The parents that keep their fitness.
+    fn kept(&self, config: &EvolutionStrategyConfig) -> &[Individual] {
+        if config.survival == Survival::Plus { &self.parents } else { &[] }
+    }
+
+    /// The mu best of those that are selected from.
+    fn select(
+        &self,
+        config: &EvolutionStrategyConfig,
+        fitness: &[Fitness],
+        genomes: &Population<f64>,
+    ) -> Vec<Individual> {
+        let (plus, kept) = (config.survival == Survival::Plus, self.kept(config));
+        let all: Vec<Fitness> = kept.iter().map(|parent| parent.fitness).chain(fitness.iter().copied()).collect();
+        let asked = |index: usize| Individual {
+            genes: genomes.get(index).unwrap_or_default().to_vec(),
+            steps: self.steps.chunks_exact(config.width()).nth(index).unwrap_or_default().to_vec(),
+            fitness: fitness.get(index).copied().filter(|_| plus).unwrap_or(Fitness::WORST),
+            origin: Some(index as u32),
+        };
+        let individual = |index: usize| match kept.get(index) {
+            Some(parent) => Individual { origin: None, ..parent.clone() },
+            None => asked(index - kept.len()),
+        };
+        Fitness::ranking(&all).into_iter().take(config.parents).map(individual).collect()
     }
 }
 
@@ -199,125 +336,109 @@ fn recombine(
     }
 }
 
-impl Strategy<f64> for EvolutionStrategy {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for EvolutionStrategyState {
+    type Gene = f64;
+    type Config = EvolutionStrategyConfig;
+    const HAS_PARENTS: bool = true;
+
+    fn start(step: &Step<'_, EvolutionStrategyConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let config = step.config;
+        config.validate()?;
+        let mut population = Population::new(config.asked(), config.mean.len())?;
+        for (individual, row) in population.iter_mut().enumerate() {
+            step.stream(individual).fill_normal(row);
+            for (gene, mean) in row.iter_mut().zip(&config.mean) {
+                *gene = mean + config.initial_step * *gene;
+            }
+        }
+        let steps = vec![config.initial_step; config.asked() * config.width()];
+        Ok((Self { parents: Vec::new(), steps }, population))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let generation = next_generation(self.generation, self.population.len(), fitness)?;
-        let parents = self.select(fitness);
-        let again = self.config.asked_parents();
-        let mut population = Population::new(self.population.len(), self.population.genome_len())?;
-        let mut steps = vec![0.0; self.steps.len()];
-        let rows = population.iter_mut().zip(steps.chunks_exact_mut(self.width()));
+    fn advance(
+        &mut self,
+        step: &Step<'_, EvolutionStrategyConfig>,
+        fitness: &[Fitness],
+        genomes: &mut Population<f64>,
+    ) {
+        let config = step.config;
+        let (parents, again) = (self.select(config, fitness, genomes), config.asked_parents());
+        let rows = genomes.iter_mut().zip(self.steps.chunks_exact_mut(config.width()));
         for (individual, (genes, steps)) in rows.enumerate() {
             if let Some(parent) = parents.get(individual).filter(|_| individual < again) {
                 genes.copy_from_slice(&parent.genes);
                 steps.copy_from_slice(&parent.steps);
             } else {
-                self.make(&parents, genes, steps, &mut self.stream(individual - again, generation));
+                config.make(&parents, genes, steps, &mut step.stream(individual - again));
             }
         }
-        (self.generation, self.parents, self.steps, self.population) = (generation, parents, steps, population);
-        Ok(())
+        self.parents = parents;
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn record_kind(config: &EvolutionStrategyConfig) -> RecordKind {
         // Where parents keep their fitness it is compared with that of another generation.
-        if self.config.survival == Survival::Plus { RecordKind::Values } else { RecordKind::Order }
-    }
-
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn genealogy(&self) -> Option<&dyn Genealogy> {
-        Some(self)
+        if config.survival == Survival::Plus { RecordKind::Values } else { RecordKind::Order }
     }
 
     /// The mean step size of the parents, in generation 0 the first step size.
-    fn diagnostics(&self) -> Vec<f64> {
+    fn diagnostics(&self, config: &EvolutionStrategyConfig) -> Vec<f64> {
         let steps = || self.parents.iter().flat_map(|parent| &parent.steps);
         let mean = steps().sum::<f64>() / steps().count().max(1) as f64;
-        vec![if self.parents.is_empty() { self.config.initial_step } else { mean }]
+        vec![if self.parents.is_empty() { config.initial_step } else { mean }]
     }
-}
 
-/// Parents that were not evaluated in the generation before, as those of (mu + lambda) need not be, are left out.
-impl Genealogy for EvolutionStrategy {
-    fn parents_of(&self, individual: usize) -> Vec<usize> {
-        if self.generation == 0 || individual >= self.population.len() {
+    /// Parents that were not evaluated in the generation before, as those of (mu + lambda) need not be, are left out.
+    fn parents_of(&self, step: &Step<'_, EvolutionStrategyConfig>, individual: usize) -> Vec<usize> {
+        if step.generation == 0 || individual >= step.config.asked() {
             return Vec::new();
         }
-        let mut parents = match individual.checked_sub(self.config.asked_parents()) {
+        let mut parents = match individual.checked_sub(step.config.asked_parents()) {
             None => vec![individual],
-            Some(child) => self.draw_parents(&mut self.stream(child, self.generation)),
+            Some(child) => step.config.draw_parents(&mut step.stream(child)),
         };
         parents.sort_unstable();
         parents.iter().filter_map(|parent| self.parents.get(*parent)?.origin).map(|origin| origin as usize).collect()
     }
-}
 
-impl Snapshot for EvolutionStrategy {
-    fn snapshot_interval(&self) -> u32 {
-        between_states(&self.population)
+    fn snapshot_interval(genomes: &Population<f64>) -> u32 {
+        between_states(genomes)
     }
 
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(self.state_length(self.generation));
-        state.extend(self.generation.to_le_bytes());
+    fn state_length(&self, step: &Step<'_, EvolutionStrategyConfig>, _: usize) -> usize {
+        let row = 8 * (step.config.mean.len() + step.config.width());
+        let parents = if step.generation == 0 { 0 } else { step.config.parents };
+        parents * (12 + row) + step.config.asked() * row
+    }
+
+    fn save(&self, _: &EvolutionStrategyConfig, genomes: &Population<f64>, saved: &mut Vec<u8>) {
         for parent in &self.parents {
-            state.extend(parent.origin.unwrap_or(u32::MAX).to_le_bytes());
-            state.extend(parent.fitness.get().to_le_bytes());
-            push_reals(&mut state, &parent.steps);
-            push_reals(&mut state, &parent.genes);
+            saved.extend(parent.origin.unwrap_or(u32::MAX).to_le_bytes());
+            saved.extend(parent.fitness.get().to_le_bytes());
+            push_reals(saved, &parent.steps);
+            push_reals(saved, &parent.genes);
         }
-        push_reals(&mut state, &self.steps);
-        push_reals(&mut state, self.population.as_slice());
-        state
+        push_reals(saved, &self.steps);
+        push_reals(saved, genomes.as_slice());
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let generation = StateReader::new(state, state.len())?.u32()?;
-        let mut reader = StateReader::new(state, self.state_length(generation))?;
-        reader.u32()?;
-        let (size, genes, width) = (self.population.len(), self.config.mean.len(), self.width());
-        let mut parents = Vec::new();
-        for _ in 0..if generation == 0 { 0 } else { self.config.parents } {
+    fn restore(
+        &mut self,
+        step: &Step<'_, EvolutionStrategyConfig>,
+        reader: &mut StateReader<'_>,
+        genomes: &mut Population<f64>,
+    ) -> Result<(), EvoError> {
+        let (config, size) = (step.config, genomes.len());
+        self.parents.clear();
+        for _ in 0..if step.generation == 0 { 0 } else { config.parents } {
             let origin = Some(reader.u32()?).filter(|origin| *origin != u32::MAX);
             if let Some(individual) = origin.map(|origin| origin as usize).filter(|origin| *origin >= size) {
                 return Err(EvoError::no_such_individual(individual, size));
             }
-            let fitness = reader.fitness()?;
-            let mut parent = Individual { genes: vec![0.0; genes], steps: vec![0.0; width], fitness, origin };
-            self.read_rows(&mut reader, &mut parent.steps, &mut parent.genes)?;
-            parents.push(parent);
+            let (genes, steps) = (vec![0.0; config.mean.len()], vec![0.0; config.width()]);
+            let mut parent = Individual { genes, steps, fitness: reader.fitness()?, origin };
+            config.read_rows(reader, &mut parent.steps, &mut parent.genes)?;
+            self.parents.push(parent);
         }
-        let mut steps = vec![0.0; self.steps.len()];
-        let mut population = Population::new(size, genes)?;
-        self.read_rows(&mut reader, &mut steps, population.as_mut_slice())?;
-        (self.generation, self.parents, self.steps, self.population) = (generation, parents, steps, population);
-        Ok(())
-    }
-}
-
-impl EvolutionStrategy {
-    /// Reads step sizes and genes that are possible.
-    fn read_rows(&self, reader: &mut StateReader, steps: &mut [f64], genes: &mut [f64]) -> Result<(), EvoError> {
-        reader.reals(steps)?;
-        reader.reals(genes)?;
-        let wrong = |what, found: &f64| Err(EvoError::state_content(what, found.to_bits()));
-        if let Some(step) = steps.iter().find(|step| !(self.config.smallest_step..=LARGEST).contains(*step)) {
-            return wrong("a step size", step);
-        }
-        match genes.iter().find(|gene| gene.abs() > FARTHEST) {
-            Some(gene) => wrong("a gene of -1e120 to 1e120", gene),
-            None => Ok(()),
-        }
+        config.read_rows(reader, &mut self.steps, genomes.as_mut_slice())
     }
 }

@@ -6,7 +6,6 @@ pub(crate) mod bounds;
 pub(crate) mod crossover;
 /// Evolution strategies with self-adaptation.
 mod evolution_strategy;
-mod evolution_strategy_config;
 /// Mutation of genes.
 pub(crate) mod mutation;
 /// The generational genetic algorithm.
@@ -17,8 +16,7 @@ mod selection;
 mod steady_state;
 
 pub use crossover::Crossover;
-pub use evolution_strategy::EvolutionStrategy;
-pub use evolution_strategy_config::{EvolutionStrategyConfig, Recombination, StepSizes, Survival};
+pub use evolution_strategy::{EvolutionStrategy, EvolutionStrategyConfig, Recombination, StepSizes, Survival};
 pub use mutation::RealMutation;
 pub use real_ga::{RealGa, RealGaConfig};
 pub use selection::Selection;

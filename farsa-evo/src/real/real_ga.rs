@@ -3,17 +3,18 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Domain, Stream};
+use farsa_num::Stream;
 
 use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::real::bounds::{check_bounds, check_within, draw_within};
+use crate::real::bounds::{check_bounds, check_within, uniform};
 use crate::real::crossover::Crossover;
 use crate::real::mutation::RealMutation;
 use crate::real::selection::{Selection, Selector};
-use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Search, Step};
+use crate::snapshot::{StateReader, between_states, push_indices, push_reals};
+use crate::strategy::RecordKind;
 
 /// The configuration of [`RealGa`](crate::real::RealGa).
 #[derive(Clone, Debug, PartialEq)]
@@ -86,9 +87,9 @@ impl RealGaConfig {
 /// best first. Every other individual is a child of one parent or two. All are evaluated again in every generation. Genes
 /// out of bounds are reflected at them.
 ///
-/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The draws are
+/// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, `i`, `g`). The draws are
 /// its first parent, the decision for a second, the second, the crossover, its step size and its mutation, gene after gene.
-/// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+/// Individuals of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome), trial 0, `i`, 0).
 ///
 /// Sources: see [`Selection`](crate::real::Selection), [`Crossover`] and [`RealMutation`](crate::real::RealMutation). Their
 /// combination is ours.
@@ -102,180 +103,125 @@ impl RealGaConfig {
 /// assert!(champion.fitness.get() > -1e-3);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+pub type RealGa = Search<RealGaState>;
+
+/// The state of [`RealGa`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct RealGa {
-    config: RealGaConfig,
+pub struct RealGaState {
     selector: Selector,
-    seed: u64,
-    generation: u32,
     /// The first and the second parent of each individual, equal where there is one. Empty in generation 0.
-    parents: Vec<[u32; 2]>,
+    parents: Vec<u32>,
     /// The step size of each individual, as a share of the range.
     steps: Vec<f64>,
-    population: Population<f64>,
 }
 
 impl RealGa {
-    /// A search at its random initial generation.
-    ///
-    /// # Errors
-    /// The errors of [`RealGaConfig::validate`].
-    pub fn new(config: RealGaConfig, seed: u64) -> Result<Self, EvoError> {
-        let selector = config.selector()?;
-        let mut population = Population::new(config.population, config.bounds.len())?;
-        for (individual, genes) in population.iter_mut().enumerate() {
-            let mut stream = Stream::new(seed, Domain::InitialGenome, 0, individual as u32, 0);
-            draw_within(genes, &config.bounds, &mut stream);
-        }
-        let steps = vec![config.mutation.first_step(); config.population];
-        Ok(Self { config, selector, seed, generation: 0, parents: Vec::new(), steps, population })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &RealGaConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
     /// The step size of each individual \[individuals\], as a share of the range.
     pub fn step_sizes(&self) -> &[f64] {
-        &self.steps
+        &self.state.steps
     }
+}
 
-    /// Makes a child of individuals in this order, best first, and returns its parents and its step size.
-    fn make(&self, genes: &mut [f64], order: &[usize], stream: &mut Stream) -> ([u32; 2], f64) {
-        let RealGaConfig { crossover, mutation, bounds, rate_factors, .. } = &self.config;
+impl RealGaState {
+    /// Makes a child of `old` individuals in this order, best first, and returns its parents and its step size.
+    fn make(
+        &self,
+        config: &RealGaConfig,
+        genes: &mut [f64],
+        old: &Population<f64>,
+        order: &[usize],
+        stream: &mut Stream,
+    ) -> ([u32; 2], f64) {
+        let RealGaConfig { crossover, mutation, bounds, rate_factors, .. } = config;
         let select = |stream: &mut Stream| order.get(self.selector.draw(stream)).copied().unwrap_or_default();
-        let copy = |genes: &mut [f64], parent: usize| {
-            if let Some(from) = self.population.get(parent) {
-                genes.copy_from_slice(from);
-            }
-        };
         let first = select(stream);
-        copy(genes, first);
+        genes.copy_from_slice(old.get(first).unwrap_or_default());
         let mut second = first;
-        if *crossover != Crossover::None && stream.uniform_f64() < self.config.crossover_rate {
+        if *crossover != Crossover::None && stream.uniform_f64() < config.crossover_rate {
             second = select(stream);
-            if let Some(other) = self.population.get(second) {
-                crossover.apply(genes, other, bounds, stream);
-            }
+            crossover.apply(genes, old.get(second).unwrap_or_default(), bounds, stream);
         }
         let step = mutation.next_step(self.steps.get(first).copied().unwrap_or_default(), stream);
         mutation.apply(genes, step, bounds, rate_factors, stream);
         ([first as u32, second as u32], step)
     }
-
-    /// Bytes of a state at a generation.
-    fn state_length(&self, generation: u32) -> usize {
-        let parents = if generation == 0 { 0 } else { 8 * self.population.len() };
-        let steps = self.config.mutation.smallest().map_or(0, |_| 8 * self.steps.len());
-        4 + parents + steps + 8 * self.population.as_slice().len()
-    }
 }
 
-impl Strategy<f64> for RealGa {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for RealGaState {
+    type Gene = f64;
+    type Config = RealGaConfig;
+    const HAS_PARENTS: bool = true;
+
+    fn start(step: &Step<'_, RealGaConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        let RealGaConfig { bounds, population, mutation, .. } = step.config;
+        let selector = step.config.selector()?;
+        let steps = vec![mutation.first_step(); *population];
+        Ok((Self { selector, parents: Vec::new(), steps }, uniform(step, *population, bounds)?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let generation = next_generation(self.generation, self.population.len(), fitness)?;
-        let order = Fitness::ranking(fitness);
-        let mut population = Population::new(self.population.len(), self.population.genome_len())?;
-        let mut parents = Vec::with_capacity(population.len());
-        let mut steps = Vec::with_capacity(population.len());
-        for (individual, genes) in population.iter_mut().enumerate() {
-            let elite = order.get(individual).filter(|_| individual < self.config.elites);
-            if let Some((&parent, old)) = elite.and_then(|parent| Some((parent, self.population.get(*parent)?))) {
-                genes.copy_from_slice(old);
-                parents.push([parent as u32; 2]);
-                steps.push(self.steps.get(parent).copied().unwrap_or_default());
+    fn advance(&mut self, step: &Step<'_, RealGaConfig>, fitness: &[Fitness], genomes: &mut Population<f64>) {
+        let (order, old) = (Fitness::ranking(fitness), genomes.clone());
+        let (mut parents, mut steps) = (Vec::with_capacity(2 * old.len()), Vec::with_capacity(old.len()));
+        for (individual, genes) in genomes.iter_mut().enumerate() {
+            if let Some(&elite) = order.get(individual).filter(|_| individual < step.config.elites) {
+                genes.copy_from_slice(old.get(elite).unwrap_or_default());
+                parents.extend([elite as u32; 2]);
+                steps.push(self.steps.get(elite).copied().unwrap_or_default());
             } else {
-                let mut stream = Stream::new(self.seed, Domain::Mutation, 0, individual as u32, generation);
-                let (own, step) = self.make(genes, &order, &mut stream);
-                parents.push(own);
-                steps.push(step);
+                let (pair, size) = self.make(step.config, genes, &old, &order, &mut step.stream(individual));
+                parents.extend(pair);
+                steps.push(size);
             }
         }
-        (self.generation, self.parents, self.steps, self.population) = (generation, parents, steps, population);
-        Ok(())
+        (self.parents, self.steps) = (parents, steps);
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn record_kind(_: &RealGaConfig) -> RecordKind {
         RecordKind::Order
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn genealogy(&self) -> Option<&dyn Genealogy> {
-        Some(self)
-    }
-
     /// The mean step size, as a share of the range, of the generation that waits for its fitness.
-    fn diagnostics(&self) -> Vec<f64> {
+    fn diagnostics(&self, _: &RealGaConfig) -> Vec<f64> {
         vec![self.steps.iter().sum::<f64>() / self.steps.len().max(1) as f64]
     }
-}
 
-impl Genealogy for RealGa {
-    fn parents_of(&self, individual: usize) -> Vec<usize> {
-        let mut parents: Vec<usize> =
-            self.parents.get(individual).into_iter().flatten().map(|parent| *parent as usize).collect();
+    fn parents_of(&self, _: &Step<'_, RealGaConfig>, individual: usize) -> Vec<usize> {
+        let pair = self.parents.chunks_exact(2).nth(individual).unwrap_or_default();
+        let mut parents: Vec<usize> = pair.iter().map(|parent| *parent as usize).collect();
         parents.dedup();
         parents
     }
-}
 
-impl Snapshot for RealGa {
-    fn snapshot_interval(&self) -> u32 {
-        between_states(&self.population)
+    fn snapshot_interval(genomes: &Population<f64>) -> u32 {
+        between_states(genomes)
     }
 
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(self.state_length(self.generation));
-        state.extend(self.generation.to_le_bytes());
-        state.extend(self.parents.iter().flatten().flat_map(|parent| parent.to_le_bytes()));
-        if self.config.mutation.smallest().is_some() {
-            push_reals(&mut state, &self.steps);
-        }
-        push_reals(&mut state, self.population.as_slice());
-        state
+    fn state_length(&self, step: &Step<'_, RealGaConfig>, genes: usize) -> usize {
+        let parents = if step.generation == 0 { 0 } else { 8 * step.config.population };
+        let steps = step.config.mutation.smallest().map_or(0, |_| 8 * step.config.population);
+        parents + steps + 8 * genes
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let generation = StateReader::new(state, state.len())?.u32()?;
-        let mut reader = StateReader::new(state, self.state_length(generation))?;
-        reader.u32()?;
-        let size = self.population.len();
-        let mut parents = Vec::new();
-        for _ in 0..if generation == 0 { 0 } else { size } {
-            let pair = [reader.u32()?, reader.u32()?];
-            if let Some(wrong) = pair.into_iter().find(|parent| *parent as usize >= size) {
-                return Err(EvoError::no_such_individual(wrong as usize, size));
-            }
-            parents.push(pair);
+    fn save(&self, config: &RealGaConfig, genomes: &Population<f64>, saved: &mut Vec<u8>) {
+        push_indices(saved, &self.parents);
+        if config.mutation.smallest().is_some() {
+            push_reals(saved, &self.steps);
         }
-        let mut steps = self.steps.clone();
-        if let Some(smallest) = self.config.mutation.smallest() {
-            reader.reals(&mut steps)?;
-            if let Some(wrong) = steps.iter().find(|step| !(smallest..=1.0).contains(*step)) {
-                return Err(EvoError::state_content("a step size", wrong.to_bits()));
-            }
+        push_reals(saved, genomes.as_slice());
+    }
+
+    fn restore(
+        &mut self,
+        step: &Step<'_, RealGaConfig>,
+        reader: &mut StateReader<'_>,
+        genomes: &mut Population<f64>,
+    ) -> Result<(), EvoError> {
+        let parents = if step.generation == 0 { 0 } else { 2 * genomes.len() };
+        self.parents = reader.individuals(parents, genomes.len())?;
+        if let Some(smallest) = step.config.mutation.smallest() {
+            reader.row(&mut self.steps, "a step size", [smallest, 1.0])?;
         }
-        let mut population = Population::new(size, self.population.genome_len())?;
-        reader.reals(population.as_mut_slice())?;
-        check_within(&population, &self.config.bounds)?;
-        (self.generation, self.parents, self.steps, self.population) = (generation, parents, steps, population);
-        Ok(())
+        reader.reals(genomes.as_mut_slice())?;
+        check_within(genomes, &step.config.bounds)
     }
 }

@@ -7,10 +7,11 @@ use farsa_num::{Domain, Stream};
 use crate::error::{EvoError, check_rate, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
-use crate::real::bounds::{check_bounds, check_within, draw_within};
+use crate::real::bounds::{check_bounds, check_within, uniform};
 use crate::real::mutation::RealMutation;
-use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Search, Step};
+use crate::snapshot::{StateReader, between_states, push_indices, push_reals};
+use crate::strategy::RecordKind;
 
 /// The configuration of [`SteadyState`].
 #[derive(Clone, Debug, PartialEq)]
@@ -76,140 +77,84 @@ impl SteadyStateConfig {
 /// assert!(champion.fitness.get() > -0.01);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+pub type SteadyState = Search<SteadyStateParents>;
+
+/// The state of [`SteadyState`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct SteadyState {
-    config: SteadyStateConfig,
-    seed: u64,
-    generation: u32,
+pub struct SteadyStateParents {
     /// The parent of each individual, itself for one that stayed. Empty in generation 0.
     parents: Vec<u32>,
-    population: Population<f64>,
 }
 
-impl SteadyState {
-    /// A search at its random initial generation.
-    ///
-    /// # Errors
-    /// The errors of [`SteadyStateConfig::validate`].
-    pub fn new(config: SteadyStateConfig, seed: u64) -> Result<Self, EvoError> {
-        config.validate()?;
-        let mut population = Population::new(config.population, config.bounds.len())?;
-        for (individual, genes) in population.iter_mut().enumerate() {
-            let mut stream = Stream::new(seed, Domain::InitialGenome, 0, individual as u32, 0);
-            draw_within(genes, &config.bounds, &mut stream);
-        }
-        Ok(Self { config, seed, generation: 0, parents: Vec::new(), population })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &SteadyStateConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// The fitness that individuals of the current generation are ranked by.
-    fn noisy(&self, fitness: &[Fitness]) -> Vec<Fitness> {
-        let noisy = |(individual, fitness): (usize, &Fitness)| {
-            let mut stream = Stream::new(self.seed, Domain::Mutation, 1, individual as u32, self.generation);
-            Fitness::nan_as_failed(fitness.get() + self.config.noise * (2.0 * stream.uniform_f64() - 1.0))
-        };
-        fitness.iter().enumerate().map(noisy).collect()
-    }
-
-    /// Bytes of a state at a generation.
-    fn state_length(&self, generation: u32) -> usize {
-        let parents = if generation == 0 { 0 } else { 4 * self.population.len() };
-        4 + parents + 8 * self.population.as_slice().len()
-    }
+/// The fitness that the individuals of a generation are ranked by.
+fn noisy(step: &Step<'_, SteadyStateConfig>, fitness: &[Fitness]) -> Vec<Fitness> {
+    let noisy = |(individual, fitness): (usize, &Fitness)| {
+        let mut stream = Stream::new(step.seed, Domain::Mutation, 1, individual as u32, step.generation);
+        Fitness::nan_as_failed(fitness.get() + step.config.noise * (2.0 * stream.uniform_f64() - 1.0))
+    };
+    fitness.iter().enumerate().map(noisy).collect()
 }
 
-impl Strategy<f64> for SteadyState {
-    fn generation(&self) -> u32 {
-        self.generation
+impl Algorithm for SteadyStateParents {
+    type Gene = f64;
+    type Config = SteadyStateConfig;
+    const HAS_PARENTS: bool = true;
+
+    fn start(step: &Step<'_, SteadyStateConfig>) -> Result<(Self, Population<f64>), EvoError> {
+        step.config.validate()?;
+        Ok((Self { parents: Vec::new() }, uniform(step, step.config.population, &step.config.bounds)?))
     }
 
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let generation = next_generation(self.generation, self.population.len(), fitness)?;
+    fn advance(&mut self, step: &Step<'_, SteadyStateConfig>, fitness: &[Fitness], genomes: &mut Population<f64>) {
+        let SteadyStateConfig { rate, sigma, noise, .. } = *step.config;
         let order =
-            if self.config.noise > 0.0 { Fitness::ranking(&self.noisy(fitness)) } else { Fitness::ranking(fitness) };
+            if noise > 0.0 { Fitness::ranking(&noisy(&step.previous(), fitness)) } else { Fitness::ranking(fitness) };
         let (better, worse) = order.split_at(order.len() / 2);
-        let mut parents: Vec<u32> = (0..order.len() as u32).collect();
+        self.parents = (0..order.len() as u32).collect();
         for (&parent, &place) in better.iter().zip(worse) {
-            if let Some(slot) = parents.get_mut(place) {
+            if let Some(slot) = self.parents.get_mut(place) {
                 *slot = parent as u32;
             }
         }
-        let SteadyStateConfig { rate, sigma, .. } = self.config;
         let mutation = RealMutation::Gaussian { rate, sigma };
-        let mut population = self.population.clone();
-        for (individual, (genes, &parent)) in population.iter_mut().zip(&parents).enumerate() {
-            if let Some(from) = self.population.get(parent as usize).filter(|_| parent as usize != individual) {
+        let old = genomes.clone();
+        for (individual, (genes, &parent)) in genomes.iter_mut().zip(&self.parents).enumerate() {
+            if let Some(from) = old.get(parent as usize).filter(|_| parent as usize != individual) {
                 genes.copy_from_slice(from);
-                let mut stream = Stream::new(self.seed, Domain::Mutation, 0, individual as u32, generation);
-                mutation.apply(genes, sigma, &self.config.bounds, &[], &mut stream);
+                mutation.apply(genes, sigma, &step.config.bounds, &[], &mut step.stream(individual));
             }
         }
-        (self.generation, self.parents, self.population) = (generation, parents, population);
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
-        if self.config.noise > 0.0 { RecordKind::Values } else { RecordKind::Order }
+    fn record_kind(config: &SteadyStateConfig) -> RecordKind {
+        if config.noise > 0.0 { RecordKind::Values } else { RecordKind::Order }
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn genealogy(&self) -> Option<&dyn Genealogy> {
-        Some(self)
-    }
-}
-
-impl Genealogy for SteadyState {
-    fn parents_of(&self, individual: usize) -> Vec<usize> {
+    fn parents_of(&self, _: &Step<'_, SteadyStateConfig>, individual: usize) -> Vec<usize> {
         self.parents.get(individual).map(|&parent| parent as usize).into_iter().collect()
     }
-}
 
-impl Snapshot for SteadyState {
-    fn snapshot_interval(&self) -> u32 {
-        between_states(&self.population)
+    fn snapshot_interval(genomes: &Population<f64>) -> u32 {
+        between_states(genomes)
     }
 
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(self.state_length(self.generation));
-        state.extend(self.generation.to_le_bytes());
-        state.extend(self.parents.iter().flat_map(|parent| parent.to_le_bytes()));
-        push_reals(&mut state, self.population.as_slice());
-        state
+    fn state_length(&self, step: &Step<'_, SteadyStateConfig>, genes: usize) -> usize {
+        8 * genes + if step.generation == 0 { 0 } else { 4 * step.config.population }
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let generation = StateReader::new(state, state.len())?.u32()?;
-        let mut reader = StateReader::new(state, self.state_length(generation))?;
-        reader.u32()?;
-        let size = self.population.len();
-        let mut parents = Vec::new();
-        for _ in 0..if generation == 0 { 0 } else { size } {
-            let parent = reader.u32()?;
-            if parent as usize >= size {
-                return Err(EvoError::no_such_individual(parent as usize, size));
-            }
-            parents.push(parent);
-        }
-        let mut population = Population::new(size, self.population.genome_len())?;
-        reader.reals(population.as_mut_slice())?;
-        check_within(&population, &self.config.bounds)?;
-        (self.generation, self.parents, self.population) = (generation, parents, population);
-        Ok(())
+    fn save(&self, _: &SteadyStateConfig, genomes: &Population<f64>, saved: &mut Vec<u8>) {
+        push_indices(saved, &self.parents);
+        push_reals(saved, genomes.as_slice());
+    }
+
+    fn restore(
+        &mut self,
+        step: &Step<'_, SteadyStateConfig>,
+        reader: &mut StateReader<'_>,
+        genomes: &mut Population<f64>,
+    ) -> Result<(), EvoError> {
+        self.parents = reader.individuals(if step.generation == 0 { 0 } else { genomes.len() }, genomes.len())?;
+        reader.reals(genomes.as_mut_slice())?;
+        check_within(genomes, &step.config.bounds)
     }
 }

@@ -9,8 +9,11 @@ use crate::fitness::Fitness;
 use crate::population::Population;
 #[cfg(feature = "serde")]
 use crate::saved::{SavedMutation, SavedStrategy};
-use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
-use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+use crate::search::{Algorithm, Search, Step};
+#[cfg(feature = "serde")]
+use crate::snapshot::Snapshot;
+use crate::snapshot::{StateReader, largest, push_genes, push_indices};
+use crate::strategy::RecordKind;
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_bits};
 
 /// The configuration of [`TruncationGa`](crate::words::TruncationGa).
@@ -131,143 +134,100 @@ impl From<GaConfig> for SavedConfig {
 /// assert!(evolution.ask().iter().next().is_some_and(|genes| genes[0].abs_diff(20_000) < 200));
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+pub type TruncationGa = Search<TruncationState>;
+
+/// The state of [`TruncationGa`].
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<GaConfig>"))]
-pub struct TruncationGa {
-    config: GaConfig,
+pub struct TruncationState {
     mutation: BitMutation,
-    seed: u64,
-    /// Which of several populations of a search this is: the trial of its streams.
+    /// The number of the population among those of a search: the trial of its streams.
     number: u32,
-    generation: u32,
     /// The individuals selected from the previous generation, best first \[parents\]. Empty in generation 0.
     selected: Vec<u32>,
-    population: Population,
 }
 
 impl TruncationGa {
-    /// An evolution at its random initial generation.
-    ///
-    /// # Errors
-    /// The errors of [`GaConfig::validate`].
-    pub fn new(config: GaConfig, seed: u64) -> Result<Self, EvoError> {
-        Self::numbered(config, seed, 0)
-    }
-
-    /// The same as the population with a number among several.
+    /// Starts the search of one of several populations, by its number.
     pub(crate) fn numbered(config: GaConfig, seed: u64, number: u32) -> Result<Self, EvoError> {
-        config.validate()?;
-        let mutation = config.bit_mutation()?;
-        let mut population = Population::new(config.population, config.genes)?;
-        for (individual, genes) in population.iter_mut().enumerate() {
-            let mut stream = Stream::new(seed, Domain::InitialGenome, number, individual as u32, 0);
-            randomize_bits(genes, config.gene_bits, &mut stream);
-        }
-        Ok(Self { config, mutation, seed, number, generation: 0, selected: Vec::new(), population })
-    }
-
-    /// The configuration.
-    pub fn config(&self) -> &GaConfig {
-        &self.config
-    }
-
-    /// The seed.
-    pub fn seed(&self) -> u64 {
-        self.seed
+        let (state, population) = TruncationState::numbered(&Step { config: &config, seed, generation: 0 }, number)?;
+        Ok(Self { config, seed, generation: 0, state, population })
     }
 
     /// The individuals selected from the previous generation, best first \[parents\]. Empty in generation 0.
     pub fn selected(&self) -> &[u32] {
-        &self.selected
-    }
-
-    /// Bytes of a state at a generation.
-    fn state_length(&self, generation: u32) -> usize {
-        let parents = if generation == 0 { 0 } else { self.config.parents };
-        4 + 4 * parents + 2 * self.population.as_slice().len()
+        &self.state.selected
     }
 }
 
-impl Strategy for TruncationGa {
-    fn generation(&self) -> u32 {
-        self.generation
+impl TruncationState {
+    fn numbered(step: &Step<'_, GaConfig>, number: u32) -> Result<(Self, Population), EvoError> {
+        let config = step.config;
+        config.validate()?;
+        let mut population = Population::new(config.population, config.genes)?;
+        for (individual, genes) in population.iter_mut().enumerate() {
+            let mut stream = Stream::new(step.seed, Domain::InitialGenome, number, individual as u32, 0);
+            randomize_bits(genes, config.gene_bits, &mut stream);
+        }
+        Ok((Self { mutation: config.bit_mutation()?, number, selected: Vec::new() }, population))
+    }
+}
+
+impl Algorithm for TruncationState {
+    type Gene = u16;
+    type Config = GaConfig;
+    const HAS_PARENTS: bool = true;
+
+    fn start(step: &Step<'_, GaConfig>) -> Result<(Self, Population), EvoError> {
+        Self::numbered(step, 0)
     }
 
-    fn ask(&self) -> &Population {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let config = self.config;
-        let generation = next_generation(self.generation, config.population, fitness)?;
-        let ranking = Fitness::ranking(fitness);
-        let selected: Vec<u32> = ranking.iter().take(config.parents).map(|&parent| parent as u32).collect();
-        let mut children = Population::new(config.population, config.genes)?;
-        let parents = selected.iter().filter_map(|&parent| self.population.get(parent as usize));
+    fn advance(&mut self, step: &Step<'_, GaConfig>, fitness: &[Fitness], genomes: &mut Population) {
+        let (config, old) = (step.config, genomes.clone());
+        self.selected = Fitness::ranking(fitness).iter().take(config.parents).map(|&parent| parent as u32).collect();
+        let parents = self.selected.iter().filter_map(|&parent| old.get(parent as usize));
         let heirs = parents.flat_map(|parent| core::iter::repeat_n(parent, config.copies()));
-        for (individual, (child, parent)) in children.iter_mut().zip(heirs).enumerate() {
+        for (individual, (child, parent)) in genomes.iter_mut().zip(heirs).enumerate() {
             child.copy_from_slice(parent);
             if !individual.is_multiple_of(config.copies()) {
-                let mut stream = Stream::new(self.seed, Domain::Mutation, self.number, individual as u32, generation);
+                let (trial, individual) = (self.number, individual as u32);
+                let mut stream = Stream::new(step.seed, Domain::Mutation, trial, individual, step.generation);
                 self.mutation.apply(child, &mut stream);
             }
         }
-        (self.generation, self.selected, self.population) = (generation, selected, children);
-        Ok(())
     }
 
-    fn record_kind(&self) -> RecordKind {
+    fn record_kind(_: &GaConfig) -> RecordKind {
         RecordKind::Order
     }
 
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    fn genealogy(&self) -> Option<&dyn Genealogy> {
-        Some(self)
-    }
-}
-
-impl Genealogy for TruncationGa {
-    fn parents_of(&self, individual: usize) -> Vec<usize> {
-        let parent = self.selected.get(individual / self.config.copies());
+    fn parents_of(&self, step: &Step<'_, GaConfig>, individual: usize) -> Vec<usize> {
+        let parent = self.selected.get(individual / step.config.copies());
         parent.map(|&parent| parent as usize).into_iter().collect()
     }
-}
 
-impl Snapshot for TruncationGa {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(self.state_length(self.generation));
-        state.extend(self.generation.to_le_bytes());
-        state.extend(self.selected.iter().flat_map(|parent| parent.to_le_bytes()));
-        push_genes(&mut state, &self.population);
-        state
+    fn state_length(&self, step: &Step<'_, GaConfig>, genes: usize) -> usize {
+        2 * genes + if step.generation == 0 { 0 } else { 4 * step.config.parents }
     }
 
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let generation = StateReader::new(state, state.len())?.u32()?;
-        let mut reader = StateReader::new(state, self.state_length(generation))?;
-        reader.u32()?;
-        let mut selected: Vec<u32> = Vec::new();
-        for _ in 0..if generation == 0 { 0 } else { self.config.parents } {
-            let parent = reader.u32()?;
-            let (individual, population) = (parent as usize, self.config.population);
-            if individual >= population {
-                return Err(EvoError::no_such_individual(individual, population));
-            }
-            selected.push(parent);
-        }
-        let mut sorted = selected.clone();
+    fn save(&self, _: &GaConfig, genomes: &Population, saved: &mut Vec<u8>) {
+        push_indices(saved, &self.selected);
+        push_genes(saved, genomes);
+    }
+
+    fn restore(
+        &mut self,
+        step: &Step<'_, GaConfig>,
+        reader: &mut StateReader<'_>,
+        genomes: &mut Population,
+    ) -> Result<(), EvoError> {
+        let parents = if step.generation == 0 { 0 } else { step.config.parents };
+        self.selected = reader.individuals(parents, genomes.len())?;
+        let mut sorted = self.selected.clone();
         sorted.sort_unstable();
         if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(EvoError::selected_twice(twice[0] as usize));
         }
-        let mut population = Population::new(self.config.population, self.config.genes)?;
-        reader.genes(&mut population, largest(self.config.gene_bits))?;
-        (self.generation, self.selected, self.population) = (generation, selected, population);
-        Ok(())
+        reader.genes(genomes, largest(step.config.gene_bits))
     }
 }
 
@@ -275,6 +235,14 @@ impl Snapshot for TruncationGa {
 impl serde::Serialize for TruncationGa {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         SavedStrategy::new(self.config, self.seed, self).serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for TruncationGa {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let saved = SavedStrategy::<GaConfig>::deserialize(deserializer)?;
+        Self::try_from(saved).map_err(serde::de::Error::custom)
     }
 }
 
@@ -293,6 +261,7 @@ impl TryFrom<SavedStrategy<GaConfig>> for TruncationGa {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::strategy::Strategy;
 
     fn refused(change: impl FnOnce(&mut GaConfig)) -> EvoError {
         let mut config = GaConfig::new(10);

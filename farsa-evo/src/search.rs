@@ -1,0 +1,235 @@
+//! The frame that searches of one population share: configuration, seed, generation and genomes.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
+
+/// The configuration, the seed and the generation for which an algorithm makes genomes.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a, C> {
+    pub(crate) config: &'a C,
+    pub(crate) seed: u64,
+    pub(crate) generation: u32,
+}
+
+impl<C> Step<'_, C> {
+    /// The stream of an individual, or of a pair.
+    pub(crate) fn stream(&self, individual: usize) -> Stream {
+        stream(self.seed, self.generation, individual)
+    }
+
+    /// The step that made the genomes whose fitness is reported.
+    pub(crate) fn previous(&self) -> Self {
+        Self { generation: self.generation.saturating_sub(1), ..*self }
+    }
+}
+
+/// The stream of an individual of a generation.
+pub(crate) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
+    let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
+    Stream::new(seed, domain, 0, individual as u32, generation)
+}
+
+/// A row of numbers that is restored, with its name in an error and its range.
+pub(crate) type Row<'r> = (&'r mut [f64], &'static str, [f64; 2]);
+
+/// An algorithm of a [`Search`]: its state, which changes from generation to generation, without the genomes.
+pub trait Algorithm: Clone + fmt::Debug + PartialEq {
+    /// The type of a gene.
+    type Gene: Gene;
+    /// The configuration.
+    type Config: Clone + fmt::Debug + PartialEq;
+    /// True if individuals have parents.
+    const HAS_PARENTS: bool = false;
+
+    /// Checks the configuration and returns the first state with its genomes, which [`draw`](Self::draw) may change.
+    ///
+    /// # Errors
+    /// The first wrong number.
+    fn start(step: &Step<'_, Self::Config>) -> Result<(Self, Population<Self::Gene>), EvoError>;
+
+    /// Takes the fitness \[individuals\] of the previous genomes and replaces them, unless [`draw`](Self::draw) does.
+    fn advance(&mut self, step: &Step<'_, Self::Config>, fitness: &[Fitness], genomes: &mut Population<Self::Gene>);
+
+    /// Draws the genomes of an algorithm whose genomes follow from its state. By default it leaves them unchanged.
+    fn draw(&mut self, _step: &Step<'_, Self::Config>, _genomes: &mut Population<Self::Gene>) {}
+
+    /// The numbers of a state that has no others.
+    fn rows(&self) -> Vec<&[f64]> {
+        Vec::new()
+    }
+
+    /// The same rows, to be restored.
+    fn rows_mut(&mut self) -> Vec<Row<'_>> {
+        Vec::new()
+    }
+
+    /// Bytes of a state that is saved at a step, given the number of genes of all individuals.
+    fn state_length(&self, _step: &Step<'_, Self::Config>, _genes: usize) -> usize {
+        self.rows().iter().map(|row| 8 * row.len()).sum()
+    }
+
+    /// Appends the state, with the genomes if they do not follow from it.
+    fn save(&self, _config: &Self::Config, _genomes: &Population<Self::Gene>, saved: &mut Vec<u8>) {
+        self.rows().into_iter().for_each(|row| push_reals(saved, row));
+    }
+
+    /// Restores a state. On error the state is incomplete.
+    ///
+    /// # Errors
+    /// [`EvoError::State`].
+    fn restore(
+        &mut self,
+        _step: &Step<'_, Self::Config>,
+        reader: &mut StateReader<'_>,
+        _genomes: &mut Population<Self::Gene>,
+    ) -> Result<(), EvoError> {
+        self.rows_mut().into_iter().try_for_each(|(row, what, range)| reader.row(row, what, range))
+    }
+
+    /// The content of a record that rebuilds a generation.
+    fn record_kind(_config: &Self::Config) -> RecordKind {
+        RecordKind::Values
+    }
+
+    /// Numbers about the latest generation.
+    fn diagnostics(&self, _config: &Self::Config) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The parents of an individual, as indices in the previous generation.
+    fn parents_of(&self, _step: &Step<'_, Self::Config>, _individual: usize) -> Vec<usize> {
+        Vec::new()
+    }
+
+    /// The largest number of generations between two states of a record.
+    fn snapshot_interval(_genomes: &Population<Self::Gene>) -> u32 {
+        u32::MAX
+    }
+}
+
+/// A search by an algorithm `A`, with its configuration, seed, generation and genomes.
+///
+/// Use it by the names of its kinds, such as [`RealGa`](crate::real::RealGa), [`Snes`](crate::gradient::Snes) and
+/// [`TruncationGa`](crate::words::TruncationGa).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Search<A: Algorithm> {
+    pub(crate) config: A::Config,
+    pub(crate) seed: u64,
+    pub(crate) generation: u32,
+    pub(crate) state: A,
+    pub(crate) population: Population<A::Gene>,
+}
+
+impl<A: Algorithm> Search<A> {
+    /// Starts a search at its first generation.
+    ///
+    /// # Errors
+    /// [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first wrong number of the configuration.
+    pub fn new(config: A::Config, seed: u64) -> Result<Self, EvoError> {
+        let step = Step { config: &config, seed, generation: 0 };
+        let (mut state, mut population) = A::start(&step)?;
+        state.draw(&step, &mut population);
+        Ok(Self { config, seed, generation: 0, state, population })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &A::Config {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn step(&self, generation: u32) -> Step<'_, A::Config> {
+        Step { config: &self.config, seed: self.seed, generation }
+    }
+
+    /// Bytes of a saved state: the generation, then the state of the algorithm.
+    fn state_length(&self, generation: u32) -> usize {
+        4 + self.state.state_length(&self.step(generation), self.population.as_slice().len())
+    }
+
+    /// Reads a saved state. On error the search is incomplete.
+    fn read(&mut self, saved: &[u8]) -> Result<(), EvoError> {
+        let generation = saved.first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes));
+        let mut reader = StateReader::new(saved, self.state_length(generation))?;
+        self.generation = reader.u32()?;
+        let step = Step { config: &self.config, seed: self.seed, generation };
+        self.state.restore(&step, &mut reader, &mut self.population)?;
+        self.state.draw(&step, &mut self.population);
+        Ok(())
+    }
+}
+
+impl<A: Algorithm> Strategy<A::Gene> for Search<A> {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<A::Gene> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.generation = next_generation(self.generation, self.population.len(), fitness)?;
+        let step = Step { config: &self.config, seed: self.seed, generation: self.generation };
+        self.state.advance(&step, fitness, &mut self.population);
+        self.state.draw(&step, &mut self.population);
+        Ok(())
+    }
+
+    fn record_kind(&self) -> RecordKind {
+        A::record_kind(&self.config)
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        if A::HAS_PARENTS { Some(self) } else { None }
+    }
+
+    fn diagnostics(&self) -> Vec<f64> {
+        self.state.diagnostics(&self.config)
+    }
+}
+
+impl<A: Algorithm> Genealogy for Search<A> {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        self.state.parents_of(&self.step(self.generation), individual)
+    }
+}
+
+impl<A: Algorithm> Snapshot for Search<A> {
+    fn snapshot_interval(&self) -> u32 {
+        A::snapshot_interval(&self.population)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let mut saved = Vec::with_capacity(self.state_length(self.generation));
+        saved.extend(self.generation.to_le_bytes());
+        self.state.save(&self.config, &self.population, &mut saved);
+        saved
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), EvoError> {
+        let before = self.save();
+        let restored = self.read(saved);
+        if restored.is_err() {
+            self.read(&before)?;
+        }
+        restored
+    }
+}
