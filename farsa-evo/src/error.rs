@@ -229,7 +229,7 @@ pub(crate) fn check_range(
     check_setting((range[0]..=range[1]).contains(&value), field, value, allowed)
 }
 
-/// Returns an error for a probability outside 0 to 1.
-pub(crate) fn check_rate(field: &'static str, rate: f64) -> Result<(), EvoError> {
-    check_range(field, rate, [0.0, 1.0], "0 to 1")
+/// Returns an error for a probability or a share outside 0 to 1.
+pub(crate) fn check_share(field: &'static str, share: f64) -> Result<(), EvoError> {
+    check_range(field, share, [0.0, 1.0], "0 to 1")
 }

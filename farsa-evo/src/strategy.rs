@@ -167,19 +167,13 @@ pub trait Strategy<G: Gene = u16> {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
+    /// [`EvoError::Shape`] for a strategy that requires scores. The errors of [`evolve`](Strategy::evolve).
     fn maximize(&mut self, generations: u32, mut evaluate: impl FnMut(&[G]) -> f64) -> Result<Champion<G>, EvoError>
     where
         Self: Sized,
     {
-        let mut champion = None;
-        for _ in 0..generations {
-            let fitness: Vec<Fitness> =
-                self.ask().iter().map(|genes| Fitness::nan_as_failed(evaluate(genes))).collect();
-            Champion::keep(&mut champion, self.generation(), self.ask(), &fitness)?;
-            self.tell(&fitness)?;
-        }
-        champion.ok_or(EvoError::NoBest { generation: self.generation() })
+        self.score_shape().check(ScoreShape::FITNESS)?;
+        self.evolve(generations, |genes, row| row.fill(evaluate(genes)))
     }
 }
 

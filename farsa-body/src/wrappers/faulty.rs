@@ -6,16 +6,16 @@ use core::ops::{Range, RangeBounds};
 
 use crate::channel::{ChannelError, finite};
 use crate::ports::Channels;
-use crate::wrappers::wrap::{Filter, Wrapped, select, wrapper};
+use crate::wrappers::wrap::{Filter, Wrapped, select};
 
 /// Sets some channels to 0 and passes the others unchanged.
 ///
 /// Note that the wrapped sensor is still read, and a wrapped motor is still driven with 0 on these channels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lesioned<T, M>(Wrapped<T, Lesion, M>);
+pub type Lesioned<T, M> = Wrapped<T, Lesion, M>;
 
+/// The silent channels of [`Lesioned`].
 #[derive(Clone, Debug, PartialEq)]
-struct Lesion {
+pub struct Lesion {
     which: Range<usize>,
 }
 
@@ -26,8 +26,6 @@ impl Filter for Lesion {
         }
     }
 }
-
-wrapper!(Lesioned);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Lesioned<T, Vec<f32>> {
@@ -50,7 +48,7 @@ impl<T: Channels, M: AsMut<[f32]>> Lesioned<T, M> {
     /// too short.
     pub fn new_in(inner: T, which: impl RangeBounds<usize>, memory: M) -> Result<Self, ChannelError> {
         let which = select(&which, inner.channels())?;
-        Wrapped::new(inner, Lesion { which }, memory).map(Self)
+        Wrapped::over(inner, Lesion { which }, memory)
     }
 }
 
@@ -66,11 +64,11 @@ pub enum StuckAt {
 }
 
 /// Passes values unchanged until some of the channels get stuck.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stuck<T, M>(Wrapped<T, Sticking, M>);
+pub type Stuck<T, M> = Wrapped<T, Sticking, M>;
 
+/// The channels of [`Stuck`] and their state.
 #[derive(Clone, Debug, PartialEq)]
-struct Sticking {
+pub struct Sticking {
     which: Range<usize>,
     at: StuckAt,
     after: u32,
@@ -97,8 +95,6 @@ impl Filter for Sticking {
         self.broken = false;
     }
 }
-
-wrapper!(Stuck);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Stuck<T, Vec<f32>> {
@@ -131,13 +127,13 @@ impl<T: Channels, M: AsMut<[f32]>> Stuck<T, M> {
         if let StuckAt::Value(value) = at {
             finite("value", value)?;
         }
-        Wrapped::new(inner, Sticking { which, at, after, ticks: 0, broken: false }, memory).map(Self)
+        Wrapped::over(inner, Sticking { which, at, after, ticks: 0, broken: false }, memory)
     }
 }
 
 impl<T, M> Stuck<T, M> {
     /// Makes the channels stuck from the next tick until the end of the episode.
     pub fn stick(&mut self) {
-        self.0.filter.broken = true;
+        self.filter.broken = true;
     }
 }

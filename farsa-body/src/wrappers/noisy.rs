@@ -7,7 +7,7 @@ use farsa_num::Stream;
 
 use crate::channel::ChannelError;
 use crate::ports::Channels;
-use crate::wrappers::wrap::{Filter, Wrapped, wrapper};
+use crate::wrappers::wrap::{Filter, Wrapped};
 
 /// The distribution of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +24,11 @@ pub enum Noise {
 /// All numbers are drawn from one stream in the order of ticks and channels. A reset rewinds the stream. Use
 /// [`Noisy::reseed`] if the noise should differ between episodes. The result is not clamped. Wrap it in
 /// [`crate::wrappers::Saturated`] if it must stay within a range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noisy<T, M>(Wrapped<T, Source, M>);
+pub type Noisy<T, M> = Wrapped<T, Source, M>;
 
+/// The noise of [`Noisy`] with its stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Source {
+pub struct Source {
     noise: Noise,
     start: Stream,
     stream: Stream,
@@ -50,8 +50,6 @@ impl Filter for Source {
         self.stream = self.start;
     }
 }
-
-wrapper!(Noisy);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Noisy<T, Vec<f32>> {
@@ -79,14 +77,14 @@ impl<T: Channels, M: AsMut<[f32]>> Noisy<T, M> {
         if !value.is_finite() || value < 0.0 {
             return Err(ChannelError::Value { field, value });
         }
-        Wrapped::new(inner, Source { noise, start: stream, stream }, memory).map(Self)
+        Wrapped::over(inner, Source { noise, start: stream, stream }, memory)
     }
 }
 
 impl<T, M> Noisy<T, M> {
     /// Replaces the stream of random numbers. It is used from its beginning now and after every reset.
     pub fn reseed(&mut self, stream: Stream) {
-        self.0.filter.start = stream;
-        self.0.filter.stream = stream;
+        self.filter.start = stream;
+        self.filter.stream = stream;
     }
 }

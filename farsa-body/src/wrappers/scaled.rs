@@ -7,14 +7,14 @@ use farsa_num::Scalar;
 
 use crate::channel::{ChannelError, finite, finite_range};
 use crate::ports::Channels;
-use crate::wrappers::wrap::{Filter, Wrapped, wrapper};
+use crate::wrappers::wrap::{Filter, Wrapped};
 
 /// Replaces each value x of a sensor or motor by gain * x + offset.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scaled<T, M>(Wrapped<T, Scale, M>);
+pub type Scaled<T, M> = Wrapped<T, Scale, M>;
 
+/// The gain and the offset of [`Scaled`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Scale {
+pub struct Scale {
     gain: f32,
     offset: f32,
 }
@@ -26,8 +26,6 @@ impl Filter for Scale {
         }
     }
 }
-
-wrapper!(Scaled);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Scaled<T, Vec<f32>> {
@@ -49,16 +47,16 @@ impl<T: Channels, M: AsMut<[f32]>> Scaled<T, M> {
     /// short.
     pub fn new_in(inner: T, gain: f32, offset: f32, memory: M) -> Result<Self, ChannelError> {
         let scale = Scale { gain: finite("gain", gain)?, offset: finite("offset", offset)? };
-        Wrapped::new(inner, scale, memory).map(Self)
+        Wrapped::over(inner, scale, memory)
     }
 }
 
 /// Clamps each value of a sensor or motor to [low, high]. NaN is replaced by `low`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Saturated<T, M>(Wrapped<T, Saturation, M>);
+pub type Saturated<T, M> = Wrapped<T, Saturation, M>;
 
+/// The range of [`Saturated`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Saturation {
+pub struct Saturation {
     low: f32,
     high: f32,
 }
@@ -70,8 +68,6 @@ impl Filter for Saturation {
         }
     }
 }
-
-wrapper!(Saturated);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Saturated<T, Vec<f32>> {
@@ -96,16 +92,16 @@ impl<T: Channels, M: AsMut<[f32]>> Saturated<T, M> {
         if low > high {
             return Err(ChannelError::Range { from: low, to: high });
         }
-        Wrapped::new(inner, Saturation { low, high }, memory).map(Self)
+        Wrapped::over(inner, Saturation { low, high }, memory)
     }
 }
 
 /// Replaces each value of a sensor or motor by 1 if it is above a threshold, and by 0 otherwise. NaN is replaced by 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thresholded<T, M>(Wrapped<T, Threshold, M>);
+pub type Thresholded<T, M> = Wrapped<T, Threshold, M>;
 
+/// The threshold of [`Thresholded`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Threshold(f32);
+pub struct Threshold(f32);
 
 impl Filter for Threshold {
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
@@ -114,8 +110,6 @@ impl Filter for Threshold {
         }
     }
 }
-
-wrapper!(Thresholded);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Thresholded<T, Vec<f32>> {
@@ -136,17 +130,17 @@ impl<T: Channels, M: AsMut<[f32]>> Thresholded<T, M> {
     /// Returns [`ChannelError::Value`] if the threshold is not finite, or [`ChannelError::Memory`] if the memory is too
     /// short.
     pub fn new_in(inner: T, threshold: f32, memory: M) -> Result<Self, ChannelError> {
-        Wrapped::new(inner, Threshold(finite("threshold", threshold)?), memory).map(Self)
+        Wrapped::over(inner, Threshold(finite("threshold", threshold)?), memory)
     }
 }
 
 /// Passes all values unchanged and stores those of the last tick. They can be read with `values()` without disturbing
 /// the sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Recorded<T, M>(Wrapped<T, Record, M>);
+pub type Recorded<T, M> = Wrapped<T, Record, M>;
 
+/// The filter of [`Recorded`], which changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Record;
+pub struct Record;
 
 impl Filter for Record {
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
@@ -154,14 +148,12 @@ impl Filter for Record {
     }
 }
 
-wrapper!(Recorded);
-
 #[cfg(feature = "alloc")]
 impl<T: Channels> Recorded<T, Vec<f32>> {
     /// Wraps a sensor or motor.
     pub fn new(inner: T) -> Self {
         let memory = vec![0.0; inner.channels()];
-        Self(Wrapped { inner, filter: Record, memory })
+        Self { inner, filter: Record, memory }
     }
 }
 
@@ -171,6 +163,6 @@ impl<T: Channels, M: AsMut<[f32]>> Recorded<T, M> {
     /// # Errors
     /// Returns [`ChannelError::Memory`] if the memory is too short.
     pub fn new_in(inner: T, memory: M) -> Result<Self, ChannelError> {
-        Wrapped::new(inner, Record, memory).map(Self)
+        Wrapped::over(inner, Record, memory)
     }
 }

@@ -6,7 +6,7 @@ use crate::channel::ChannelError;
 use crate::ports::{Channels, Motor, Sensor};
 
 /// The effect of a wrapper on values.
-pub(crate) trait Filter {
+pub trait Filter {
     /// Computes one tick's `passed` from its `values`, both of the same length. `passed` still holds the last tick's.
     fn pass(&mut self, values: &[f32], passed: &mut [f32]);
     /// Back to the beginning of an episode.
@@ -17,16 +17,30 @@ pub(crate) trait Filter {
 ///
 /// A motor needs the memory because the values it is given are only borrowed. A sensor has it too, so that one
 /// constructor serves both and the last values stay readable.
+///
+/// Use it by the names of its kinds, such as [`Scaled`](crate::wrappers::Scaled) and [`Noisy`](crate::wrappers::Noisy).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Wrapped<T, F, M> {
+pub struct Wrapped<T, F, M> {
     pub(crate) inner: T,
     pub(crate) filter: F,
     pub(crate) memory: M,
 }
 
+impl<T, F, M> Wrapped<T, F, M> {
+    /// Returns the wrapped sensor or motor.
+    pub fn inner(&self) -> &T {
+        &self.inner
+    }
+
+    /// Returns the wrapped sensor or motor, to be changed.
+    pub fn inner_mut(&mut self) -> &mut T {
+        &mut self.inner
+    }
+}
+
 impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
     /// Checks the memory, which begins at 0.
-    pub(crate) fn new(inner: T, filter: F, mut memory: M) -> Result<Self, ChannelError> {
+    pub(crate) fn over(inner: T, filter: F, mut memory: M) -> Result<Self, ChannelError> {
         room(&mut memory, inner.channels())?;
         memory.as_mut().fill(0.0);
         Ok(Self { inner, filter, memory })
@@ -34,7 +48,8 @@ impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
 }
 
 impl<T: Channels, F, M: AsRef<[f32]>> Wrapped<T, F, M> {
-    pub(crate) fn values(&self) -> &[f32] {
+    /// Returns the values that were passed on in the last tick, one per channel. They are 0 before the first tick.
+    pub fn values(&self) -> &[f32] {
         let memory = self.memory.as_ref();
         memory.get(..self.inner.channels()).unwrap_or(memory)
     }
@@ -92,49 +107,3 @@ pub(crate) fn select(which: &impl RangeBounds<usize>, channels: usize) -> Result
     };
     if start <= end && end <= channels { Ok(start..end) } else { Err(ChannelError::Selection { start, end, channels }) }
 }
-
-/// Makes a public newtype of [`Wrapped`] a sensor around sensors and a motor around motors.
-macro_rules! wrapper {
-    ($wrapper:ident) => {
-        impl<T, M> $wrapper<T, M> {
-            /// Returns the wrapped sensor or motor.
-            pub fn inner(&self) -> &T {
-                &self.0.inner
-            }
-
-            /// Returns a mutable reference to the wrapped sensor or motor.
-            pub fn inner_mut(&mut self) -> &mut T {
-                &mut self.0.inner
-            }
-        }
-
-        impl<T: $crate::ports::Channels, M: AsRef<[f32]>> $wrapper<T, M> {
-            /// Returns the values of the last tick. There is one per channel, and all are 0 before the first tick.
-            pub fn values(&self) -> &[f32] {
-                self.0.values()
-            }
-        }
-
-        impl<T: $crate::ports::Channels, M: AsMut<[f32]>> $crate::ports::Channels for $wrapper<T, M> {
-            fn channels(&self) -> usize {
-                self.0.channels()
-            }
-            fn reset(&mut self) {
-                self.0.reset();
-            }
-        }
-
-        impl<W: ?Sized, T: $crate::ports::Sensor<W>, M: AsMut<[f32]>> $crate::ports::Sensor<W> for $wrapper<T, M> {
-            fn read(&mut self, world: &W, out: &mut [f32]) {
-                self.0.read(world, out);
-            }
-        }
-
-        impl<W: ?Sized, T: $crate::ports::Motor<W>, M: AsMut<[f32]>> $crate::ports::Motor<W> for $wrapper<T, M> {
-            fn drive(&mut self, y: &[f32], world: &mut W) {
-                self.0.drive(y, world);
-            }
-        }
-    };
-}
-pub(crate) use wrapper;

@@ -7,7 +7,7 @@ use farsa_num::{Domain, Stream};
 
 use crate::archives::grid_cells::Cells;
 use crate::archives::nearest::Nearest;
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting};
 use crate::population::Population;
 use crate::real::bounds::{check_bounds, draw_within};
 
@@ -73,7 +73,7 @@ impl CvtCells {
             return Err(EvoError::score_count(d, centroids.len()));
         }
         for &x in &centroids {
-            check_setting((-LARGEST..=LARGEST).contains(&x), "a coordinate of a centroid", x, "-1e100 to 1e100")?;
+            check_range("a coordinate of a centroid", x, [-LARGEST, LARGEST], "-1e100 to 1e100")?;
         }
         let nearest = Nearest::new(&centroids, d);
         Ok(Self { d, centroids, nearest })

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 
 /// An emitter of a [`MapElites`](crate::archives::MapElites): how it makes its part of each generation.
 ///
@@ -54,24 +54,19 @@ impl Emitter {
         let batch = self.batch();
         check_setting(batch > 0, "the batch of an emitter", batch as f64, "1 or more, 2 or more for improvement")?;
         match *self {
-            Self::Gaussian { sigma, .. } => {
-                check_setting((0.0..=1.0).contains(&sigma), "sigma of the Gaussian emitter", sigma, "0 to 1")
-            }
+            Self::Gaussian { sigma, .. } => check_share("sigma of the Gaussian emitter", sigma),
             Self::IsoLine { iso_sigma, line_sigma, .. } => {
-                let within = (0.0..=1.0).contains(&iso_sigma);
-                check_setting(within, "iso_sigma of the iso-line emitter", iso_sigma, "0 to 1")?;
-                let within = (0.0..=10.0).contains(&line_sigma);
-                check_setting(within, "line_sigma of the iso-line emitter", line_sigma, "0 to 10")
+                check_share("iso_sigma of the iso-line emitter", iso_sigma)?;
+                check_range("line_sigma of the iso-line emitter", line_sigma, [0.0, 10.0], "0 to 10")
             }
             Self::Improvement { ref mean, sigma, .. } => {
                 check_setting(batch > 1, "the batch of an emitter", batch as f64, "2 or more for improvement")?;
                 let (found, wanted) = (mean.len(), bounds.len());
                 check_setting(found == wanted, "the number of genes of a mean", found as f64, "one for each range")?;
                 for (&x, &[low, high]) in mean.iter().zip(bounds) {
-                    check_setting((low..=high).contains(&x), "the mean of an emitter", x, "within the bounds")?;
+                    check_range("the mean of an emitter", x, [low, high], "within the bounds")?;
                 }
-                let within = (1e-100..=1e100).contains(&sigma);
-                check_setting(within, "sigma of the improvement emitter", sigma, "1e-100 to 1e100")
+                check_range("sigma of the improvement emitter", sigma, [1e-100, 1e100], "1e-100 to 1e100")
             }
         }
     }

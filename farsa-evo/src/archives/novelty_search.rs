@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::population::Population;
@@ -65,9 +65,9 @@ impl NoveltyConfig {
         check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
         check_setting(k > 0, "the number of neighbours", k as f64, "1 or more")?;
         match self.archive {
-            ArchiveRule::Random { rate } => check_rate("the rate of the archive", rate),
+            ArchiveRule::Random { rate } => check_share("the rate of the archive", rate),
             ArchiveRule::Threshold { first, patience, .. } => {
-                check_setting((1e-100..=1e100).contains(&first), "the first threshold", first, "1e-100 to 1e100")?;
+                check_range("the first threshold", first, [1e-100, 1e100], "1e-100 to 1e100")?;
                 check_setting(patience > 0, "the patience of the archive", f64::from(patience), "1 or more")
             }
         }
@@ -160,7 +160,7 @@ impl<S> NoveltySearch<S> {
         let found = units.len();
         check_setting(found == self.units.len(), "the number of units", found as f64, "one for each descriptor value")?;
         for &unit in units {
-            check_setting((1e-100..=1e100).contains(&unit), "the unit of a descriptor value", unit, "1e-100 to 1e100")?;
+            check_range("the unit of a descriptor value", unit, [1e-100, 1e100], "1e-100 to 1e100")?;
         }
         Ok(Self { units: units.to_vec(), ..self })
     }

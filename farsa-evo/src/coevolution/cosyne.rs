@@ -7,7 +7,7 @@ use core::iter::repeat_n;
 
 use farsa_num::{Domain, Stream, exp, ln, sin_cos};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::real::bounds::uniform;
@@ -90,9 +90,9 @@ impl CosyneConfig {
         check_setting(within, "the number of parents", parents as f64, "1 to the population")?;
         let within = offspring <= population;
         check_setting(within, "the number of offspring", offspring as f64, "0 to the population")?;
-        check_setting((0.0..=1e100).contains(&range), "the range of the first weights", range, "0 to 1e100")?;
-        check_rate("the mutation rate", mutation_rate)?;
-        check_setting((0.0..=1e100).contains(&mutation_scale), "the scale of mutation", mutation_scale, "0 to 1e100")
+        check_range("the range of the first weights", range, [0.0, 1e100], "0 to 1e100")?;
+        check_share("the mutation rate", mutation_rate)?;
+        check_range("the scale of mutation", mutation_scale, [0.0, 1e100], "0 to 1e100")
     }
 }
 

@@ -7,7 +7,8 @@ use farsa_num::fearless_simd::{Simd, dispatch};
 use farsa_num::{Instructions, Scalar};
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Matrix, bounded};
+use crate::covariance::config::CmaEsConfig;
+use crate::covariance::distribution::{Covariance, bounded};
 use crate::covariance::full::{add_squares, interval_of_cubes, symmetric};
 use crate::covariance::linear::{dot_in_vectors, dots_in_vectors};
 use crate::error::EvoError;
@@ -95,7 +96,9 @@ fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     factor.iter().all(|x| x.is_finite()).then_some(factor)
 }
 
-impl Matrix for Cholesky {
+impl Covariance for Cholesky {
+    type Config = CmaEsConfig;
+
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);

@@ -4,33 +4,15 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::covariance::cholesky::Cholesky;
-use crate::covariance::config::{CmaEsConfig, SeparableCmaEsConfig, Start};
+use crate::covariance::config::{CmaEsConfig, Start};
 use crate::covariance::diagonal::Diagonal;
-use crate::covariance::distribution::{Distribution, Matrix};
+use crate::covariance::distribution::{Covariance, Distribution};
 use crate::covariance::full::Full;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
-
-/// A kind of covariance matrix that [`CmaEs`] adapts: [`Full`], [`Cholesky`] or [`Diagonal`].
-pub trait Covariance: Matrix {
-    /// The configuration of a search with this kind of matrix.
-    type Config: Start;
-}
-
-impl Covariance for Full {
-    type Config = CmaEsConfig;
-}
-
-impl Covariance for Cholesky {
-    type Config = CmaEsConfig;
-}
-
-impl Covariance for Diagonal {
-    type Config = SeparableCmaEsConfig;
-}
 
 /// Covariance matrix adaptation with a Cholesky factor. A generation of many genes takes a fraction of the time of
 /// [`CmaEs<Full>`](CmaEs), which spends most of it on the axes.
@@ -127,7 +109,7 @@ impl<C: Covariance> CmaEs<C> {
     /// Starts a search with the covariance matrix of the type.
     ///
     /// # Errors
-    /// The errors of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`].
+    /// The errors of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`](crate::covariance::SeparableCmaEsConfig::validate).
     pub fn with_covariance(config: C::Config, seed: u64) -> Result<Self, EvoError> {
         config.check()?;
         let (mean, sigma, population) = config.start();

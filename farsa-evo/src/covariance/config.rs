@@ -3,9 +3,11 @@
 use alloc::vec::Vec;
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{MEANS, STEP_SIZES};
-use crate::error::{EvoError, check_range};
+use crate::error::{EvoError, check_range, check_share};
 use crate::population::Population;
+
+/// The limits of a step size.
+pub(crate) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
 
 /// A configuration from which a search of one normal distribution starts.
 pub trait Start: Clone + core::fmt::Debug + PartialEq {
@@ -59,8 +61,7 @@ impl CmaEsConfig {
         let genes = self.mean.len();
         check_start(&self.mean, self.sigma, self.population)?;
         Population::check(genes, genes)?;
-        let rank_one = self.rank_one_rate.unwrap_or(0.0);
-        check_range("rank_one_rate", rank_one, [0.0, 1.0], "0 to 1")?;
+        check_share("rank_one_rate", self.rank_one_rate.unwrap_or(0.0))?;
         let rank_one =
             self.rank_one_rate.unwrap_or(Coefficients::new(genes, self.population, false, None, same).rank_one);
         check_range("rank_mu_rate", self.rank_mu_rate.unwrap_or(0.0), [0.0, 1.0 - rank_one], "0 to 1 - rank_one_rate")?;
@@ -86,7 +87,7 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
     Population::check(population, mean.len())?;
     check_range("population", population as f64, [2.0, f64::INFINITY], "at least 2")?;
     check_range("sigma", sigma, STEP_SIZES, "1e-100 to 1e100")?;
-    mean.iter().try_for_each(|&x| check_range("mean", x, MEANS, "-1e100 to 1e100"))
+    mean.iter().try_for_each(|&x| check_range("mean", x, [-1e100, 1e100], "-1e100 to 1e100"))
 }
 
 /// The configuration of [`SeparableCmaEs`](crate::covariance::SeparableCmaEs).

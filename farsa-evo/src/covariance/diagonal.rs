@@ -6,7 +6,8 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Matrix, bounded};
+use crate::covariance::config::SeparableCmaEsConfig;
+use crate::covariance::distribution::{Covariance, bounded};
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
 
@@ -22,7 +23,9 @@ pub struct Diagonal {
     pub(super) variances: Vec<f64>,
 }
 
-impl Matrix for Diagonal {
+impl Covariance for Diagonal {
+    type Config = SeparableCmaEsConfig;
+
     fn identity(n: usize, _: &Coefficients) -> Self {
         Self { variances: vec![1.0; n] }
     }

@@ -6,16 +6,13 @@ use alloc::vec::Vec;
 use farsa_num::{Scalar, Stream, exp};
 
 use crate::covariance::coefficients::Coefficients;
+use crate::covariance::config::{STEP_SIZES, Start};
 use crate::covariance::linear::{add_rows, add_scaled, dot};
 use crate::error::EvoError;
 use crate::population::Population;
 use crate::search::stream;
 use crate::snapshot::{StateReader, push_reals};
 
-/// The limits of a step size.
-pub(crate) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
-/// The limits of an initial mean's genes.
-pub(crate) const MEANS: [f64; 2] = [-1e100, 1e100];
 /// The limits of the largest variance. Beyond them the step size takes the excess.
 const VARIANCES: [f64; 2] = [1e-30, 1e30];
 /// The number of tries to draw a point within bounds.
@@ -23,8 +20,12 @@ const TRIES: usize = 100;
 /// The limit of all numbers of a saved state.
 const STATE: f64 = 1e140;
 
-/// A covariance matrix that is adapted.
-pub trait Matrix: Clone + core::fmt::Debug + PartialEq {
+/// A kind of covariance matrix that [`CmaEs`](crate::covariance::CmaEs) adapts: [`Full`](crate::covariance::Full),
+/// [`Cholesky`](crate::covariance::Cholesky) or [`Diagonal`](crate::covariance::Diagonal).
+pub trait Covariance: Clone + core::fmt::Debug + PartialEq {
+    /// The configuration of a search with this kind of matrix.
+    type Config: Start;
+
     /// The identity matrix, which learns at these rates.
     fn identity(genes: usize, coefficients: &Coefficients) -> Self;
 
@@ -56,6 +57,9 @@ pub trait Matrix: Clone + core::fmt::Debug + PartialEq {
     fn save(&self, state: &mut Vec<u8>);
 
     /// Restores a state. On error the state is incomplete.
+    ///
+    /// # Errors
+    /// [`EvoError::State`].
     fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError>;
 }
 
@@ -81,7 +85,7 @@ pub(crate) struct Distribution<C> {
     steps: Vec<f64>,
 }
 
-impl<C: Matrix> Distribution<C> {
+impl<C: Covariance> Distribution<C> {
     pub(crate) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
         let n = mean.len();
         let covariance = C::identity(n, &coefficients);

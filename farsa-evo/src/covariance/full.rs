@@ -6,7 +6,8 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use crate::covariance::coefficients::Coefficients;
-use crate::covariance::distribution::{Matrix, bounded, multiply};
+use crate::covariance::config::CmaEsConfig;
+use crate::covariance::distribution::{Covariance, bounded, multiply};
 use crate::covariance::eigen::SymmetricEigen;
 use crate::covariance::linear::add_rows;
 use crate::error::EvoError;
@@ -87,7 +88,9 @@ pub(super) fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f6
     }
 }
 
-impl Matrix for Full {
+impl Covariance for Full {
+    type Config = CmaEsConfig;
+
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
@@ -171,7 +174,6 @@ impl Matrix for Full {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::covariance::config::CmaEsConfig;
 
     fn adapted() -> Full {
         let coefficients = CmaEsConfig::new(vec![0.0; 3], 1.0).coefficients_of(8);

@@ -26,8 +26,9 @@ mod restarts;
 mod termination;
 
 pub use cholesky::Cholesky;
-pub use cma_es::{CholeskyCmaEs, CmaEs, Covariance, SeparableCmaEs};
+pub use cma_es::{CholeskyCmaEs, CmaEs, SeparableCmaEs};
 pub use config::{CmaEsConfig, SeparableCmaEsConfig};
 pub use diagonal::Diagonal;
+pub use distribution::Covariance;
 pub use full::Full;
 pub use restarts::{CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};

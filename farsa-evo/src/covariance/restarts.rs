@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream, exp, ln};
 
-use crate::covariance::config::CmaEsConfig;
-use crate::covariance::distribution::{Distribution, Matrix, STEP_SIZES};
+use crate::covariance::config::{CmaEsConfig, STEP_SIZES};
+use crate::covariance::distribution::{Covariance, Distribution};
 use crate::covariance::full::Full;
 use crate::covariance::termination::{LONGEST, Progress};
 use crate::error::{EvoError, check_range};
@@ -287,7 +287,7 @@ const FRONT: (usize, usize) = (8, 6);
 
 impl Snapshot for CmaEsRestarts {
     fn snapshot_interval(&self) -> u32 {
-        <Full as Matrix>::snapshot_interval(self.config.first.mean.len())
+        <Full as Covariance>::snapshot_interval(self.config.first.mean.len())
     }
 
     fn save(&self) -> Vec<u8> {

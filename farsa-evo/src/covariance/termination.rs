@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::covariance::distribution::{Distribution, Matrix};
+use crate::covariance::distribution::{Covariance, Distribution};
 use crate::covariance::full::Full;
 use crate::fitness::Fitness;
 

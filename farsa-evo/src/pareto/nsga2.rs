@@ -6,7 +6,7 @@ use core::cmp::Reverse;
 
 use farsa_num::{Domain, Stream};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_setting, check_share};
 use crate::fitness::Fitness;
 use crate::pareto::fronts::crowding_distances;
 use crate::pareto::fronts::non_dominated_fronts;
@@ -55,7 +55,7 @@ impl Nsga2Config {
         check_bounds(self.population, &self.bounds)?;
         check_setting(self.objectives > 0, "the number of objectives", self.objectives as f64, "1 or more")?;
         Population::check(self.population.saturating_mul(2), self.objectives)?;
-        check_rate("the crossover rate", self.crossover_rate)?;
+        check_share("the crossover rate", self.crossover_rate)?;
         self.crossover().check()?;
         self.mutation().check()
     }

@@ -2,7 +2,7 @@
 
 use farsa_num::Stream;
 
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting};
 use crate::population::Population;
 use crate::search::Step;
 
@@ -14,7 +14,7 @@ pub(crate) fn check_bounds(population: usize, bounds: &[[f64; 2]]) -> Result<(),
     Population::check(population, bounds.len())?;
     for &[low, high] in bounds {
         for (name, end) in [("the low end of a gene", low), ("the high end of a gene", high)] {
-            check_setting((-LARGEST..=LARGEST).contains(&end), name, end, "-1e100 to 1e100")?;
+            check_range(name, end, [-LARGEST, LARGEST], "-1e100 to 1e100")?;
         }
         check_setting(low <= high, "the high end of a gene", high, "its low end or more")?;
     }

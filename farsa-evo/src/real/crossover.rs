@@ -2,7 +2,7 @@
 
 use farsa_num::{Stream, exp, ln};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_range, check_share};
 use crate::real::bounds::reflect;
 
 /// The crossover of two parents. Each child is drawn independently.
@@ -36,12 +36,10 @@ impl Crossover {
     pub(crate) fn check(self) -> Result<(), EvoError> {
         match self {
             Self::None => Ok(()),
-            Self::Uniform { rate } => check_rate("the rate of uniform crossover", rate),
-            Self::Blend { alpha } => {
-                check_setting((0.0..=10.0).contains(&alpha), "alpha of blend crossover", alpha, "0 to 10")
-            }
+            Self::Uniform { rate } => check_share("the rate of uniform crossover", rate),
+            Self::Blend { alpha } => check_range("alpha of blend crossover", alpha, [0.0, 10.0], "0 to 10"),
             Self::SimulatedBinary { eta } => {
-                check_setting((0.0..=1000.0).contains(&eta), "eta of simulated binary crossover", eta, "0 to 1000")
+                check_range("eta of simulated binary crossover", eta, [0.0, 1000.0], "0 to 1000")
             }
         }
     }

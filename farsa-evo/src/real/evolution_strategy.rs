@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Scalar, Stream, exp};
 
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::search::{Algorithm, Search, Step};
@@ -139,13 +139,12 @@ impl EvolutionStrategyConfig {
         let mixed = (1..=parents).contains(&mixing);
         check_setting(mixed, "the mixing number", mixing as f64, "1 to the number of parents")?;
         for &x in &self.mean {
-            check_setting((-LARGEST..=LARGEST).contains(&x), "a mean", x, "-1e100 to 1e100")?;
+            check_range("a mean", x, [-LARGEST, LARGEST], "-1e100 to 1e100")?;
         }
         let steps = 1e-100..=LARGEST;
         check_setting(steps.contains(&smallest_step), "the smallest step size", smallest_step, "1e-100 to 1e100")?;
-        let within = (smallest_step..=LARGEST).contains(&initial_step);
-        check_setting(within, "the first step size", initial_step, "the smallest to 1e100")?;
-        let rate = |name, tau| check_setting((0.0..=10.0).contains(&tau), name, tau, "0 to 10");
+        check_range("the first step size", initial_step, [smallest_step, LARGEST], "the smallest to 1e100")?;
+        let rate = |name, tau| check_range(name, tau, [0.0, 10.0], "0 to 10");
         match self.step_sizes {
             StepSizes::One { tau } => rate("tau", tau),
             StepSizes::PerGene { tau_0, tau } => rate("tau_0", tau_0).and_then(|()| rate("tau", tau)),

@@ -2,7 +2,7 @@
 
 use farsa_num::{Stream, exp, ln};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::real::bounds::reflect;
 
 /// The mutation of real genes, which adds normal numbers and reflects genes that leave the bounds.
@@ -35,15 +35,14 @@ impl RealMutation {
     pub(crate) fn check(self) -> Result<(), EvoError> {
         match self {
             Self::Gaussian { rate, sigma } => {
-                check_rate("the mutation rate", rate)?;
-                check_setting((0.0..=1.0).contains(&sigma), "sigma of mutation", sigma, "0 to 1")
+                check_share("the mutation rate", rate)?;
+                check_share("sigma of mutation", sigma)
             }
             Self::SelfAdaptive { rate, initial, tau, smallest } => {
-                check_rate("the mutation rate", rate)?;
-                check_setting((0.0..=10.0).contains(&tau), "tau of mutation", tau, "0 to 10")?;
+                check_share("the mutation rate", rate)?;
+                check_range("tau of mutation", tau, [0.0, 10.0], "0 to 10")?;
                 check_setting(smallest > 0.0 && smallest <= 1.0, "the smallest step size", smallest, "above 0 to 1")?;
-                let within = (smallest..=1.0).contains(&initial);
-                check_setting(within, "the first step size", initial, "the smallest to 1")
+                check_range("the first step size", initial, [smallest, 1.0], "the smallest to 1")
             }
         }
     }
@@ -101,8 +100,8 @@ pub(crate) struct PolynomialMutation {
 
 impl PolynomialMutation {
     pub(crate) fn check(self) -> Result<(), EvoError> {
-        check_rate("the mutation rate", self.rate)?;
-        check_setting((0.0..=1000.0).contains(&self.eta), "eta of polynomial mutation", self.eta, "0 to 1000")
+        check_share("the mutation rate", self.rate)?;
+        check_range("eta of polynomial mutation", self.eta, [0.0, 1000.0], "0 to 1000")
     }
 
     /// Mutates genes \[genes\] within their bounds.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Stream;
 
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::real::bounds::{check_bounds, check_within, uniform};
@@ -69,13 +69,12 @@ impl RealGaConfig {
         let (elites, factors) = (self.elites, self.rate_factors.len());
         check_setting(elites < self.population, "the number of elites", elites as f64, "0 to population - 1")?;
         self.crossover.check()?;
-        let rate = self.crossover_rate;
-        check_setting((0.0..=1.0).contains(&rate), "the crossover rate", rate, "0 to 1")?;
+        check_share("the crossover rate", self.crossover_rate)?;
         self.mutation.check()?;
         let fits = factors == 0 || factors == self.bounds.len();
         check_setting(fits, "the number of rate factors", factors as f64, "none or one for each gene")?;
         for &factor in &self.rate_factors {
-            check_setting((0.0..=1e6).contains(&factor), "a rate factor", factor, "0 to 1e6")?;
+            check_range("a rate factor", factor, [0.0, 1e6], "0 to 1e6")?;
         }
         Selector::new(self.selection, self.population)
     }

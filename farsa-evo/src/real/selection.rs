@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::Stream;
 
-use crate::error::{EvoError, check_setting};
+use crate::error::{EvoError, check_range, check_setting};
 
 /// The selection of parents. Each is drawn independently, so an individual may be selected twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl Selector {
                 check_setting(within(parents), "the number of parents", parents as f64, "1 to the population")?;
             }
             Selection::Rank { pressure } => {
-                check_setting((1.0..=2.0).contains(&pressure), "the selection pressure", pressure, "1 to 2")?;
+                check_range("the selection pressure", pressure, [1.0, 2.0], "1 to 2")?;
                 let (size, last) = (population as f64, population.saturating_sub(1).max(1) as f64);
                 let mut sum = 0.0;
                 summed.extend((0..population).map(|rank| {

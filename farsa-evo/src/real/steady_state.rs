@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::error::{EvoError, check_rate, check_setting};
+use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::real::bounds::{check_bounds, check_within, uniform};
@@ -46,9 +46,9 @@ impl SteadyStateConfig {
         let Self { population, rate, sigma, noise, .. } = *self;
         check_bounds(population, &self.bounds)?;
         check_setting(population.is_multiple_of(2), "the population", population as f64, "an even number")?;
-        check_rate("the mutation rate", rate)?;
-        check_setting((0.0..=1.0).contains(&sigma), "sigma of mutation", sigma, "0 to 1")?;
-        check_setting((0.0..=1e100).contains(&noise), "noise", noise, "0 to 1e100")
+        check_share("the mutation rate", rate)?;
+        check_share("sigma of mutation", sigma)?;
+        check_range("noise", noise, [0.0, 1e100], "0 to 1e100")
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::picture::camera::Camera;
 use crate::picture::moment::Picture;
-use crate::picture::png::pixels;
+use crate::picture::png::encode;
 
 /// The most pictures of an animation.
 const MAX_PICTURES: usize = 1000;
@@ -26,20 +26,8 @@ pub(crate) fn animation(
             why: format!("{} pictures; an animation has 1 to {MAX_PICTURES}", pictures.len()),
         });
     }
-    let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
     let window = camera.fit(pictures.iter().flat_map(|picture| picture.interest(camera.is_close())).collect(), size);
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_animated(pictures.len() as u32, 0).map_err(wrong)?;
-    encoder.set_frame_delay(milliseconds, 1000).map_err(wrong)?;
-    let mut writer = encoder.write_header().map_err(wrong)?;
-    for picture in pictures {
-        writer.write_image_data(pixels(picture, &window, size).as_flattened()).map_err(wrong)?;
-    }
-    writer.finish().map_err(wrong)?;
-    Ok(bytes)
+    encode(pictures, &window, size, Some(milliseconds))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use farsa_num::acos;
 use crate::picture::camera::Window;
 use crate::picture::moment::Picture;
 use crate::shape::appearance::{Color, Instance, Role};
-use crate::shape::geometry::{Geometry, Meeting};
+use crate::shape::geometry::{Geometry, Meeting, Sight};
 use crate::shape::vector::{Vector, add, along, cross, dot, length, mix, scale, sub, unit};
 
 /// The amount of light of a screen color. Screens use about its square root, as here, so that only `sqrt` is needed.
@@ -112,6 +112,15 @@ impl Solid {
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| pose.rotate(axis)),
             reach: geometry.reach(),
             albedo: linear(placed.color()),
+        }
+    }
+
+    /// Returns the view of the eye in the frame of the solid.
+    pub(crate) fn sight(&self, view: &Window) -> Sight {
+        if view.parallel {
+            Sight::Along(self.pose.rotate_back(view.axes[2]))
+        } else {
+            Sight::Eye(self.pose.transform_back(view.eye))
         }
     }
 

@@ -9,7 +9,6 @@ use crate::picture::marks::{self, Stroke};
 use crate::picture::moment::Picture;
 use crate::picture::outline::bounds;
 use crate::shape::appearance::Color;
-use crate::shape::geometry::Sight;
 use crate::shape::vector::{Vector, add, mix, scale};
 
 /// The number of rays along each side of a pixel at an edge.
@@ -22,20 +21,35 @@ const EDGE: u8 = 5;
 /// # Errors
 /// [`Error::Size`] for an invalid size.
 pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
+    encode(std::slice::from_ref(picture), &picture.window(camera, size), size, None)
+}
+
+/// Encodes pictures through one window, as an animation if each is shown for the given time [ms].
+pub(super) fn encode(
+    pictures: &[Picture],
+    window: &Window,
+    size: [u32; 2],
+    milliseconds: Option<u16>,
+) -> Result<Vec<u8>, Error> {
     let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    if let Some(milliseconds) = milliseconds {
+        encoder.set_animated(pictures.len() as u32, 0).map_err(wrong)?;
+        encoder.set_frame_delay(milliseconds, 1000).map_err(wrong)?;
+    }
     let mut writer = encoder.write_header().map_err(wrong)?;
-    let window = picture.window(camera, size);
-    writer.write_image_data(pixels(picture, &window, size).as_flattened()).map_err(wrong)?;
+    for picture in pictures {
+        writer.write_image_data(pixels(picture, window, size).as_flattened()).map_err(wrong)?;
+    }
     writer.finish().map_err(wrong)?;
     Ok(bytes)
 }
 
 /// Returns all pixels, row by row from the upper left corner.
-pub(super) fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Color> {
+fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Color> {
     let [width, height] = size.map(|x| x as usize);
     let scene = LitScene::new(picture, view);
     let canvas = Canvas { scene: &scene, view, boxes: boxes(&scene, view) };
@@ -67,12 +81,7 @@ pub(super) fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Co
 fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
     let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
     let place = |solid: &crate::picture::lit_scene::Solid| {
-        let sight = if view.parallel {
-            Sight::Along(solid.pose.rotate_back(view.axes[2]))
-        } else {
-            Sight::Eye(solid.pose.transform_back(view.eye))
-        };
-        let rim = solid.geometry.rim(sight, 32);
+        let rim = solid.geometry.rim(solid.sight(view), 32);
         let places: Option<Vec<_>> = rim.into_iter().map(|p| view.project(solid.pose.transform(p))).collect();
         let [low, high] = bounds(&places.filter(|places| !places.is_empty())?);
         // The circle exceeds its polygon by less than 1/200 of its radius.

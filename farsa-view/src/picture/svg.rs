@@ -50,11 +50,6 @@ pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &st
 
 /// Returns the outline of a solid, clipped to the frame, or nothing for an invisible solid.
 pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
-    let sight = if view.parallel {
-        Sight::Along(solid.pose.rotate_back(view.axes[2]))
-    } else {
-        Sight::Eye(solid.pose.transform_back(view.eye))
-    };
     let places = |points: Vec<Vector>| -> Vec<Point2> {
         points.into_iter().filter_map(|point| view.project(solid.pose.transform(point))).collect()
     };
@@ -68,7 +63,7 @@ pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
         hull(&faces.filter_map(|point| view.project(point)).collect::<Vec<_>>())
     } else {
         // Circles have enough corners to look round.
-        hull(&places(solid.geometry.rim(sight, roundness(solid, view, 0.12))))
+        hull(&places(solid.geometry.rim(solid.sight(view), roundness(solid, view, 0.12))))
     };
     framed(&hull, view.size, MARGIN)
 }
