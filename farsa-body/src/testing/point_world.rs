@@ -42,7 +42,7 @@ impl PointWorld {
     /// The rotation of a point per unit of height [rad/m].
     pub const TURN: f32 = 10.0;
     /// The distance between two screws, in meters.
-    pub const SPACING: f32 = 0.1;
+    const SPACING: f32 = 0.1;
     /// The radius of the spheres that are hit by rays, in meters.
     pub const RADIUS: f32 = 0.02;
     /// The color of the spheres. The floor has no color.

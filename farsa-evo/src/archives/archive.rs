@@ -3,20 +3,12 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::archives::cvt_cells::CvtCells;
 use crate::archives::grid_cells::Cells;
-use crate::archives::grid_cells::GridCells;
 use crate::error::EvoError;
 use crate::population::Population;
 use crate::real::bounds::check_within;
 use crate::snapshot::{StateReader, push_reals};
 use crate::strategy::Member;
-
-/// An archive over a grid.
-pub type GridArchive = Archive<GridCells>;
-
-/// An archive over a centroidal Voronoi tessellation.
-pub type CvtArchive = Archive<CvtCells>;
 
 /// The slot of a cell without an elite.
 const EMPTY: u32 = u32::MAX;

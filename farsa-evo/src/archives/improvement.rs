@@ -25,14 +25,14 @@ pub(super) struct Improvement {
     distribution: Distribution<Full>,
 }
 
-/// The coefficients for the given number of parents, with positive weights alone.
-fn coefficients(genes: usize, parents: usize) -> Coefficients {
-    Coefficients::new(genes, 2 * parents, false, None, |one, mu| (one, mu))
+/// The coefficients with positive weights alone.
+fn coefficients(genes: usize, individuals: usize) -> Coefficients {
+    Coefficients::new(genes, individuals, false, None, |one, mu| (one, mu))
 }
 
 fn start(mean: Vec<f64>, sigma: f64, batch: usize) -> Distribution<Full> {
-    let own = Coefficients::new(mean.len(), batch, false, None, |one, mu| (one, mu));
-    Distribution::new(mean, sigma, own)
+    let coefficients = coefficients(mean.len(), batch);
+    Distribution::new(mean, sigma, coefficients)
 }
 
 impl Improvement {
@@ -59,7 +59,7 @@ impl Improvement {
         if parents == 0 {
             return true;
         }
-        let own = coefficients(self.distribution.mean.len(), parents);
+        let own = coefficients(self.distribution.mean.len(), 2 * parents);
         let usual = core::mem::replace(&mut self.distribution.coefficients, own);
         self.distribution.update(&ranked);
         self.distribution.coefficients = usual;

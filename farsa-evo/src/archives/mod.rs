@@ -20,7 +20,7 @@ mod nearest;
 /// Novelty search.
 mod novelty_search;
 
-pub use archive::{Addition, Archive, CvtArchive, Elite, GridArchive};
+pub use archive::{Addition, Archive, Elite};
 pub use cvt_cells::CvtCells;
 pub use emitter::Emitter;
 pub use grid_cells::{Cells, GridCells};

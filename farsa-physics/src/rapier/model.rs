@@ -73,7 +73,6 @@ pub(crate) struct RobotPlan {
     pub(crate) carriers: Vec<Carrier>,
     pub(crate) frames: Vec<BodyFrame>,
     pub(crate) kinds: Vec<JointKind>,
-    pub(crate) colliders: Vec<ColliderHandle>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
     /// The colors of the robot's colliders, objects have none.
     pub(crate) colors: Vec<Option<[f32; 3]>>,
@@ -204,7 +203,6 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
         rules: Rules::new(colliders.len(), &rules),
         carriers,
         frames,
-        colliders,
         drives,
         laws,
         actuators: robot.actuators.len(),

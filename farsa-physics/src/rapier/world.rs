@@ -8,7 +8,6 @@ use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::{JointKind, Robot};
 use farsa_body::{Pose, Twist};
 use rapier3d::dynamics::{Multibody, MultibodyJoint, RigidBody, RigidBodyHandle};
-use rapier3d::geometry::ColliderHandle;
 use rapier3d::math::{Rotation, Vector};
 use rapier3d::pipeline::PhysicsWorld;
 
@@ -84,11 +83,6 @@ impl World {
     /// rapier's name of what a body rides on, or `None` for what does not move or exist.
     pub fn body_handle(&self, body: BodyId) -> Option<RigidBodyHandle> {
         self.carrier(body).map(|carrier| carrier.body)
-    }
-
-    /// rapier's name of a collider, by its number in the description.
-    pub fn collider_handle(&self, collider: usize) -> Option<ColliderHandle> {
-        self.plan.colliders.get(collider).copied()
     }
 
     /// Returns whether the world has not broken down.
