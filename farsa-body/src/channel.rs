@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The error that is returned when a sensor, a motor or a wrapper cannot be created.
+/// The error returned when a sensor, a motor or a wrapper cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ChannelError {

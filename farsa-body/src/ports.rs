@@ -54,7 +54,7 @@ pub trait Handles {
 pub trait World: Handles {
     /// Advances the world by one control step, whose duration is [`World::time_step`].
     fn step(&mut self);
-    /// Returns the duration of a control step, in seconds.
+    /// Returns the duration of a control step (in seconds).
     fn time_step(&self) -> f32;
 }
 
@@ -75,9 +75,9 @@ pub trait Kinematics: Handles {
 /// Access to the positions and speeds of joints.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not tell its joints' angles (port `Joints`)")]
 pub trait Joints: Handles {
-    /// Returns the angle [rad] or the displacement [m] of a joint.
+    /// Returns the angle (in radians) or the displacement (in meters) of a joint.
     fn position(&self, joint: Self::Joint) -> f32;
-    /// Returns the speed of a joint, in radians or meters per second.
+    /// Returns the speed of a joint (in radians or meters per second).
     fn speed(&self, joint: Self::Joint) -> f32;
 }
 
@@ -87,12 +87,12 @@ pub trait Actuated: Handles {
     /// Sets the command of an actuator. It remains active until the next command.
     ///
     /// A muscle pair uses both values as the activations of agonist and antagonist in [0..1]. Most other actuators
-    /// ignore the second value. For a servo, the first value is the desired position, in radians or meters. For a
-    /// torque motor it is the torque [N m or N], and for a velocity motor the speed [rad/s or m/s]. A custom law
+    /// ignore the second value. For a servo, the first value is the desired position (in radians or meters). For a
+    /// torque motor it is the torque (in N m or N), and for a velocity motor the speed (in rad/s or m/s). A custom law
     /// ([`Held`](crate::actuators::Held)) uses both.
     ///
-    /// For mobile robots, the first value is the speed of a wheel [rad/s], the brightness of an LED or the value of a
-    /// signal [0..1]. An attachment device holds if the value is above 0.5.
+    /// For mobile robots, the first value is the speed of a wheel (in rad/s), the brightness of an LED or the value of
+    /// a signal (between 0 and 1). An attachment device holds if the value is above 0.5.
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
 
@@ -102,8 +102,8 @@ pub trait Actuated: Handles {
     note = "kinematic worlds know no forces"
 )]
 pub trait ExternalForces: Handles {
-    /// Applies a force [N] to a body at a point [m] during the next control step. Both vectors are given in the axes of
-    /// the world.
+    /// Applies a force (in newtons) to a body at a point (in meters) during the next control step. Both vectors are
+    /// given in the axes of the world.
     ///
     /// The force and its moment about the center of mass keep their direction during the step. Several forces on the
     /// same body are added. Forces on bodies that do not move or do not exist have no effect. Snapshots do not contain
@@ -111,7 +111,7 @@ pub trait ExternalForces: Handles {
     fn apply_force(&mut self, body: Self::Body, point: [f32; 3], force: [f32; 3]);
 }
 
-/// The first surface that is hit by a ray.
+/// The first surface hit by a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
@@ -126,8 +126,8 @@ pub struct Hit<B> {
 /// Support for ray casts.
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot cast rays (port `Rays`)")]
 pub trait Rays: Handles {
-    /// Returns the first surface on a ray from `origin` [m] in the direction of the unit vector `direction`. The ray
-    /// ends after `range`, in meters. All vectors are given in the axes of the world.
+    /// Returns the first surface on a ray from `origin` (in meters) in the direction of the unit vector `direction`.
+    /// The ray ends after `range`, in meters. All vectors are given in the axes of the world.
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
@@ -139,18 +139,18 @@ pub struct Seen<B> {
     pub distance: f32,
     /// The body that is visible, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
-    /// The red, green and blue components of its color [0..1]. A surface without a color (`None`) still hides
-    /// everything behind it.
+    /// The red, green and blue components of its color (between 0 and 1). A surface without a color (`None`) still
+    /// hides everything behind it.
     pub color: Option<[f32; 3]>,
 }
 
 /// Support for cameras, which cast many rays from one point.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
 pub trait Vision: Handles {
-    /// Finds the first surface on each ray that starts at `from` [m] in the given directions. The directions are unit
-    /// vectors in the axes of the world, and rays end after `range`, in meters. The body `but` is ignored, and bodies
-    /// that contain `from` are invisible. The results are written to `seen`. If the slices have different lengths, only
-    /// the common part is used.
+    /// Finds the first surface on each ray that starts at `from` (in meters) in the given directions. The directions
+    /// are unit vectors in the axes of the world, and rays end after `range` (in meters). The body `but` is ignored,
+    /// and bodies that contain `from` are invisible. The results are written to `seen`. If the slices have different
+    /// lengths, only the common part is used.
     fn look(
         &self,
         from: [f32; 3],
@@ -172,10 +172,10 @@ pub struct PairContact {
     pub force: [f32; 3],
     /// The sum of the normal forces at all points, in newtons.
     pub normal_force: f32,
-    /// The mean position of the contact points in the world, weighted by normal force, in meters. It is zero if there
+    /// The mean position of the contact points in the world, weighted by normal force (in meters). It is zero if there
     /// is no contact.
     pub point: [f32; 3],
-    /// The largest penetration depth, in meters. A negative value is the remaining distance, which only some worlds
+    /// The largest penetration depth (in meters). A negative value is the remaining distance, which only some worlds
     /// compute.
     pub depth: f32,
 }
@@ -202,15 +202,16 @@ pub trait Contacts: Handles {
 pub struct NearbySurface<B> {
     /// The body to which the surface belongs, or `None` for a wall.
     pub body: Option<B>,
-    /// The nearest point of the surface, in meters.
+    /// The nearest point of the surface (in meters).
     pub point: [f32; 2],
     /// The distance to this point, in meters. Inside a round body it is negative, and inside any other body it is 0.
     pub distance: f32,
     /// The radius of a round body, in meters. It is 0 for walls and for other shapes.
     pub radius: f32,
-    /// The red, green and blue components of its color [0..1]. For a robot with LEDs this is the color of the LEDs.
+    /// The red, green and blue components of its color (between 0 and 1). For a robot with LEDs this is the color of
+    /// the LEDs.
     pub color: [f32; 3],
-    /// The signal of a robot [0..1], or `None` for everything else.
+    /// The signal of a robot (between 0 and 1), or `None` for everything else.
     pub signal: Option<f32>,
 }
 
@@ -222,7 +223,7 @@ pub struct PlanarHit<B> {
     pub distance: f32,
     /// The body that is visible, or `None` for a wall.
     pub body: Option<B>,
-    /// The red, green and blue components of its color [0..1].
+    /// The red, green and blue components of its color (between 0 and 1).
     pub color: [f32; 3],
 }
 
@@ -241,13 +242,14 @@ pub struct Lamp<B> {
 /// Access to surfaces and lines of sight in a plane. It can be a planar world or the plane of a camera.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces and their colours (port `Sight`)")]
 pub trait Sight: Handles {
-    /// Calls `tell` for every surface that has a point within `range` [m] of `from` [m]. Walls are reported first,
-    /// followed by bodies.
+    /// Calls `tell` for every surface that has a point within `range` (in meters) of `from` (in meters). Walls are
+    /// reported first, followed by bodies.
     ///
     /// Note that the robot at `from` is reported as well.
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<Self::Body>));
-    /// Returns the first surface on a line that starts at `from` [m] in the direction of the unit vector `direction`.
-    /// The line ends after `range`, in meters. The body `but` is ignored, and bodies that contain `from` are invisible.
+    /// Returns the first surface on a line that starts at `from` (in meters) in the direction of the unit vector
+    /// `direction`. The line ends after `range` (in meters). The body `but` is ignored, and bodies that contain `from`
+    /// are invisible.
     fn cast_planar(
         &self,
         from: [f32; 2],
@@ -260,11 +262,11 @@ pub trait Sight: Handles {
 /// Access to the ground, the lamps and the attachments of a planar world. It is used by the sensors of mobile robots.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its ground and lamps (port `Planar`)")]
 pub trait Planar: Sight {
-    /// Returns the red, green and blue components of the color of the ground at a position [m], each in [0..1].
+    /// Returns the red, green and blue components of the color of the ground at a position (in meters), each in [0..1].
     fn ground(&self, at: [f32; 2]) -> [f32; 3];
     /// Calls `tell` for every lamp.
     fn lamps(&self, tell: &mut dyn FnMut(Lamp<Self::Body>));
-    /// Returns the body that is held by the attachment device of a robot, if any.
+    /// Returns the body held by the attachment device of a robot, if any.
     fn attached(&self, robot: Self::Body) -> Option<Self::Body> {
         let _ = robot;
         None
@@ -292,9 +294,9 @@ pub trait Arrange: Handles {
     /// Restores the initial state of the description. All joints are at 0 or the nearest limit, everything is at rest,
     /// and there are no commands or contacts.
     fn clear(&mut self);
-    /// Sets the position [rad or m] and the speed [rad/s or m/s] of a joint.
+    /// Sets the position (in radians or meters) and the speed (in rad/s or m/s) of a joint.
     fn place_joint(&mut self, joint: Self::Joint, position: f32, speed: f32);
-    /// Sets the pose and the velocity of a floating body. Calls for bodies that are attached to a joint are ignored.
+    /// Sets the pose and the velocity of a floating body. Calls for bodies attached to a joint are ignored.
     fn place_body(&mut self, body: Self::Body, pose: Pose, twist: Twist);
     /// Completes the placement. Afterwards all other ports report the new state.
     fn finish_placement(&mut self);
@@ -302,7 +304,7 @@ pub trait Arrange: Handles {
 
 /// A component with a fixed number of channels. It is implemented by all sensors and motors.
 pub trait Channels {
-    /// Returns the number of values that are read or driven.
+    /// Returns the number of values read or driven.
     fn channels(&self) -> usize;
     /// Resets the internal state, such as noise streams and delays. It is called at the start of each episode.
     fn reset(&mut self) {}

@@ -2,11 +2,11 @@
 
 use farsa_num::Real;
 
-/// The position [m] and the orientation of a frame. The orientation is a unit quaternion [x, y, z, w].
+/// The position (in meters) and the orientation of a frame. The orientation is a unit quaternion [x, y, z, w].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<R = f32> {
-    /// The position of the frame's origin in the reference frame, in meters.
+    /// The position of the frame's origin in the reference frame (in meters).
     pub position: [R; 3],
     /// The rotation from the frame to the reference frame as a unit quaternion [x, y, z, w].
     pub rotation: [R; 4],
@@ -18,7 +18,7 @@ pub struct Pose<R = f32> {
 pub struct Twist<R = f32> {
     /// The velocity of the body's origin, in meters per second.
     pub linear: [R; 3],
-    /// The angular velocity, in radians per second.
+    /// The angular velocity (in radians per second).
     pub angular: [R; 3],
 }
 
@@ -46,8 +46,8 @@ impl<R: Real> Pose<R> {
         Self { position, ..Self::identity() }
     }
 
-    /// Creates a pose on the ground at the position (x, y) [m]. The frame is rotated counter-clockwise about the
-    /// vertical axis by `heading`, in radians.
+    /// Creates a pose on the ground at the position (x, y) (in meters). The frame is rotated counter-clockwise about
+    /// the vertical axis by `heading` (in radians).
     pub fn planar([x, y]: [R; 2], heading: R) -> Self {
         let o = R::from_f64(0.0);
         let (sine, cosine) = farsa_num::sin_cos(R::from_f64(0.5) * heading);
@@ -78,13 +78,13 @@ impl<R: Real> Pose<R> {
         Self { position: self.position, rotation: [-x, -y, -z, w] }.rotate(v)
     }
 
-    /// Transforms a point [m] from this frame to the reference frame.
+    /// Transforms a point (in meters) from this frame to the reference frame.
     pub fn transform(&self, point: [R; 3]) -> [R; 3] {
         let p = self.rotate(point);
         [p[0] + self.position[0], p[1] + self.position[1], p[2] + self.position[2]]
     }
 
-    /// Transforms a point [m] from the reference frame to this frame.
+    /// Transforms a point (in meters) from the reference frame to this frame.
     pub fn transform_back(&self, point: [R; 3]) -> [R; 3] {
         let p = self.position;
         self.rotate_back([point[0] - p[0], point[1] - p[1], point[2] - p[2]])

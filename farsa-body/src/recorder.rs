@@ -48,7 +48,7 @@ pub trait Recorder {
     fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
         let _ = (from, to, met);
     }
-    /// Records a point that is not a body [m], such as a point that is used by the fitness. Points are numbered from 0.
+    /// Records a point that is not a body (in meters), such as a point used by the fitness. Points are numbered from 0.
     fn point(&mut self, point: usize, position: [f32; 3]) {
         let _ = (point, position);
     }
@@ -73,7 +73,7 @@ pub trait Recorder {
     fn scalars(&mut self, values: &[f64]) {
         let _ = values;
     }
-    /// Ends the tick. The data since the previous tick describe the state at `time`, in seconds.
+    /// Ends the tick. The data since the previous tick describe the state at `time` (in seconds).
     fn tick(&mut self, time: f64);
 }
 

@@ -18,7 +18,7 @@ impl Engine {
     /// The names on the command line.
     pub(crate) const NAMES: [&'static str; 2] = ["articulated", "rapier"];
 
-    /// Returns the name that is used on the command line.
+    /// Returns the name used on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }

@@ -8,7 +8,8 @@ use farsa_num::{exp, ln, tanh};
 use crate::error::Error;
 use crate::name::same_letters;
 
-/// The formula for the activation `H(t)` of a hidden neuron with leak `d` [0..1] and response `y(t) = sigma(net(t))`.
+/// The formula for the activation `H(t)` of a hidden neuron with leak `d` (between 0 and 1) and response `y(t) =
+/// sigma(net(t))`.
 ///
 /// The source prints one equation but describes another, and its program used a third one. Therefore each
 /// interpretation has a name, which is recorded in every run.
@@ -33,7 +34,7 @@ impl Leak {
     /// All interpretations in the order of their declaration.
     pub const ALL: [Self; 3] = [Self::Filter, Self::TwoTap, Self::Evonet];
 
-    /// Returns the name that is used in configurations and logs. It is `filter`, `two-tap` or `evonet`.
+    /// Returns the name used in configurations and logs. It is `filter`, `two-tap` or `evonet`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Filter => "filter",
@@ -42,7 +43,8 @@ impl Leak {
         }
     }
 
-    /// Returns the time constant [s] of a neuron with leak `d` [0..1] that is updated every `time_step` [s].
+    /// Returns the time constant (in seconds) of a neuron with leak `d` (between 0 and 1) that is updated every `time_step` (in
+    /// seconds).
     ///
     /// In each step, the fraction `1-d` or `d` of the previous activation is kept, which corresponds to `exp(-dt/tau)`.
     /// If the response is constant, the neuron follows `tau da/dt = -a + y`. The result is 0 if nothing is kept and
@@ -69,8 +71,8 @@ impl Leak {
         Some(if left < 1.0 { (f64::from(time_step) / -ln(left)) as f32 } else { f32::INFINITY })
     }
 
-    /// Returns the leak [0..1] of a neuron with the given time constant [s] that is updated every `time_step` [s]. This
-    /// is the inverse of [`time_constant`](Self::time_constant).
+    /// Returns the leak (between 0 and 1) of a neuron with the given time constant (in seconds) that is updated every
+    /// `time_step` (in seconds). This is the inverse of [`time_constant`](Self::time_constant).
     ///
     /// The result is `None` for [`Leak::TwoTap`] and for negative time constants.
     pub fn for_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {

@@ -111,17 +111,17 @@ impl LeakyLayout {
         self.outputs
     }
 
-    /// Returns the slope of the logistic function, which is used for hidden neurons and outputs.
+    /// Returns the slope of the logistic function. This is used for hidden neurons and outputs.
     pub const fn slope(&self) -> f32 {
         self.slope
     }
 
-    /// Returns the number of parameters, which is `n*h + h*h + h*o + h + h`.
+    /// Returns the number of parameters. This is `n*h + h*h + h*o + h + h`.
     pub const fn parameter_count(&self) -> usize {
         self.range(LeakyParameter::Leak).end
     }
 
-    /// Returns the length of the state, which is `3*h`.
+    /// Returns the length of the state. This is `3*h`.
     ///
     /// The state contains the activations `H(t)` `[hidden]`, the responses `y(t)` `[hidden]` and a workspace for sums
     /// `[hidden]`. The responses are used by [`Leak::TwoTap`](crate::Leak::TwoTap) and are zero otherwise.

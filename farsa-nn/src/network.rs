@@ -98,7 +98,7 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
 }
 
 impl<M, P, S> Network<M, P, S> {
-    /// Selects the instructions of the processor that are used. The results do not change.
+    /// Selects the instructions of the processor used. The results do not change.
     ///
     /// The default is [`Instructions::detect`]. If the processor does not support the selected instructions, the best
     /// available ones are used.

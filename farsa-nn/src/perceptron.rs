@@ -38,7 +38,7 @@ pub struct PerceptronModel {
 }
 
 impl Perceptron<()> {
-    /// Returns the number of parameters, which is `inputs*outputs + outputs`. The count saturates.
+    /// Returns the number of parameters. This is `inputs*outputs + outputs`. The count saturates.
     ///
     /// ```
     /// assert_eq!(farsa_nn::Perceptron::parameter_count(6, 2), 14);

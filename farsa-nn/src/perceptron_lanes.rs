@@ -51,7 +51,7 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         Ok(Self { inputs, outputs, slope, lanes, parameters, level: level() })
     }
 
-    /// Selects the instructions of the processor that are used. The results do not change.
+    /// Selects the instructions of the processor used. The results do not change.
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }

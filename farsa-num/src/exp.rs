@@ -1,4 +1,4 @@
-//! The exponential function, and two activation functions that are based on it.
+//! The exponential function, and two activation functions based on it.
 
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};

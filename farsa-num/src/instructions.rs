@@ -57,8 +57,8 @@ impl Instructions {
         Self::ALL.into_iter().filter(move |one| one.within(best).is_some())
     }
 
-    /// Returns the name that is used in configurations and logs. It is `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`,
-    /// `neon` or `wasm-simd128`.
+    /// Returns the name used in configurations and logs. It is `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon`
+    /// or `wasm-simd128`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fallback => "fallback",

@@ -47,7 +47,7 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     [a, b, c, d]
 }
 
-/// A stream of random numbers that is determined by a seed and a purpose.
+/// A stream of random numbers determined by a seed and a purpose.
 ///
 /// A stream is plain data of 44 bytes, and a copy continues at the same position. Two streams never share a block if
 /// any argument of [`Stream::new`] differs. A stream repeats after 2^34 words.

@@ -9,11 +9,11 @@ use crate::actuators::muscle::MusclePair;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Servo<R> {
-    /// The position gain [N m/rad or N/m].
+    /// The position gain (in N m/rad or N/m).
     pub stiffness: R,
-    /// The velocity gain [N m s/rad or N s/m].
+    /// The velocity gain (in N m s/rad or N s/m).
     pub damping: R,
-    /// The largest effort that the servo can exert, in newton meters or newtons.
+    /// The largest effort that the servo can exert (in newton meters or newtons).
     pub limit: R,
 }
 
@@ -21,7 +21,7 @@ pub struct Servo<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Torque<R> {
-    /// The largest effort that the motor can exert, in newton meters or newtons.
+    /// The largest effort that the motor can exert (in newton meters or newtons).
     pub limit: R,
 }
 
@@ -29,20 +29,20 @@ pub struct Torque<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocity<R> {
-    /// The torque per unit of speed error [N m s/rad or N s/m].
+    /// The torque per unit of speed error (in N m s/rad or N s/m).
     pub gain: R,
-    /// The largest effort that the motor can exert, in newton meters or newtons.
+    /// The largest effort that the motor can exert (in newton meters or newtons).
     pub limit: R,
 }
 
-/// A custom law that is evaluated by the user once per control step. It combines the commanded torque with constant
-/// stiffness and damping.
+/// A custom law evaluated by the user once per control step. It combines the commanded torque with constant stiffness
+/// and damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Held<R> {
-    /// The stiffness around the position that is given by the second command [N m/rad or N/m].
+    /// The stiffness around the position given by the second command (in N m/rad or N/m).
     pub stiffness: R,
-    /// The damping of the joint [N m s/rad or N s/m].
+    /// The damping of the joint (in N m s/rad or N s/m).
     pub damping: R,
 }
 

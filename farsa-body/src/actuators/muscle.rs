@@ -28,11 +28,11 @@ pub enum MuscleVariant {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MusclePair<R> {
-    /// The largest active tension of each muscle, Tmax [N].
+    /// The largest active tension of each muscle, Tmax (in newtons).
     pub tension: R,
-    /// The moment arm of the muscles, in meters.
+    /// The moment arm of the muscles (in meters).
     pub moment_arm: R,
-    /// The joint position at which the agonist is shortest, in radians.
+    /// The joint position at which the agonist is shortest (in radians).
     pub lower: R,
     /// The joint position at which the agonist is longest, in radians.
     pub upper: R,
@@ -44,9 +44,9 @@ pub struct MusclePair<R> {
     pub longest: R,
     /// The shape parameter of the passive tension, Ksh.
     pub shape: R,
-    /// The passive tension at the longest length, divided by e^shape - 1 [N].
+    /// The passive tension at the longest length, divided by e^shape - 1 (in newtons).
     pub passive_scale: R,
-    /// The viscosity b [N per unit of length per second].
+    /// The viscosity b (in N per unit of length per second).
     pub viscosity: R,
 }
 
@@ -54,17 +54,17 @@ pub struct MusclePair<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
-    /// The tension that results from the activation, in newtons.
+    /// The tension that results from the activation (in newtons).
     pub active: S,
-    /// The tension that results from the length, in newtons. Below the rest length it is negative, but never more than
+    /// The tension that results from the length (in newtons). Below the rest length it is negative, but never more than
     /// 5 % of the largest tension.
     pub passive: S,
-    /// The tension that results from the rate of length, in newtons. It is negative while the muscle shortens.
+    /// The tension that results from the rate of length (in newtons). It is negative while the muscle shortens.
     pub viscous: S,
 }
 
 impl<S: Scalar> Tension<S> {
-    /// Returns the sum of the components, in newtons.
+    /// Returns the sum of the components (in newtons).
     #[inline(always)]
     pub fn total(self) -> S {
         self.active + self.passive + self.viscous
@@ -106,7 +106,7 @@ impl<R: Real> MusclePair<R> {
         }
     }
 
-    /// Returns the change of muscle length per unit of joint position, s [1/rad].
+    /// Returns the change of muscle length per unit of joint position, s (in 1/rad).
     #[inline(always)]
     pub fn gear(&self) -> R {
         (self.longest - self.shortest) / (self.upper - self.lower)
@@ -119,7 +119,7 @@ impl<R: Real> MusclePair<R> {
         [q.like(self.shortest) + stroke, q.like(self.longest) - stroke]
     }
 
-    /// Computes the tension of one muscle. The `rate` of length is positive while the muscle lengthens [1/s], and
+    /// Computes the tension of one muscle. The `rate` of length is positive while the muscle lengthens (in 1/s), and
     /// `activation` is between 0 and 1.
     #[inline(always)]
     pub fn tension_at<S: Scalar<Real = R>>(&self, length: S, rate: S, activation: S) -> Tension<S> {
@@ -143,8 +143,8 @@ impl<R: Real> MusclePair<R> {
         (S::select(within, pull * parabola, zero), growth - scale, (active_slope + growth * shape) * per_width)
     }
 
-    /// Computes the effort of the pair at joint position `q` [rad] and speed `qdot` [rad/s]. The command contains the
-    /// activations of agonist and antagonist, each between 0 and 1. They are not clamped.
+    /// Computes the effort of the pair at joint position `q` (in radians) and speed `qdot` (in rad/s). The command
+    /// contains the activations of agonist and antagonist, each between 0 and 1. They are not clamped.
     ///
     /// Let s be the [`gear`](MusclePair::gear), r the moment arm and T1, T2 the tensions. Then the torque is r (T2 -
     /// T1), the damping is 2 r s b, and the stiffness is max(0, -dtorque/dq). The derivative becomes negative where the
@@ -164,8 +164,9 @@ impl<R: Real> MusclePair<R> {
         }
     }
 
-    /// Computes the activations of agonist and antagonist that hold `torque` [N m] at rest at the position `q` [rad],
-    /// with minimal co-contraction. The second result is true if both are within [0, 1]. Otherwise they are clamped.
+    /// Computes the activations of agonist and antagonist that hold `torque` (in N m) at rest at the position `q` (in
+    /// radians), with minimal co-contraction. The second result is true if both are within [0, 1]. Otherwise they are
+    /// clamped.
     ///
     /// One of the two activations is always 0. At the ends of the range there is no active tension, so only the passive
     /// torque can be held there.

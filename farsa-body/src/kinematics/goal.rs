@@ -30,7 +30,7 @@ pub enum Orientation {
 pub struct Goal {
     /// The body that should be moved.
     pub body: BodyId,
-    /// The point in the frame of the body, in meters.
+    /// The point in the frame of the body (in meters).
     pub point: [f64; 3],
     /// The desired position of the point in the world, in meters.
     pub position: [f64; 3],

@@ -13,11 +13,11 @@ use crate::pose::{Pose, norm};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
-    /// The joint positions [rad or m], in the order of [`KinematicTree::joints`].
+    /// The joint positions (in radians or meters), in the order of [`KinematicTree::joints`].
     pub joints: Vec<f64>,
-    /// The distance between the point and its desired position, in meters.
+    /// The distance between the point and its desired position (in meters).
     pub position_error: f64,
-    /// The angle between the actual and the desired orientation or direction, in radians.
+    /// The angle between the actual and the desired orientation or direction (in radians).
     pub angle_error: f64,
 }
 
@@ -75,9 +75,9 @@ impl core::error::Error for InverseKinematicsError {}
 pub struct InverseKinematics {
     /// The largest position error of a solution, in meters.
     pub position_tolerance: f64,
-    /// The largest angle error of a solution, in radians.
+    /// The largest angle error of a solution (in radians).
     pub angle_tolerance: f64,
-    /// The distance that is weighted like an angle of one radian, in meters.
+    /// The distance weighted like an angle of one radian (in meters).
     pub angle_weight: f64,
     /// The fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
     ///

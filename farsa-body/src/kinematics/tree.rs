@@ -89,7 +89,7 @@ impl KinematicTree {
         &self.joints
     }
 
-    /// Returns the ranges of these joints, in radians or meters.
+    /// Returns the ranges of these joints (in radians or meters).
     pub fn ranges(&self) -> &[[f64; 2]] {
         &self.ranges
     }
@@ -104,12 +104,12 @@ impl KinematicTree {
         self.links.len()
     }
 
-    /// Returns the joint positions [rad or m] that are as close to 0 as the limits permit.
+    /// Returns the joint positions (in radians or meters) that are as close to 0 as the limits permit.
     pub fn zero(&self) -> Vec<f64> {
         self.ranges.iter().map(|[low, high]| low.max(0.0).min(*high)).collect()
     }
 
-    /// Computes the poses of all segments in the world at the joint positions `q`, in radians or meters.
+    /// Computes the poses of all segments in the world at the joint positions `q` (in radians or meters).
     ///
     /// If `q` is too short, the missing positions are 0.
     pub fn poses(&self, q: &[f64]) -> Vec<Pose<f64>> {
@@ -159,9 +159,9 @@ impl KinematicTree {
         })
     }
 
-    /// Computes the Jacobian of a `point` in the frame of `body` [m], given the `poses` of all segments. Each column
-    /// belongs to a joint. It contains the angular velocity of the body [rad/s] and the velocity of the point [m/s] in
-    /// the world at unit joint speed.
+    /// Computes the Jacobian of a `point` in the frame of `body` (in meters), given the `poses` of all segments. Each
+    /// column belongs to a joint. It contains the angular velocity of the body (in rad/s) and the velocity of the point
+    /// (in m/s) in the world at unit joint speed.
     ///
     /// # Panics
     /// Panics if there are fewer poses than segments, or if the body does not exist.
@@ -174,8 +174,8 @@ impl KinematicTree {
         jacobian
     }
 
-    /// Computes the joint torques [N m] or forces [N] that hold the robot at rest. The vector `gravity` is given in the
-    /// axes of the world [m/s2].
+    /// Computes the joint torques (in N m) or forces (in newtons) that hold the robot at rest. The vector `gravity` is
+    /// given in the axes of the world (in m/s2).
     ///
     /// # Panics
     /// Panics if there are fewer poses than segments.

@@ -89,8 +89,8 @@ impl<B, A: Copy> HeadTracking<B, A> {
         }
     }
 
-    /// Returns the angles from the axis of the camera to the target, to the left and upwards [rad]. Returns `None` if
-    /// the target is not in front of the camera.
+    /// Returns the angles from the axis of the camera to the target, to the left and upwards (in radians). Returns
+    /// `None` if the target is not in front of the camera.
     pub fn angles<W>(&self, world: &W) -> Option<[f32; 2]>
     where
         B: Copy,

@@ -41,9 +41,9 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for Muscles<A> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ServoRange<A = ActuatorId> {
-    /// The servo that is commanded.
+    /// The servo commanded.
     pub servo: A,
-    /// The desired position at a channel value of 0, in radians or meters.
+    /// The desired position at a channel value of 0 (in radians or meters).
     pub from: f32,
     /// The desired position at a channel value of 1, in radians or meters.
     pub to: f32,
@@ -100,7 +100,7 @@ pub struct TorqueMotor<A = ActuatorId> {
 }
 
 impl<A> TorqueMotor<A> {
-    /// Creates a motor that maps the values 0, 1/2 and 1 to the torques -`largest`, 0 and `largest` [N m or N].
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the torques -`largest`, 0 and `largest` (in N m or N).
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `largest` is not finite.
@@ -136,8 +136,8 @@ pub struct VelocityMotor<A = ActuatorId> {
 }
 
 impl<A> VelocityMotor<A> {
-    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` [rad/s or m/s]. The
-    /// `gain` must be that of the actuator [N m s/rad or N s/m].
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` (in rad/s or m/s).
+    /// The `gain` must be that of the actuator (in N m s/rad or N s/m).
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if a number is not finite.

@@ -18,7 +18,7 @@ pub struct WheelVelocity<A = ActuatorId> {
 }
 
 impl<A> WheelVelocity<A> {
-    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` [rad/s]. The left
+    /// Creates a motor that maps the values 0, 1/2 and 1 to the speeds -`largest`, 0 and `largest` (in rad/s). The left
     /// wheel comes first.
     ///
     /// # Errors
@@ -61,8 +61,8 @@ pub struct SpeedAndTurn<A = ActuatorId> {
 }
 
 impl<A> SpeedAndTurn<A> {
-    /// Creates a motor for the left and the right wheel. Their largest speed in both directions is `largest`, in
-    /// radians per second.
+    /// Creates a motor for the left and the right wheel. Their largest speed in both directions is `largest` (in
+    /// radians per second).
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.

@@ -39,9 +39,9 @@ pub struct Joint {
     pub placement: Pose<f64>,
     /// The lowest and the highest position, in radians or meters. They may be infinite.
     pub range: [f64; 2],
-    /// The inertia of the drive [kg m2 or kg], which is added to that of the segment.
+    /// The inertia of the drive (in kg m2 or kg), which is added to that of the segment.
     pub armature: f64,
-    /// The viscous damping [N m s/rad or N s/m].
+    /// The viscous damping (in N m s/rad or N s/m).
     pub damping: f64,
 }
 
@@ -63,7 +63,7 @@ pub struct Segment {
     pub inertia: [f64; 6],
 }
 
-/// A shape that is attached to a segment or to the world.
+/// A shape attached to a segment or to the world.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Collider {
@@ -75,9 +75,9 @@ pub struct Collider {
     pub shape: Shape,
     /// The pose of the collider in the frame of the segment.
     pub placement: Pose<f64>,
-    /// The red, green and blue components of the color that cameras see [0..1]. A collider without a color is invisible
-    /// for cameras in a plane ([`Sight`](crate::ports::Sight)). In images ([`Vision`](crate::ports::Vision)) it hides
-    /// everything behind it.
+    /// The red, green and blue components of the color that cameras see (between 0 and 1). A collider without a color
+    /// is invisible for cameras in a plane ([`Sight`](crate::ports::Sight)). In images
+    /// ([`Vision`](crate::ports::Vision)) it hides everything behind it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }
@@ -88,11 +88,11 @@ pub struct Collider {
 pub struct Surface {
     /// The coefficient of sliding friction.
     pub friction: f64,
-    /// The resistance to rolling and spinning, as the ratio of the largest torque and the normal force, in meters.
+    /// The resistance to rolling and spinning, as the ratio of the largest torque and the normal force (in meters).
     pub rolling_friction: f64,
-    /// The normal stiffness of a contact point [N/m].
+    /// The normal stiffness of a contact point (in N/m).
     pub stiffness: f64,
-    /// The normal damping of a contact point [N s/m].
+    /// The normal damping of a contact point (in N s/m).
     pub damping: f64,
 }
 
@@ -116,7 +116,7 @@ pub struct Pair {
 pub struct Actuator {
     /// The name of the actuator, unique in the robot.
     pub name: String,
-    /// The joint that is driven.
+    /// The joint driven.
     pub joint: JointId,
     /// The law that determines the torque.
     pub law: Law<f64>,
@@ -130,7 +130,7 @@ pub struct Ground {
     pub body: BodyId,
     /// The coefficient of friction.
     pub friction: f64,
-    /// The force that presses the body on the ground [N], for example its weight.
+    /// The force that presses the body on the ground (in newtons), for example its weight.
     pub load: f64,
     /// The effective radius for the friction of a rotating body, in meters. For a disc with uniform pressure it is two
     /// thirds of its radius.
@@ -145,7 +145,7 @@ pub struct Robot {
     pub name: String,
     /// The segments. Parents must come before their children.
     pub segments: Vec<Segment>,
-    /// The shapes that are used for contacts and sensors.
+    /// The shapes used for contacts and sensors.
     pub colliders: Vec<Collider>,
     /// The pairs of colliders that may touch.
     pub pairs: Vec<Pair>,
@@ -154,7 +154,7 @@ pub struct Robot {
     /// The ground below sliding bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub grounds: Vec<Ground>,
-    /// Shapes that are drawn instead of the colliders. They are ignored by worlds.
+    /// Shapes drawn instead of the colliders. They are ignored by worlds.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub visuals: Vec<Visual>,
 }
@@ -232,14 +232,14 @@ impl Joint {
         Self::new("", JointKind::Floating, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
     }
 
-    /// Sets the armature [kg m2 or kg].
+    /// Sets the armature (in kg m2 or kg).
     #[must_use]
     pub fn with_armature(mut self, armature: f64) -> Self {
         self.armature = armature;
         self
     }
 
-    /// Sets the viscous damping [N m s/rad or N s/m].
+    /// Sets the viscous damping (in N m s/rad or N s/m).
     #[must_use]
     pub fn with_damping(mut self, damping: f64) -> Self {
         self.damping = damping;
@@ -272,7 +272,7 @@ impl Collider {
         Self { color: Some(color), ..self }
     }
 
-    /// Creates a capsule whose axis extends from point `a` to point `b` in the frame of the body, in meters. If the
+    /// Creates a capsule whose axis extends from point `a` to point `b` in the frame of the body (in meters). If the
     /// points coincide, the result is a sphere.
     pub fn capsule_between(name: &str, body: Option<BodyId>, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
@@ -287,7 +287,8 @@ impl Collider {
         Self::new(name, body, Shape::Capsule { radius, half_length: length / 2.0 }, Pose { position, rotation })
     }
 
-    /// Computes the mass properties of a solid with this shape and the given mass [kg] in the frame of the body.
+    /// Computes the mass properties of a solid with this shape and the given mass (in kilograms) in the frame of the
+    /// body.
     pub fn mass_properties(&self, mass: f64) -> MassProperties {
         MassProperties::from_shape(&self.shape, mass).placed(&self.placement)
     }

@@ -1,4 +1,4 @@
-//! The shapes that are drawn, which are visuals and colliders of segments without visuals.
+//! The shapes drawn, which are visuals and colliders of segments without visuals.
 
 use alloc::format;
 
@@ -15,13 +15,13 @@ impl From<&Collider> for Visual {
 }
 
 impl Robot {
-    /// Adds a shape that is drawn.
+    /// Adds a shape drawn.
     pub fn add_visual(&mut self, visual: Visual) {
         self.visuals.push(visual);
     }
 
-    /// Returns an iterator over the colliders that are drawn. These are the colliders of the world and of segments that
-    /// have no visual.
+    /// Returns an iterator over the colliders drawn. These are the colliders of the world and of segments that have no
+    /// visual.
     pub fn drawn_colliders(&self) -> impl Iterator<Item = &Collider> + '_ {
         let replaced = |body| self.visuals.iter().any(|visual| visual.body == Some(body));
         self.colliders.iter().filter(move |collider| !collider.body.is_some_and(replaced))

@@ -6,7 +6,7 @@ use crate::pose::{Pose, norm};
 use crate::robot::description::{Joint, JointKind};
 
 impl Joint {
-    /// Returns a fixed joint that replaces this joint at the given position, in radians or meters. It has no name, no
+    /// Returns a fixed joint that replaces this joint at the given position (in radians or meters). It has no name, no
     /// armature and no damping.
     ///
     /// Fixed and floating joints do not have a position. They are fixed at their placement.

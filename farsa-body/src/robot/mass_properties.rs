@@ -5,7 +5,7 @@ use crate::robot::shape::Shape;
 
 /// The mass, the center of mass and the inertia of a rigid body.
 ///
-/// The constructors assume homogeneous solids that are centered at the origin, with their axis along z.
+/// The constructors assume homogeneous solids centered at the origin, with their axis along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
@@ -13,7 +13,7 @@ pub struct MassProperties {
     pub mass: f64,
     /// The center of mass, in meters.
     pub centre: [f64; 3],
-    /// The elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass [kg m2].
+    /// The elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass (in kg m2).
     pub inertia: [f64; 6],
 }
 
@@ -22,29 +22,30 @@ impl MassProperties {
         Self { mass, centre: [0.0; 3], inertia: [xx, yy, zz, 0.0, 0.0, 0.0] }
     }
 
-    /// Creates a sphere with the given mass [kg] and radius [m]. Its inertia is 2/5 m r2 about every axis.
+    /// Creates a sphere with the given mass (in kilograms) and radius (in meters). Its inertia is 2/5 m r2 about every
+    /// axis.
     pub fn sphere(mass: f64, radius: f64) -> Self {
         Self::diagonal(mass, [0.4 * mass * radius * radius; 3])
     }
 
-    /// Creates a box with the given mass [kg] and half edge lengths [m]. Its inertia about the axis along a is m (b2 +
-    /// c2) / 3.
+    /// Creates a box with the given mass (in kilograms) and half edge lengths (in meters). Its inertia about the axis
+    /// along a is m (b2 + c2) / 3.
     pub fn cuboid(mass: f64, half: [f64; 3]) -> Self {
         let [a, b, c] = half.map(|x| x * x);
         Self::diagonal(mass, [b + c, a + c, a + b].map(|sum| mass * sum / 3.0))
     }
 
-    /// Creates a cylinder with the given mass [kg], radius and half length [m]. Its inertia is m r2 / 2 about its axis
-    /// and m (r2 / 4 + h2 / 3) about the others.
+    /// Creates a cylinder with the given mass (in kilograms), radius and half length (in meters). Its inertia is m r2 /
+    /// 2 about its axis and m (r2 / 4 + h2 / 3) about the others.
     pub fn cylinder(mass: f64, radius: f64, half_length: f64) -> Self {
         let r2 = radius * radius;
         let across = mass * (r2 / 4.0 + half_length * half_length / 3.0);
         Self::diagonal(mass, [across, across, mass * r2 / 2.0])
     }
 
-    /// Creates a capsule with the given mass [kg], radius and half length h of its axis [m]. It consists of a cylinder
-    /// and two half spheres of the same density. The half spheres contribute 2/5 m r2 about the axis and m (2/5 r2 + h2
-    /// + 3/4 h r) about the others.
+    /// Creates a capsule with the given mass (in kilograms), radius and half length h of its axis (in meters). It
+    /// consists of a cylinder and two half spheres of the same density. The half spheres contribute 2/5 m r2 about the
+    /// axis and m (2/5 r2 + h2 + 3/4 h r) about the others.
     pub fn capsule(mass: f64, radius: f64, half_length: f64) -> Self {
         let (r2, h) = (radius * radius, half_length);
         let tube = mass * h / (h + 2.0 / 3.0 * radius);

@@ -275,7 +275,7 @@ impl Robot {
     /// are positive.
     ///
     /// # Errors
-    /// Returns the first [`RobotError`] that is found.
+    /// Returns the first [`RobotError`] found.
     pub fn validate(&self) -> Result<(), RobotError> {
         let counts = [
             ("segments", self.segments.len()),

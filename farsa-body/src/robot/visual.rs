@@ -1,20 +1,20 @@
-//! Shapes that are drawn instead of colliders.
+//! Shapes drawn instead of colliders.
 
 use crate::ports::BodyId;
 use crate::pose::Pose;
 use crate::robot::shape::Shape;
 
-/// A shape that is drawn at a segment or in the world. It has no contacts and is invisible for sensors.
+/// A shape drawn at a segment or in the world. It has no contacts and is invisible for sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Visual {
     /// The segment to which the shape is attached, or `None` for the world.
     pub body: Option<BodyId>,
-    /// The shape that is drawn.
+    /// The shape drawn.
     pub shape: Shape,
     /// The pose of the shape in the frame of the segment.
     pub placement: Pose<f64>,
-    /// The red, green and blue components of the color [0..1]. For `None`, views use a default color.
+    /// The red, green and blue components of the color (between 0 and 1). For `None`, views use a default color.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }

@@ -13,7 +13,7 @@ pub struct InfraredRing {
     /// The directions of the sensors, counter-clockwise from straight ahead, in radians. They also determine the
     /// positions of the sensors on the hull.
     pub angles: Vec<f64>,
-    /// The range of the sensors, measured from the hull [m].
+    /// The range of the sensors, measured from the hull (in meters).
     pub range: f64,
     /// Half the opening angle of the cone in which a sensor detects objects, in radians.
     pub aperture: f64,
@@ -28,13 +28,13 @@ pub struct InfraredRing {
 pub struct MobileRobot {
     /// The name of the robot.
     pub name: String,
-    /// The radius of the hull, in meters.
+    /// The radius of the hull (in meters).
     pub radius: f64,
     /// The height of the robot, in meters.
     pub height: f64,
-    /// The radius of the wheels, in meters.
+    /// The radius of the wheels (in meters).
     pub wheel_radius: f64,
-    /// The distance between the wheels, in meters.
+    /// The distance between the wheels (in meters).
     pub track: f64,
     /// The largest angular speed of a wheel in both directions, in radians per second.
     pub max_wheel_speed: f64,
@@ -42,14 +42,14 @@ pub struct MobileRobot {
     pub infrared: InfraredRing,
     /// The positions of the ground color sensors in the frame of the robot, in meters.
     pub ground: Vec<[f64; 2]>,
-    /// The red, green and blue components of the hull's color [0..1], which is visible when no LED is on.
+    /// The red, green and blue components of the hull's color (between 0 and 1), which is visible when no LED is on.
     pub color: [f64; 3],
     /// True if the robot has LEDs. They are three actuators for red, green and blue.
     pub leds: bool,
     /// True if the robot can send a signal. The signal is an actuator.
     pub signal: bool,
-    /// The reach of the attachment device, measured from the hull [m], or `None` if there is no such device. The device
-    /// is an actuator.
+    /// The reach of the attachment device, measured from the hull (in meters), or `None` if there is no such device.
+    /// The device is an actuator.
     pub attachment: Option<f64>,
 }
 
@@ -180,9 +180,9 @@ pub struct MobileParts {
     pub wheels: [JointId; 2],
     /// The motors of the left and the right wheel. Their commands are speeds, in radians per second.
     pub motors: [ActuatorId; 2],
-    /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses [0..1].
+    /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses (between 0 and 1).
     pub leds: Option<[ActuatorId; 3]>,
-    /// The signal, whose command is its value [0..1].
+    /// The signal, whose command is its value (between 0 and 1).
     pub signal: Option<ActuatorId>,
     /// The attachment device, which holds for commands above 0.5.
     pub attachment: Option<ActuatorId>,

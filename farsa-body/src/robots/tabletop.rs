@@ -16,17 +16,17 @@ use crate::robots::hand::Finger;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Tabletop {
-    /// The lower and upper ends of the table along X, in meters.
+    /// The lower and upper ends of the table along X (in meters).
     pub table_x: [f64; 2],
-    /// The lower and upper ends of the table along Y, in meters.
+    /// The lower and upper ends of the table along Y (in meters).
     pub table_y: [f64; 2],
-    /// The thickness of the table, which is solid [m].
+    /// The thickness of the table, which is solid (in meters).
     pub table_depth: f64,
-    /// The radius of the sphere, in meters.
+    /// The radius of the sphere (in meters).
     pub sphere_radius: f64,
-    /// The mass of the sphere, which is solid [kg].
+    /// The mass of the sphere, which is solid (in kilograms).
     pub sphere_mass: f64,
-    /// The initial X and Y coordinates of the sphere on the table, in meters.
+    /// The initial X and Y coordinates of the sphere on the table (in meters).
     pub sphere_start: [f64; 2],
     /// The properties of contacts between the hand and the sphere.
     pub hand_on_sphere: Surface,
@@ -54,7 +54,7 @@ impl Default for Tabletop {
 }
 
 impl Tabletop {
-    /// The body of the sphere in the description that is returned by [`Tabletop::scene`].
+    /// The body of the sphere in the description returned by [`Tabletop::scene`].
     pub const SPHERE: BodyId = BodyId(27);
 
     /// Builds a description with the arm, the hand, the sphere and the table. The parts of the arm come first.

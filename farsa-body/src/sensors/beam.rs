@@ -5,22 +5,22 @@ use farsa_num::{Scalar, sin_cos};
 use crate::channel::{ChannelError, direction, finite};
 use crate::ports::{Kinematics, Rays};
 
-/// A ray that is attached to the hull of a robot. Coordinates are relative to the robot.
+/// A ray attached to the hull of a robot. Coordinates are relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Beam {
-    /// The point at which the ray leaves the hull, in meters.
+    /// The point at which the ray leaves the hull (in meters).
     pub from: [f32; 2],
     /// The direction of the ray as a unit vector.
     pub direction: [f32; 2],
 }
 
 impl Beam {
-    /// Returns one of several rays that sample a cone. The cone starts at a round hull with the given radius [m], in
-    /// the direction `angle` [rad], counter-clockwise from straight ahead.
+    /// Returns one of several rays that sample a cone. The cone starts at a round hull with the given radius (in
+    /// meters), in the direction `angle` (in radians), counter-clockwise from straight ahead.
     ///
-    /// All rays of a cone start at the same point. The first ray is `aperture` [rad] to the right of `angle` and the
-    /// last one `aperture` to the left, and the others are evenly distributed between them. A single ray is in the
+    /// All rays of a cone start at the same point. The first ray is `aperture` (in radians) to the right of `angle` and
+    /// the last one `aperture` to the left, and the others are evenly distributed between them. A single ray is in the
     /// middle. This function does not need an allocator:
     ///
     /// ```
@@ -39,8 +39,8 @@ impl Beam {
         Self { from: [(radius * out.1) as f32, (radius * out.0) as f32], direction: [along.1 as f32, along.0 as f32] }
     }
 
-    /// Returns one of several rays that cover a field of view [rad] around straight ahead, ordered from left to right.
-    /// They start at the position `from` in the frame of the robot, in meters.
+    /// Returns one of several rays that cover a field of view (in radians) around straight ahead, ordered from left to
+    /// right. They start at the position `from` in the frame of the robot (in meters).
     ///
     /// The field of view is divided into equal parts, and each ray is in the middle of a part. Therefore the rays are
     /// evenly distributed even if the field of view is a full circle.

@@ -17,7 +17,7 @@ pub struct GroundColor<L, B = BodyId> {
 }
 
 impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
-    /// Creates a sensor with one channel for each of the given points in the frame of `body`, in meters.
+    /// Creates a sensor with one channel for each of the given points in the frame of `body` (in meters).
     ///
     /// # Errors
     /// Returns [`ChannelError::Groups`] if there are no points, or [`ChannelError::Value`] if a coordinate is not

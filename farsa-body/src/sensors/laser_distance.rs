@@ -7,7 +7,7 @@ use crate::sensors::beam::{Beam, BeamFrame};
 /// A sensor that measures distances along several beams. Each beam has one channel, which is distance / range in [0,
 /// 1]. It is 1 if nothing is within the range.
 ///
-/// Distances are measured from the hull. The beams can be stored in any list, for example one that is created with
+/// Distances are measured from the hull. The beams can be stored in any list, for example one created with
 /// [`Beam::in_cone`]. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.
 #[doc(alias = "lidar")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub struct LaserDistance<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> LaserDistance<L, B> {
-    /// Creates a sensor at `height` [m] above the origin of `body`. Its beams have a range of `range` [m] from the
-    /// hull.
+    /// Creates a sensor at `height` (in meters) above the origin of `body`. Its beams have a range of `range` (in
+    /// meters) from the hull.
     ///
     /// # Errors
     /// Returns [`ChannelError::Groups`] if there are no beams. Returns [`ChannelError::Value`] if a direction is not a

@@ -29,8 +29,8 @@ pub struct LightSensors<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> LightSensors<L, B> {
-    /// Creates light sensors on `body`. A lamp of intensity 1 that is straight ahead at a distance of `reference` [m]
-    /// results in a reading of 1.
+    /// Creates light sensors on `body`. A lamp of intensity 1 that is straight ahead at a distance of `reference` (in
+    /// meters) results in a reading of 1.
     ///
     /// # Errors
     /// Returns [`ChannelError::Groups`] if there are no sensors. Returns [`ChannelError::Value`] if a direction is not

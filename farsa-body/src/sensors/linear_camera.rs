@@ -99,8 +99,8 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
 
 #[cfg(feature = "alloc")]
 impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
-    /// Creates a camera at the origin of `body` that looks ahead. The field of view [rad] is divided into equal sectors
-    /// with `per_sector` rays each. A field of view of 2 pi covers all directions.
+    /// Creates a camera at the origin of `body` that looks ahead. The field of view (in radians) is divided into equal
+    /// sectors with `per_sector` rays each. A field of view of 2 pi covers all directions.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if the field of view is not between 0 and 2 pi, and the errors of

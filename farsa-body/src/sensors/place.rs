@@ -3,7 +3,7 @@
 use crate::channel::{ChannelError, finite, write};
 use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 
-/// A point that is fixed to a body.
+/// A point fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point<B = BodyId> {
@@ -19,7 +19,7 @@ impl<B: Copy> Point<B> {
         Self { body, at: [0.0; 3] }
     }
 
-    /// Returns the position of the point in the world, in meters.
+    /// Returns the position of the point in the world (in meters).
     pub fn position<W: Kinematics<Body = B> + ?Sized>(&self, world: &W) -> [f32; 3] {
         world.pose(self.body).transform(self.at)
     }
@@ -84,7 +84,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for TargetPosition<B> 
     }
 }
 
-/// A sensor with one channel that measures the height of a point above the origin of the world, in meters.
+/// A sensor with one channel that measures the height of a point above the origin of the world (in meters).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Height<B = BodyId> {
@@ -110,8 +110,8 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Height<B> {
     }
 }
 
-/// A sensor that measures the pose of a body. Its seven channels are the position in the world [m] and the orientation
-/// as a unit quaternion x, y, z, w.
+/// A sensor that measures the pose of a body. Its seven channels are the position in the world (in meters) and the
+/// orientation as a unit quaternion x, y, z, w.
 ///
 /// The sign of the quaternion is chosen such that w >= 0. Therefore equal orientations always result in equal readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,8 +142,8 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for BodyPose<B> {
     }
 }
 
-/// A sensor that measures the velocity of a body. Its six channels are the velocity of the origin [m/s] and the angular
-/// velocity [rad/s].
+/// A sensor that measures the velocity of a body. Its six channels are the velocity of the origin (in m/s) and the
+/// angular velocity (in rad/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyVelocity<B = BodyId> {

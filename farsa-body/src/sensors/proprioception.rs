@@ -41,7 +41,7 @@ impl<J: Copy, W: Joints<Joint = J> + ?Sized> Sensor<W> for JointPosition<J> {
     }
 }
 
-/// A sensor with one channel that measures the speed of a joint, in radians or meters per second. Wrap it in
+/// A sensor with one channel that measures the speed of a joint (in radians or meters per second). Wrap it in
 /// [`crate::wrappers::Scaled`] to use other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

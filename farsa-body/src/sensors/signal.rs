@@ -1,4 +1,4 @@
-//! Channels that are set by the experiment, such as labels, instructions and biases.
+//! Channels set by the experiment, such as labels, instructions and biases.
 
 use crate::channel::write;
 use crate::ports::{Channels, Sensor};

@@ -22,8 +22,8 @@ pub struct SignalSensor<const SECTORS: usize, B = BodyId> {
 }
 
 impl<const SECTORS: usize, B> SignalSensor<SECTORS, B> {
-    /// Creates a sensor on `body` that receives the signals of robots whose hull is within `range` [m] of the origin of
-    /// the body.
+    /// Creates a sensor on `body` that receives the signals of robots whose hull is within `range` (in meters) of the
+    /// origin of the body.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `range` is not a finite number > 0, or [`ChannelError::Groups`] if there are

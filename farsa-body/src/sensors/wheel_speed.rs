@@ -17,7 +17,8 @@ pub struct WheelSpeed<J = JointId, const N: usize = 2> {
 }
 
 impl<J, const N: usize> WheelSpeed<J, N> {
-    /// Creates a sensor for the given wheels. Their `largest` speed [rad/s] reads 1, and 0 in the opposite direction.
+    /// Creates a sensor for the given wheels. Their `largest` speed (in rad/s) reads 1, and 0 in the opposite
+    /// direction.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `largest` is not a finite number > 0.
@@ -63,7 +64,7 @@ pub struct Traction<B = BodyId, J = JointId> {
 
 impl<B, J> Traction<B, J> {
     /// Creates a sensor for a robot with a left and a right wheel of the given radius, in meters. A difference of
-    /// `largest` [m/s] results in a reading of 1.
+    /// `largest` (in m/s) results in a reading of 1.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if a number is not finite or not > 0.

@@ -1,4 +1,4 @@
-//! A conformance kit for custom worlds, sensors and motors. Each check returns the first promise that is violated.
+//! A conformance kit for custom worlds, sensors and motors. Each check returns the first promise violated.
 //!
 //! | you wrote | check it with |
 //! |---|---|

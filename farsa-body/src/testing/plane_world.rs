@@ -16,9 +16,8 @@ use crate::robots::mobile::{MobileParts, MobileRobot};
 ///
 /// Bodies are numbered in the order in which they are added. The wheels and the actuators of all robots are numbered in
 /// the same way. For ray casts, all objects are infinitely high. Robots drive along exact arcs and do not collide with
-/// anything. An attachment device that is switched on holds the nearest disc or robot within its reach. The ground is
-/// black by default, and the time step is 50 ms. Identifiers that do not exist read as 0, and commands to them have no
-/// effect.
+/// anything. An attachment device switched on holds the nearest disc or robot within its reach. The ground is black by
+/// default, and the time step is 50 ms. Identifiers that do not exist read as 0, and commands to them have no effect.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics, World};
@@ -112,7 +111,7 @@ struct Met {
 }
 
 impl PlaneWorld {
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub const TIME_STEP: f32 = 0.05;
 
     /// Creates an empty world.
@@ -120,12 +119,12 @@ impl PlaneWorld {
         Self::default()
     }
 
-    /// Adds a wall between two points, in meters.
+    /// Adds a wall between two points (in meters).
     pub fn add_wall(&mut self, ends: [[f32; 2]; 2], color: [f32; 3]) {
         self.walls.push(Wall { ends, color });
     }
 
-    /// Adds a disc or an upright cylinder with the given center and radius, in meters.
+    /// Adds a disc or an upright cylinder with the given center and radius (in meters).
     pub fn add_disc(&mut self, centre: [f32; 2], radius: f32, color: [f32; 3]) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color, intensity: None, robot: None })
     }
@@ -140,7 +139,7 @@ impl PlaneWorld {
         self.areas.push(Painted { centre, radius, color });
     }
 
-    /// Adds a robot at the given position [m] and heading [rad].
+    /// Adds a robot at the given position (in meters) and heading (in radians).
     pub fn add_robot(&mut self, robot: &MobileRobot, at: [f32; 2], heading: f32) -> MobileParts {
         let (index, color) = (self.robots.len(), robot.color.map(|x| x as f32));
         let radius = robot.radius as f32;
@@ -167,7 +166,7 @@ impl PlaneWorld {
         parts
     }
 
-    /// Moves a body to the given position [m] and heading [rad].
+    /// Moves a body to the given position (in meters) and heading (in radians).
     pub fn place(&mut self, body: BodyId, at: [f32; 2], heading: f32) {
         if let Some(round) = self.bodies.get_mut(body.index()) {
             round.centre = at;

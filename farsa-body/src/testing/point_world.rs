@@ -13,12 +13,11 @@ use crate::pose::{Pose, Twist};
 /// A world with points of 1 kg that move on vertical screws above a floor. Its dynamics consist of a few explicit
 /// equations.
 ///
-/// Point i is attached to joint i, whose position is the height q, in meters. The point is body i at the position (0.1
+/// Point i is attached to joint i, whose position is the height q (in meters). The point is body i at the position (0.1
 /// i, 0, q) and rotates about the vertical axis by 10 rad per meter. Actuator i pushes it upwards with a force of
-/// `command[0]
-/// - command[1]` [N]. Below the height 0, the floor pushes back. Its contact is pair i, in which the point is the first
-///   body. Rays hit the floor and green spheres of 2 cm around the points. The time step is 10 ms, and there are no
-///   floating bodies. Identifiers that do not exist read as 0, and commands to them have no effect.
+/// `command[0] - command[1]` (in newtons). Below the height 0, the floor pushes back. Its contact is pair i, in which
+/// the point is the first body. Rays hit the floor and green spheres of 2 cm around the points. The time step is 10 ms,
+/// and there are no floating bodies. Identifiers that do not exist read as 0, and commands to them have no effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointWorld {
     points: Vec<Point>,
@@ -37,13 +36,13 @@ struct Point {
 const WORDS: usize = 4;
 
 impl PointWorld {
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub const TIME_STEP: f32 = 0.01;
-    /// The rotation of a point per unit of height [rad/m].
+    /// The rotation of a point per unit of height (in rad/m).
     pub const TURN: f32 = 10.0;
     /// The distance between two screws, in meters.
     const SPACING: f32 = 0.1;
-    /// The radius of the spheres that are hit by rays, in meters.
+    /// The radius of the spheres hit by rays, in meters.
     pub const RADIUS: f32 = 0.02;
     /// The color of the spheres. The floor has no color.
     pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];

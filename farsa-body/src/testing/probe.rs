@@ -1,4 +1,4 @@
-//! The parts of a world that are used by the checks.
+//! The parts of a world used by the checks.
 
 use alloc::vec::Vec;
 
@@ -16,13 +16,13 @@ pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
     /// The bodies that can be placed anywhere on a plane. They keep their position and heading as long as they are not
     /// moved.
     pub planar: Vec<B>,
-    /// The joints that can be placed, each with two positions [rad or m] between which it can be placed.
+    /// The joints that can be placed, each with two positions (in radians or meters) between which it can be placed.
     pub joints: Vec<(J, [f32; 2])>,
     /// The actuators, each with the lower and upper limits of both values of its command.
     pub actuators: Vec<(A, [[f32; 2]; 2])>,
     /// The number of steps in a run, which must be at least 16.
     pub steps: usize,
-    /// The tolerance for the difference between the mean speed of a step and the speeds at its ends [m/s or rad/s].
+    /// The tolerance for the difference between the mean speed of a step and the speeds at its ends (in m/s or rad/s).
     pub slack: f32,
 }
 

@@ -75,7 +75,7 @@ pub enum Promise {
     Channels,
 }
 
-/// The error that is returned when a promise is violated.
+/// The error returned when a promise is violated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConformanceError {
     /// The violated promise.

@@ -12,13 +12,13 @@ pub struct Arm {
     pub lengths: [f64; 2],
     /// The masses of the segments, in kilograms.
     pub masses: [f64; 2],
-    /// The radius of both segments, in meters.
+    /// The radius of both segments (in meters).
     pub radius: f64,
-    /// The largest rotation of each joint to either side, in degrees.
+    /// The largest rotation of each joint to either side (in degrees).
     pub ranges: [f64; 2],
     /// The largest speed that the network can command for each joint, in radians per second.
     pub speeds: [f64; 2],
-    /// The torque per unit of difference between the commanded and the actual speed \[N m s/rad\].
+    /// The torque per unit of difference between the commanded and the actual speed (in N m s/rad).
     pub gains: [f64; 2],
     /// The largest torque of each motor, in newton meters.
     pub torques: [f64; 2],
@@ -29,26 +29,26 @@ pub struct Arm {
 pub struct Objects {
     /// The radius of an object, in meters.
     pub radius: f64,
-    /// The mass of an object, in kilograms.
+    /// The mass of an object (in kilograms).
     pub mass: f64,
     /// The coefficient of friction between an object and the ground.
     pub ground_friction: f64,
     /// The coefficient of friction between the arm and an object, and between two objects.
     pub friction: f64,
-    /// The mean distance of the objects from the base of the arm, in meters.
+    /// The mean distance of the objects from the base of the arm (in meters).
     pub distance: f64,
-    /// The largest deviation from that distance, in meters.
+    /// The largest deviation from that distance (in meters).
     pub distance_spread: f64,
-    /// The bearings of the three places, from left to right, in degrees.
+    /// The bearings of the three places, from left to right (in degrees).
     pub bearings: [f64; 3],
-    /// The largest deviation from each bearing, in degrees.
+    /// The largest deviation from each bearing (in degrees).
     pub bearing_spread: f64,
 }
 
 /// The camera at the base of the arm. It looks along the first segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The field of view, in degrees. It is divided into three sectors of equal width.
+    /// The field of view (in degrees). It is divided into three sectors of equal width.
     pub view: f64,
     /// The number of rays that are cast in each sector.
     pub rays: u32,
@@ -59,30 +59,31 @@ pub struct Camera {
 /// The posture of the arm at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// The largest deviation of the first joint from the direction between two neighboring objects, in degrees.
+    /// The largest deviation of the first joint from the direction between two neighboring objects (in degrees).
     pub first_spread: f64,
     /// The angle of the second joint, in degrees.
     pub second: f64,
-    /// The largest deviation from that angle, in degrees.
+    /// The largest deviation from that angle (in degrees).
     pub second_spread: f64,
     /// If true, the side on which the arm starts is drawn at random. Otherwise it always starts on the left.
     pub both_sides: bool,
 }
 
-/// The thresholds that are used to compute the reward and to decide if a trial was successful.
+/// The thresholds used to compute the reward and to decide if a trial was successful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judging {
-    /// The length of the period at the end of a trial that is taken into account, in seconds.
+    /// The length of the period at the end of a trial that is taken into account (in seconds).
     pub window: f64,
-    /// The displacement of an object that has no effect on the reward, in meters.
+    /// The displacement of an object that has no effect on the reward (in meters).
     pub still: f64,
     /// The additional displacement at which the reward falls to zero, in meters.
     pub span: f64,
-    /// Like `span`, but for the target of TOUCH, in meters.
+    /// Like `span`, but for the target of TOUCH (in meters).
     pub span_touched: f64,
     /// The displacement that earns the maximum reward for MOVE, in meters.
     pub far: f64,
-    /// The distance from the surface of the centered target below which the tip earns a reward for reaching, in meters.
+    /// The distance from the surface of the centered target below which the tip earns a reward for reaching (in
+    /// meters).
     pub reach: f64,
     /// The weight of reaching in the reward for TOUCH and MOVE, between 0 and 1.
     pub reach_share: f64,
@@ -91,13 +92,13 @@ pub struct Judging {
     /// The minimum shares of the final period that count as a success. The first applies to INDICATE and IGNORE, the
     /// second to TOUCH.
     pub least_shares: [f64; 2],
-    /// The largest displacement of the target that is allowed in a successful trial of INDICATE or IGNORE, in meters.
+    /// The largest displacement of the target allowed in a successful trial of INDICATE or IGNORE (in meters).
     pub most_still: f64,
-    /// The largest displacement of the target that is allowed in a successful trial of TOUCH, in meters.
+    /// The largest displacement of the target allowed in a successful trial of TOUCH, in meters.
     pub most_touched: f64,
-    /// The smallest displacement of the target that is required in a successful trial of MOVE, in meters.
+    /// The smallest displacement of the target required in a successful trial of MOVE, in meters.
     pub least_moved: f64,
-    /// The largest displacement of any other object that is allowed in a successful trial, in meters.
+    /// The largest displacement of any other object allowed in a successful trial, in meters.
     pub most_other: f64,
 }
 
@@ -125,7 +126,7 @@ pub struct Config {
     pub starts: u32,
     /// The number of steps of a trial.
     pub steps: u32,
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub time_step: f64,
     /// The number of dynamics steps in each control step.
     pub substeps: u32,
@@ -135,7 +136,7 @@ pub struct Config {
     pub objects: Objects,
     /// The camera at the base.
     pub camera: Camera,
-    /// The distance between two surfaces below which they count as touching, in meters.
+    /// The distance between two surfaces below which they count as touching (in meters).
     pub touch_margin: f64,
     /// The posture of the arm at the start.
     pub start: Start,

@@ -23,13 +23,13 @@ fn noise_of(id: EpisodeId) -> Stream {
 /// The instructions of one trial. Some tests replace the first instruction while the trial is running.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialInstructions {
-    /// The instruction that is given at the start.
+    /// The instruction given at the start.
     pub first: Instruction,
     /// The step at which the instruction changes, and the new instruction. `None` if it stays the same.
     pub change: Option<(u32, Instruction)>,
     /// The number of steps of the trial.
     pub steps: u32,
-    /// The standard deviation of the noise that is added to the camera, the touch sensors and the joint angles.
+    /// The standard deviation of the noise added to the camera, the touch sensors and the joint angles.
     pub noise: f32,
 }
 

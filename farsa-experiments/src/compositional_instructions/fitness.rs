@@ -12,13 +12,13 @@ use crate::compositional_instructions::instruction::{Action, Color, Instruction}
 pub struct Observation {
     /// The colors that are visible in each sector of the camera. The leftmost sector comes first.
     pub seen: [[bool; 3]; 3],
-    /// True for each object that is touched by the second segment, in the order of the colors.
+    /// True for each object touched by the second segment, in the order of the colors.
     pub touched: [bool; 3],
     /// The distance between each object and its initial place, in meters.
     pub displaced: [f64; 3],
     /// The distance between the tip of the second segment and the surface of each object, in meters.
     pub tip: [f64; 3],
-    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left, in meters.
+    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left (in meters).
     pub ahead: [[f64; 2]; 3],
 }
 
@@ -52,7 +52,7 @@ pub struct Parts {
     pub fitness: f64,
 }
 
-/// The totals that are collected during the final period of a trial.
+/// The totals collected during the final period of a trial.
 ///
 /// All shares refer to this period. `d_t` and `d_o` are the displacements of the target and of the other object that
 /// moved most. The function `near(d)` is defined as `1 - clamp((d - still) / span, 0, 1)`, and `aside(d)` uses
@@ -118,7 +118,7 @@ impl RewardTotals {
         &self.last
     }
 
-    /// Returns the displacement of the target, followed by the largest displacement of the other objects, in meters.
+    /// Returns the displacement of the target, followed by the largest displacement of the other objects (in meters).
     pub fn displaced(&self, target: Color) -> [f64; 2] {
         let others = Color::ALL.into_iter().filter(|color| *color != target);
         let farthest = others.map(|color| self.last.displaced[color.index()]).fold(0.0, f64::max);

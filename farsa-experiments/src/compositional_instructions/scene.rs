@@ -28,7 +28,7 @@ const GRAVITY: f64 = 9.81;
 /// The positions of the arm and the objects at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartPose {
-    /// The angles of the two joints, in radians.
+    /// The angles of the two joints (in radians).
     pub joints: [f64; 2],
     /// The positions of the objects in the order of their colors, in meters.
     pub objects: [[f64; 2]; 3],

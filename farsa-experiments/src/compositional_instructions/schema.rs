@@ -1,4 +1,4 @@
-//! The names of the channels that are recorded in `compositional-instructions`.
+//! The names of the channels recorded in `compositional-instructions`.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};

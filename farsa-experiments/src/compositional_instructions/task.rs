@@ -20,7 +20,7 @@ use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::schema;
 use crate::compositional_instructions::senses::{ArmWorld, channel_names};
 
-/// Runs the trials of a network and defines the channels that are recorded.
+/// Runs the trials of a network and defines the channels recorded.
 #[derive(Clone)]
 pub struct InstructionTask {
     episode: InstructionEpisode<Agent>,

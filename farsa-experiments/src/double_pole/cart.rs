@@ -2,25 +2,25 @@
 
 use farsa_num::sin_cos;
 
-/// A pole that is attached to the cart by a hinge. It is modeled as a thin uniform rod.
+/// A pole attached to the cart by a hinge. It is modeled as a thin uniform rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// Half the length of the pole, l \[m\].
+    /// Half the length of the pole, l (in meters).
     pub half_length: f64,
-    /// The mass of the pole, m \[kg\].
+    /// The mass of the pole, m (in kilograms).
     pub mass: f64,
-    /// The coefficient of friction of the hinge \[N m s\].
+    /// The coefficient of friction of the hinge (in N m s).
     pub friction: f64,
 }
 
 /// A cart that moves along a straight track and carries two poles. The poles do not collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cart {
-    /// The mass of the cart, M \[kg\].
+    /// The mass of the cart, M (in kilograms).
     pub mass: f64,
     /// The friction between the cart and the track, in newtons. It does not depend on the speed.
     pub friction: f64,
-    /// The acceleration of gravity \[m/s^2\].
+    /// The acceleration of gravity (in m/s^2).
     pub gravity: f64,
     /// The two poles on the cart.
     pub poles: [Pole; 2],
@@ -29,13 +29,13 @@ pub struct Cart {
 /// The state of the cart and the poles at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartState {
-    /// The position of the cart on the track, in meters.
+    /// The position of the cart on the track (in meters).
     pub position: f64,
-    /// The velocity of the cart, in meters per second.
+    /// The velocity of the cart (in meters per second).
     pub velocity: f64,
-    /// The angles of the poles from the upright position, in radians. Positive angles lean towards positive positions.
+    /// The angles of the poles from the upright position (in radians). Positive angles lean towards positive positions.
     pub angles: [f64; 2],
-    /// The angular velocities of the poles, in radians per second.
+    /// The angular velocities of the poles (in radians per second).
     pub angular_velocities: [f64; 2],
 }
 
@@ -63,8 +63,8 @@ impl Default for Cart {
 }
 
 impl Cart {
-    /// Computes the accelerations of the cart \[m/s^2\] and of the poles \[rad/s^2\] when a force \[N\] acts on the
-    /// cart.
+    /// Computes the accelerations of the cart (in m/s^2) and of the poles (in rad/s^2) when a force (in newtons) acts
+    /// on the cart.
     ///
     /// Source: \[Wieland1991\], as printed in \[Gomez2008\] appendix A. Deviation: g is positive here.
     #[inline]

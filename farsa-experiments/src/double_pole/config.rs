@@ -7,7 +7,7 @@ use farsa_lab::{Error, Setting, Settings};
 use crate::double_pole::cart::Cart;
 use crate::double_pole::network::MOST_HIDDEN;
 
-/// The configuration of the cart, the trial and the network. Settings that are marked as given have the defaults of
+/// The configuration of the cart, the trial and the network. Settings marked as given have the defaults of
 /// \[Gomez2008\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -17,7 +17,7 @@ pub struct Config {
     pub damping: bool,
     /// The cart and the poles that it carries.
     pub cart: Cart,
-    /// The duration of a step of the integration, in seconds.
+    /// The duration of a step of the integration (in seconds).
     pub time_step: f64,
     /// The number of integration steps between two steps of the network.
     pub substeps: u32,
@@ -31,14 +31,14 @@ pub struct Config {
     pub most_position: f64,
     /// The largest force that the network can apply, in newtons.
     pub force: f64,
-    /// The smallest force that the network can apply, in newtons.
+    /// The smallest force that the network can apply (in newtons).
     pub least_force: f64,
     /// The number of hidden neurons in the network.
     pub hidden: u32,
     /// The largest absolute value of a weight.
     pub weight_range: f64,
-    /// The scales of the positions \[m\], angles \[rad\] and velocities \[m/s or rad/s\]. Each input is divided by its
-    /// scale.
+    /// The scales of the positions (in meters), angles (in radians) and velocities (in m/s or rad/s). Each input is
+    /// divided by its scale.
     pub scales: [f64; 3],
 }
 

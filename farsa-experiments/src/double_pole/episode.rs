@@ -177,7 +177,7 @@ impl CartEpisode {
         &self.y
     }
 
-    /// Returns the force that was applied to the cart in the last step, in newtons.
+    /// Returns the force that was applied to the cart in the last step (in newtons).
     pub fn force(&self) -> f64 {
         self.force
     }

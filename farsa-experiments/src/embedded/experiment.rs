@@ -12,7 +12,7 @@ use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 use crate::embedded::infrared;
 use crate::embedded::settings::NamedSettings;
 
-/// An experiment that is defined by an embedded file of farsa-compose and provides its settings.
+/// An experiment described by an embedded file of farsa-compose. It has separate settings.
 pub struct EmbeddedExperiment {
     name: &'static str,
     text: &'static str,

@@ -34,18 +34,18 @@ impl Condition {
 pub struct Volume {
     /// The center of the ellipsoid, relative to the center of the robot's body, in meters.
     pub centre: [f64; 3],
-    /// The semi-axes of the ellipsoid along x, y and z \[m\].
+    /// The semi-axes of the ellipsoid along x, y and z (in meters).
     pub semi_axes: [f64; 3],
 }
 
 impl Volume {
-    /// Returns the smallest and the largest coordinate of the volume along an axis, in meters.
+    /// Returns the smallest and the largest coordinate of the volume along an axis (in meters).
     pub fn ends(&self, axis: usize) -> [f64; 2] {
         let (centre, half) = (self.centre[axis], self.semi_axes[axis]);
         [if axis == 0 { centre } else { centre - half }, centre + half]
     }
 
-    /// Returns the point whose distance from the center is given in multiples of the semi-axes, in meters.
+    /// Returns the point whose distance from the center is given in multiples of the semi-axes (in meters).
     pub fn at(&self, parts: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| self.centre[k] + self.semi_axes[k] * parts[k])
     }
@@ -62,7 +62,7 @@ pub struct Config {
     pub same_targets: bool,
     /// The number of steps of a trial.
     pub steps: u32,
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub time_step: f64,
     /// The number of dynamics steps in each control step.
     pub substeps: u32,
@@ -70,20 +70,20 @@ pub struct Config {
     pub volume: Volume,
     /// The initial pitch, roll and yaw of the trunk, in degrees.
     pub torso: [f64; 3],
-    /// The initial angles of the seven joints of the left arm, in degrees.
+    /// The initial angles of the seven joints of the left arm (in degrees).
     pub arm: [f64; 7],
     /// The position error at which a servo reaches the maximum effort of its joint, in radians.
     pub saturation_angle: f64,
-    /// The difference between the commanded and the actual speed at which a motor reaches its maximum effort, in
-    /// radians per second.
+    /// The difference between the commanded and the actual speed at which a motor reaches its maximum effort (in
+    /// radians per second).
     pub saturation_speed: f64,
-    /// The largest speed that the network can command, in radians per second.
+    /// The largest speed that the network can command (in radians per second).
     pub speed: f64,
     /// The rate at which a joint that should not move returns to its angle, in 1/s. The commanded speed is proportional
     /// to the deviation.
     pub hold_rate: f64,
-    /// The distance between hand and target that is sensed as 1 along an axis, in meters. In the opposite direction it
-    /// is sensed as -1.
+    /// The distance between hand and target that is sensed as 1 along an axis, in meters. In the opposite direction it is
+    /// sensed as -1.
     pub offset: f64,
     /// The length of the period at the end of a trial over which the distance is averaged, in seconds.
     pub window: f64,

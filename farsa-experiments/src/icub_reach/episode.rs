@@ -34,7 +34,7 @@ pub struct Reaching {
     pub jump: Option<u32>,
     /// If true, the trunk keeps its initial posture.
     pub locked_torso: bool,
-    /// An additional mass that is attached to the hand, in kilograms.
+    /// An additional mass attached to the hand, in kilograms.
     pub load: f64,
 }
 
@@ -103,12 +103,12 @@ impl<C: Reacher> ReachEpisode<C> {
         &self.y
     }
 
-    /// Returns the position of the center of the palm, in meters.
+    /// Returns the position of the center of the palm (in meters).
     pub fn hand(&self) -> [f64; 3] {
         self.hand
     }
 
-    /// Returns the current position of the target, in meters.
+    /// Returns the current position of the target (in meters).
     pub fn target(&self) -> [f64; 3] {
         self.targets[usize::from(self.asked.jump.is_some_and(|at| self.steps >= at))]
     }

@@ -11,7 +11,7 @@ use farsa_physics::articulated::Options;
 
 use crate::icub_reach::config::{Condition, Config};
 
-/// The names of the joints that are controlled by the network, in the order of its outputs.
+/// The names of the joints controlled by the network, in the order of its outputs.
 pub const CONTROLLED: [&str; 6] =
     ["torso_pitch", "torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"];
 
@@ -43,11 +43,11 @@ pub(crate) struct Burdened {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The robot that is simulated.
+    /// The robot simulated.
     pub robot: Robot,
     /// The configuration from which the scene was built.
     pub config: Config,
-    /// The center of the palm in the frame of the hand, in meters.
+    /// The center of the palm in the frame of the hand (in meters).
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,
@@ -135,7 +135,7 @@ impl Scene {
         Options { time_step, substeps, ..Options::default() }
     }
 
-    /// Returns the lower and upper limits of the six joints, in radians.
+    /// Returns the lower and upper limits of the six joints (in radians).
     pub fn ranges(&self) -> [[f64; 2]; 6] {
         self.controlled.map(|driven| driven.range)
     }
@@ -159,7 +159,7 @@ impl Scene {
         KinematicTree::new(&robot)
     }
 
-    /// Draws the target of a trial from the stream of [`Domain::Start`], in meters. It is uniformly distributed in the
+    /// Draws the position of the target (in meters) from the stream of [`Domain::Start`]. It is uniformly distributed in the
     /// volume and the same for all individuals of a generation.
     pub fn target(&self, id: EpisodeId) -> [f64; 3] {
         self.draw(&mut self.stream(id))

@@ -1,4 +1,4 @@
-//! The names of the channels that are recorded in `icub-reach`.
+//! The names of the channels recorded in `icub-reach`.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};

@@ -16,7 +16,7 @@ const DAMPING: f64 = 0.03;
 const NEAR: f64 = 0.01;
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// A controller that is based on the kinematics of the robot.
+/// A controller based on the kinematics of the robot.
 ///
 /// With the condition `steady`, it computes the joint angles with inverse kinematics and compensates for the deflection
 /// of the servos under gravity. With `velocity`, it moves toward the target by damped least squares \[Wampler1986\] and

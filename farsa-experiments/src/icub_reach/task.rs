@@ -19,7 +19,7 @@ use crate::icub_reach::protocols::Protocols;
 use crate::icub_reach::scene::{CONTROLLED, Scene};
 use crate::icub_reach::schema;
 
-/// Runs the trials of a network and defines the channels that are recorded.
+/// Runs the trials of a network and defines the channels recorded.
 #[derive(Clone)]
 pub struct ReachTask {
     episode: ReachEpisode<Agent>,

@@ -1,6 +1,6 @@
 //! Computation of the reward in `icub-reach`.
 
-/// The distances between hand and target that are collected during a trial. They are reset when the target moves.
+/// The distances between hand and target collected during a trial. They are reset when the target moves.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct RewardTotals {
     start: f64,
@@ -24,12 +24,12 @@ impl RewardTotals {
         }
     }
 
-    /// Returns the distance at the start, in meters.
+    /// Returns the distance at the start (in meters).
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Returns the distance after the last step, in meters.
+    /// Returns the distance after the last step (in meters).
     pub fn last(&self) -> f64 {
         self.last
     }
@@ -40,8 +40,8 @@ impl RewardTotals {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }
     }
 
-    /// Computes the fitness, which is 1 minus the ratio of the mean distance and the start distance. The start distance
-    /// is at least `least`, in meters. The result is between 0 and 1, or NaN.
+    /// Computes the fitness. This is 1 minus the ratio of the mean distance and the start distance. The start distance
+    /// is at least `least` (in meters). The result is between 0 and 1, or NaN.
     pub fn fitness(&self, least: f64) -> f64 {
         1.0 - (self.mean() / self.start.max(least)).clamp(0.0, 1.0)
     }

@@ -33,7 +33,7 @@ pub struct Lifting {
     /// The cell in which the ball is placed, followed by the number of cells along x and y. By default each trial uses
     /// a different part of the area.
     pub cell: Option<[[u32; 2]; 2]>,
-    /// The largest error of the offsets that are measured in the image of the eye.
+    /// The largest error of the offsets measured in the image of the eye.
     pub noise: f32,
 }
 

@@ -16,9 +16,9 @@ pub struct Observation {
     pub palm: [f64; 3],
     /// The center of the ball, in meters.
     pub ball: [f64; 3],
-    /// The distance from the center of the palm to the surface of the ball, in meters. It is zero inside the ball.
+    /// The distance from the center of the palm to the surface of the ball (in meters). It is zero inside the ball.
     pub distance: f64,
-    /// The height of the lowest point of the ball above the table, in meters.
+    /// The height of the lowest point of the ball above the table (in meters).
     pub height: f64,
     /// The number of parts of the hand that touch the ball.
     pub touching: u32,
@@ -83,7 +83,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Starts a trial with the given distance between the hand and the ball, in meters.
+    /// Starts a trial with the given distance between the hand and the ball (in meters).
     pub fn new(distance: f64) -> Self {
         Self { start: distance, ..Self::default() }
     }

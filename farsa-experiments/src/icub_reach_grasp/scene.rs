@@ -138,7 +138,7 @@ impl Scene {
         self.place_of(id, [part / GRID[1], part % GRID[1]], GRID, self.config.area_size)
     }
 
-    /// Draws the position of the ball for a trial from one cell of the tested area, in meters. The argument `cells`
+    /// Draws the position of the ball for a trial from one cell of the tested area (in meters). The argument `cells`
     /// gives the number of cells along x and y.
     pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
         self.place_of(id, cell, cells, self.config.tested_size)
@@ -152,7 +152,7 @@ impl Scene {
         })
     }
 
-    /// Moves the robot to its initial posture and places the ball on the table at the given coordinates, in meters.
+    /// Moves the robot to its initial posture and places the ball on the table at the given coordinates (in meters).
     pub fn arrange<W>(&self, world: &mut W, [x, y]: [f64; 2])
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,

@@ -1,4 +1,4 @@
-//! The names of the channels that are recorded in `icub-reach-grasp`.
+//! The names of the channels recorded in `icub-reach-grasp`.
 
 use farsa_body::Recorder;
 use farsa_body::ports::{PairId, Vision};

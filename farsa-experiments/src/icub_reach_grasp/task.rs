@@ -23,7 +23,7 @@ use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::schema;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// Runs the trials of a network and defines the channels that are recorded.
+/// Runs the trials of a network and defines the channels recorded.
 #[derive(Clone)]
 pub struct GraspTask {
     episode: GraspEpisode<Agent>,

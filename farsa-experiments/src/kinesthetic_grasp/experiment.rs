@@ -25,8 +25,8 @@ use farsa_lab::{Error, Evaluation, Evaluator, Experiment, InWorld, Outcome, Sett
 /// the four trials, which determines its fitness. Then an iteration of the training follows. The errors are written to
 /// `learning.csv` in the directory of the run.
 ///
-/// The desired motor values are computed by the script for the current state of the arm. A network that is trained only
-/// with states of the script cannot correct its errors. Therefore the commands of the network are mixed into the
+/// The desired motor values are computed by the script for the current state of the arm. A network trained only with
+/// states of the script cannot correct its errors. Therefore the commands of the network are mixed into the
 /// demonstrations \[Ross2011\]. The first demonstration of an iteration is executed by the script alone, and the share
 /// of the network in the last one increases with each iteration. The network that is evaluated and mixed in is an
 /// average over the latest gradient steps \[Polyak1992\].

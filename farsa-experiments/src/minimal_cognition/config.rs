@@ -4,7 +4,7 @@ use core::f64::consts::FRAC_PI_6;
 
 use farsa_lab::{Error, Setting, Settings};
 
-/// The configuration of the agent, the objects and the network. Settings that are marked as given have the defaults of
+/// The configuration of the agent, the objects and the network. Settings marked as given have the defaults of
 /// \[Beer2003\].
 ///
 /// The source does not specify units for lengths and times.

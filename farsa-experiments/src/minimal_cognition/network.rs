@@ -82,7 +82,7 @@ impl Wiring {
         Ok(Self { symmetry, parameters })
     }
 
-    /// Returns the number of genes, which is 47.
+    /// Returns the number of genes. This is 47.
     pub fn genes(&self) -> usize {
         self.parameters.len()
     }

@@ -12,7 +12,7 @@ use farsa_physics::arena::Arena;
 pub struct PushConfig {
     /// The robot that pushes the box.
     pub robot: MobileRobot,
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub time_step: f64,
     /// The number of trials in an evaluation. Each trial has a different start.
     pub trials: u32,
@@ -26,7 +26,7 @@ pub struct PushConfig {
     pub friction: f64,
     /// The smallest and the largest initial distance between the robot and a circle around the box.
     pub apart: [f64; 2],
-    /// The displacement of the box that is required in a successful trial.
+    /// The displacement of the box required in a successful trial.
     pub far: f64,
     /// The largest absolute value of a weight or bias.
     pub weight_range: f64,
@@ -126,7 +126,7 @@ impl PushConfig {
         self.robot.max_wheel_speed * self.robot.wheel_radius
     }
 
-    /// Returns the number of infrared sensors, which are the inputs of the controller.
+    /// Returns the number of infrared sensors. These are the inputs of the controller.
     pub fn inputs(&self) -> usize {
         self.robot.infrared.angles.len()
     }

@@ -22,16 +22,16 @@ use crate::push_box::layer::{place_and_heading, record_step, wheel_speeds};
 /// Values that a controller gives: left and right wheel.
 pub(crate) const OUTPUTS: usize = 2;
 
-/// The measurements that are collected during a trial.
+/// The measurements collected during a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PushTrial {
     /// The number of steps that have been completed.
     pub steps: u32,
     /// The number of steps in which the robot touched the box.
     pub touched: u32,
-    /// The horizontal distance between the first and the last position of the box, in meters.
+    /// The horizontal distance between the first and the last position of the box (in meters).
     pub moved: f64,
-    /// The length of the path of the box, in meters.
+    /// The length of the path of the box (in meters).
     pub way: f64,
     /// The largest speed of the box at the end of a step, in meters per second.
     pub fastest: f64,
@@ -110,7 +110,7 @@ impl<C: Controller> PushEpisode<C> {
         world.finish_placement();
     }
 
-    /// Returns the current reward, which is the displacement of the box in meters. It is NaN if the trial failed.
+    /// Returns the current reward. This is the displacement of the box in meters. It is NaN if the trial failed.
     pub fn fitness(&self) -> f64 {
         if self.trial.failed { f64::NAN } else { self.trial.moved }
     }

@@ -44,73 +44,73 @@ pub struct Config {
     pub labels: bool,
     /// The physics engine that simulates the robot.
     pub engine: Engine,
-    /// The duration of a control step, in seconds.
+    /// The duration of a control step (in seconds).
     pub time_step: f64,
     /// The number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The downward acceleration of gravity \[m/s2\].
+    /// The downward acceleration of gravity (in m/s2).
     pub gravity: f64,
     /// The number of sweeps of the contact solver in each dynamics step.
     pub sweeps: u32,
-    /// The creep of a sticking contact, as tangential speed per impulse of a dynamics step \[m/s per N s\].
+    /// The creep of a sticking contact, as tangential speed per impulse of a dynamics step (in m/s per N s).
     pub slip: f64,
-    /// The natural frequency of a joint's stop, in radians per second.
+    /// The natural frequency of a joint's stop (in radians per second).
     pub limit_frequency: f64,
     /// The number of control steps of a trial.
     pub steps: u32,
-    /// The initial angles of the joints J1 to J4 in each trial, in degrees.
+    /// The initial angles of the joints J1 to J4 in each trial (in degrees).
     pub arm_poses: [f64; 4 * TRIALS],
-    /// The initial position (tx, ty) of the sphere in each trial, in centimeters.
+    /// The initial position (tx, ty) of the sphere in each trial (in centimeters).
     pub sphere_positions: [f64; 2 * TRIALS],
     /// The mapping of these positions to the world.
     pub sphere_frame: SphereFrame,
     /// The largest random displacement of a joint at the start, in degrees.
     pub joint_displacement: f64,
-    /// The largest random displacement of the sphere along x and y at the start, in centimeters.
+    /// The largest random displacement of the sphere along x and y at the start (in centimeters).
     pub sphere_displacement: f64,
     /// Defines which individuals share the displacements.
     pub displacement: Displacement,
-    /// The point in which the axes of the joints J1 to J3 intersect, in meters.
+    /// The point in which the axes of the joints J1 to J3 intersect (in meters).
     pub shoulder: [f64; 3],
     /// The variant of the muscle model.
     pub muscles: MuscleVariant,
-    /// The moment arm of the muscles, in meters.
+    /// The moment arm of the muscles (in meters).
     pub moment_arm: f64,
     /// The factor that reduces the passive tension of the muscles in the original program.
     pub passive_reduction: f64,
-    /// The damping of each arm joint, relative to the largest torque of its muscles \[s/rad\].
+    /// The damping of each arm joint, relative to the largest torque of its muscles (in s/rad).
     pub damping: f64,
-    /// The armature of the arm joints \[kg m2\].
+    /// The armature of the arm joints (in kg m2).
     pub arm_armature: f64,
-    /// The armature of the hand joints \[kg m2\].
+    /// The armature of the hand joints (in kg m2).
     pub hand_armature: f64,
-    /// The position gain of the finger servos \[N m/rad\].
+    /// The position gain of the finger servos (in N m/rad).
     pub servo_stiffness: f64,
-    /// The velocity gain of the finger servos \[N m s/rad\].
+    /// The velocity gain of the finger servos (in N m s/rad).
     pub servo_damping: f64,
-    /// The largest force of a finger tendon, in newtons.
+    /// The largest force of a finger tendon (in newtons).
     pub servo_force: f64,
-    /// The moment arm of a finger tendon, in meters.
+    /// The moment arm of a finger tendon (in meters).
     pub tendon_radius: f64,
-    /// The passive damping of the hand joints \[N m s/rad\].
+    /// The passive damping of the hand joints (in N m s/rad).
     pub hand_damping: f64,
-    /// The radius of the sphere, in meters.
+    /// The radius of the sphere (in meters).
     pub sphere_radius: f64,
-    /// The mass of the sphere, in kilograms.
+    /// The mass of the sphere (in kilograms).
     pub sphere_mass: f64,
-    /// The lower and the upper end of the table top along x, in meters.
+    /// The lower and the upper end of the table top along x (in meters).
     pub table_x: [f64; 2],
     /// The lower and the upper end of the table top along y, in meters.
     pub table_y: [f64; 2],
-    /// The depth of the table, which is a solid block below z = 0, in meters.
+    /// The depth of the table, which is a solid block below z = 0 (in meters).
     pub table_depth: f64,
     /// The coefficient of sliding friction, which is the same for all surfaces.
     pub friction: f64,
-    /// The rolling friction between the sphere and the table, in meters.
+    /// The rolling friction between the sphere and the table (in meters).
     pub rolling_friction: f64,
-    /// The normal stiffness of each contact point \[N/m\].
+    /// The normal stiffness of each contact point (in N/m).
     pub contact_stiffness: f64,
-    /// The normal damping of each contact point \[N s/m\].
+    /// The normal damping of each contact point (in N s/m).
     pub contact_damping: f64,
     /// The number of contacts at which a touch sensor is saturated.
     pub touch_saturation: f64,
@@ -193,8 +193,8 @@ impl Config {
         Self { labels, ..Self::default() }
     }
 
-    /// Returns the x and y coordinates of the sphere's center at the start of a trial, without random displacement, in
-    /// meters.
+    /// Returns the x and y coordinates of the sphere's center at the start of a trial, without random displacement (in
+    /// meters).
     pub fn sphere_start(&self, trial: usize) -> [f64; 2] {
         let [tx, ty] = [0, 1].map(|k| self.sphere_positions[2 * (trial % TRIALS) + k] / 100.0);
         match self.sphere_frame {
@@ -276,7 +276,7 @@ impl Config {
         LeakyLayout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
     }
 
-    /// Returns the number of control steps per second, which is at least one.
+    /// Returns the number of control steps per second. This is at least one.
     pub fn steps_per_second(&self) -> u32 {
         (1.0 / self.time_step).round().max(1.0) as u32
     }

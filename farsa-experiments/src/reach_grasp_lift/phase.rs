@@ -19,7 +19,7 @@ pub enum Phase {
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The distance ds between the center of the palm and a point 5 cm above the center of the sphere, in centimeters.
+    /// The distance ds between the center of the palm and a point 5 cm above the center of the sphere (in centimeters).
     pub reach_distance: f64,
     /// The distance graspQ between the centroid of the fingertips and the palm and the center of the sphere, in
     /// centimeters.
@@ -33,11 +33,11 @@ pub struct Observation {
     pub palm_down: f64,
     /// True if the sphere touches the table.
     pub on_table: bool,
-    /// The height of the sphere's center above the table top, in centimeters.
+    /// The height of the sphere's center above the table top (in centimeters).
     pub height: f64,
-    /// The position of the palm's center in the world, in meters. Only distances enter the reward.
+    /// The position of the palm's center in the world (in meters). Only distances enter the reward.
     pub palm: [f64; 3],
-    /// The centroid of the fingertips and the center of the palm in the world, in meters.
+    /// The centroid of the fingertips and the center of the palm in the world (in meters).
     pub grasp_centre: [f64; 3],
 }
 
@@ -47,7 +47,7 @@ impl Observation {
         self.contacts > 0
     }
 
-    /// Returns oLifted, which is true if the sphere touches the fingers but not the table.
+    /// Returns oLifted. This is true if the sphere touches the fingers but not the table.
     pub fn lifted(&self) -> bool {
         self.on_fingers() && !self.on_table
     }
@@ -118,8 +118,8 @@ impl Phase {
         }
     }
 
-    /// Returns the bonus for a trial that ends in this phase, which is added to the rewards of its steps
-    /// \[Ferrauto2010, 2.3.4\].
+    /// Returns the bonus for a trial that ends in this phase. This is added to the rewards of its steps \[Ferrauto2010,
+    /// 2.3.4\].
     pub fn bonus(self) -> f64 {
         match self {
             Self::Reach => 0.0,

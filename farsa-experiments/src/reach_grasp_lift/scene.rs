@@ -220,7 +220,7 @@ impl Scene {
         self.arrange_from(world, id, [id.trial as usize; 2]);
     }
 
-    /// Moves the arm and the sphere to the initial state that is returned by [`start_from`](Self::start_from).
+    /// Moves the arm and the sphere to the initial state returned by [`start_from`](Self::start_from).
     pub fn arrange_from<W>(&self, world: &mut W, id: EpisodeId, starts: [usize; 2])
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,

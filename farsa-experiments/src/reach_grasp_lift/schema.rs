@@ -1,4 +1,4 @@
-//! The names of the channels that are recorded in `reach-grasp-lift`.
+//! The names of the channels recorded in `reach-grasp-lift`.
 
 use farsa_body::actuators::{Law, MusclePair};
 use farsa_body::ports::{BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairId};

@@ -30,20 +30,20 @@ pub struct Timetable {
     /// The durations of reaching the way-point, descending, closing and lifting, in seconds. The lifted posture is held
     /// for the rest of the trial.
     pub durations: [f64; 4],
-    /// The height of the palm's center above the table at the way-point, in meters.
+    /// The height of the palm's center above the table at the way-point (in meters).
     pub way_point: f64,
-    /// The height of the palm's center above the table during the grasp, in meters. It is chosen below the top of the
+    /// The height of the palm's center above the table during the grasp (in meters). It is chosen below the top of the
     /// sphere, so that the palm presses gently.
     pub palm: f64,
-    /// The distance from the palm's center to the sphere in the direction of the fingertips, in meters.
+    /// The distance from the palm's center to the sphere in the direction of the fingertips (in meters).
     pub ahead: f64,
     /// The height by which the hand is lifted, in meters.
     pub lift: f64,
     /// The positions of the nine servo groups when the hand is closed around the sphere.
     pub closed: [f64; 9],
-    /// The position gains of the feedback for J1..J7 \[N m/rad\].
+    /// The position gains of the feedback for J1..J7 (in N m/rad).
     pub stiffness: [f64; 7],
-    /// The velocity gains of the feedback for J1..J7 \[N m s/rad\].
+    /// The velocity gains of the feedback for J1..J7 (in N m s/rad).
     pub damping: [f64; 7],
 }
 
@@ -128,8 +128,8 @@ impl Statics {
         self.palm_down([x, y, height], &from)
     }
 
-    /// Computes the activations of the agonists and antagonists of J1..J7 that produce the given torques \[N m\] at a
-    /// posture \[rad\]. The second result is true if the muscles are strong enough.
+    /// Computes the activations of the agonists and antagonists of J1..J7 that produce the given torques (in N m) at a
+    /// posture (in radians). The second result is true if the muscles are strong enough.
     pub fn activations(&self, joints: &[f64], torques: &[f64]) -> ([[f64; 2]; 7], bool) {
         let mut all_reached = true;
         let activations = core::array::from_fn(|i| {
@@ -145,7 +145,7 @@ impl Statics {
         &self.muscles
     }
 
-    /// Computes the torques of J1..J27 that hold a posture \[rad\] against gravity \[N m\].
+    /// Computes the torques of J1..J27 that hold a posture (in radians) against gravity (in N m).
     pub fn gravity_torques(&self, joints: &[f64]) -> Vec<f64> {
         self.tree.gravity_torques(&self.tree.poses(joints), self.gravity)
     }
@@ -165,7 +165,7 @@ fn seven(joints: &[f64]) -> [f64; 7] {
 }
 
 impl GraspPlan {
-    /// Plans the grasp of a sphere at the given position on the table, in meters. The arm starts at the posture
+    /// Plans the grasp of a sphere at the given position on the table (in meters). The arm starts at the posture
     /// `start`, which contains the angles of J1..J27 in radians.
     ///
     /// # Errors
@@ -246,7 +246,7 @@ impl GraspPlan {
     }
 }
 
-/// A trial that is controlled by the script. It uses only the outputs, the starts and the judge of the experiment.
+/// A trial controlled by the script. It uses only the outputs, the starts and the judge of the experiment.
 #[derive(Clone, Debug)]
 pub struct ScriptEpisode {
     judge: Judge,

@@ -21,7 +21,7 @@ use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, StartExport};
 use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_view::Schema;
 
-/// Runs the trials of a network and defines the channels that are recorded.
+/// Runs the trials of a network and defines the channels recorded.
 #[derive(Clone)]
 pub struct ReachTask {
     episode: NetworkEpisode,

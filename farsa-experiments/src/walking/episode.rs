@@ -28,20 +28,20 @@ pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 /// The initial state of a walk. Angles are measured forward from the normal of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Launch {
-    /// The angles of the stance leg and the swing leg, in radians.
+    /// The angles of the stance leg and the swing leg (in radians).
     pub angles: [f64; 2],
-    /// The angular velocities of the stance leg and the swing leg, in radians per second.
+    /// The angular velocities of the stance leg and the swing leg (in radians per second).
     pub rates: [f64; 2],
 }
 
 /// The environment of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// The slope of the ground, which descends in the walking direction, in radians.
+    /// The slope of the ground, which descends in the walking direction (in radians).
     pub slope: f64,
-    /// The acceleration of gravity \[m/s2\].
+    /// The acceleration of gravity (in m/s2).
     pub gravity: f64,
-    /// The duration of a tick, in seconds.
+    /// The duration of a tick (in seconds).
     pub time_step: f64,
     /// The largest number of ticks of a walk.
     pub steps: u32,
@@ -56,9 +56,9 @@ pub struct Walk {
 pub struct Pace {
     /// The backward lean of the leading leg at footfalls, in radians.
     pub angle: f64,
-    /// The angular velocity of that leg after the footfalls, in radians per second.
+    /// The angular velocity of that leg after the footfalls (in radians per second).
     pub rate: f64,
-    /// The angular velocity of the leg that starts to swing, in radians per second.
+    /// The angular velocity of the leg that starts to swing (in radians per second).
     pub swing_rate: f64,
     /// The duration of a step, in seconds.
     pub period: f64,
@@ -226,8 +226,7 @@ impl WalkerEpisode {
         })
     }
 
-    /// Returns the unit of time of the walking model in seconds, which is sqrt(leg length / gravity) for the outer
-    /// legs.
+    /// Returns the unit of time of the walking model in seconds. This is sqrt(leg length / gravity) for the outer legs.
     pub fn unit_of_time(&self) -> f64 {
         Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
     }

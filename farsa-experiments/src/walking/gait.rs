@@ -20,7 +20,7 @@ pub enum End {
 }
 
 impl End {
-    /// Returns the name that is used in tables.
+    /// Returns the name used in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fell => "fell",
@@ -45,7 +45,7 @@ pub struct Rules {
     pub longest_flight: f64,
     /// The largest permitted gain of energy that is not explained by the motor, in units of weight times leg length.
     pub largest_gain: f64,
-    /// The time after a footfall at which the angular velocities can be measured, in seconds.
+    /// The time after a footfall at which the angular velocities can be measured (in seconds).
     pub settling: f64,
 }
 
@@ -65,16 +65,16 @@ impl Default for Rules {
 /// The beginning of a new step, when the swing foot touches the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Footfall {
-    /// The time at which the foot touched the ground, in seconds. It is interpolated between two ticks.
+    /// The time at which the foot touched the ground (in seconds). It is interpolated between two ticks.
     pub time: f64,
     /// The index of the foot, which is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
     /// The position at which the sole touched the ground, in meters.
     pub place: f64,
-    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model, in
-    /// radians.
+    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model (in
+    /// radians).
     pub angle: f64,
-    /// The angular velocities \[rad/s\] after the impact of this leg and of the leg that then swings, forward of the
+    /// The angular velocities (in rad/s) after the impact of this leg and of the leg that then swings, forward of the
     /// ground's normal. They correspond to `theta'` and `theta' - phi'` of the walking model at the footfall. Both are
     /// extrapolated linearly from the rates one and two times [`Rules::settling`] later, and are `None` until then.
     pub rates: Option<[f64; 2]>,
@@ -122,7 +122,7 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// Creates a tracker for a walker under the given gravity \[m/s2\]. The duration of a tick is `time_step` in
+    /// Creates a tracker for a walker under the given gravity (in m/s2). The duration of a tick is `time_step` in
     /// seconds.
     pub fn new(walker: Walker, parts: WalkerParts, rules: Rules, gravity: [f64; 3], time_step: f64) -> Self {
         Self {
@@ -311,7 +311,7 @@ impl Gait {
         self.steps
     }
 
-    /// Returns the distance between the first position of the stance foot and the last footfall, in meters.
+    /// Returns the distance between the first position of the stance foot and the last footfall (in meters).
     pub fn distance(&self) -> f64 {
         self.footfalls[1].place - self.started
     }
@@ -321,7 +321,7 @@ impl Gait {
         self.footfalls
     }
 
-    /// Returns the index of the stance foot, which is 0 for the outer and 1 for the inner foot.
+    /// Returns the index of the stance foot. This is 0 for the outer and 1 for the inner foot.
     pub fn stance(&self) -> usize {
         self.stance
     }
@@ -341,7 +341,7 @@ impl Gait {
         self.end
     }
 
-    /// Returns the work of the motor and the change of the walker's energy since the start, in joules.
+    /// Returns the work of the motor and the change of the walker's energy since the start (in joules).
     pub fn energies(&self) -> [f64; 2] {
         [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
     }

@@ -1,4 +1,4 @@
-//! The channels that are recorded for a walker, and its shapes in drawings.
+//! The channels recorded for a walker, and its shapes in drawings.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;

@@ -45,10 +45,10 @@ pub struct WalkingModel {
     slope: f64,
 }
 
-/// The error that is returned for a slope without a gait.
+/// The error returned for a slope without a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeError {
-    /// The slope, in radians.
+    /// The slope (in radians).
     pub slope: f64,
 }
 
@@ -73,9 +73,9 @@ pub struct ModelStep {
 /// A periodic gait, in which every step is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelGait {
-    /// The angle `theta*` of the stance leg just after a strike, in radians.
+    /// The angle `theta*` of the stance leg just after a strike (in radians).
     pub angle: f64,
-    /// The angular velocity `theta'*` of the stance leg \[rad sqrt(gravity / leg length)\].
+    /// The angular velocity `theta'*` of the stance leg (in rad sqrt(gravity / leg length)).
     pub rate: f64,
     /// The rate of change `phi'*` of the angle between the legs.
     pub swing_rate: f64,
@@ -174,7 +174,7 @@ impl WalkingModel {
         Some([[a, b], [c, d]])
     }
 
-    /// Computes the long-period gait, which is a fixed point of the return map, with Newton's method. Returns `None` if
+    /// Computes the long-period gait with Newton's method. This gait is a fixed point of the return map. Returns `None` if
     /// the iteration does not converge.
     ///
     /// The iteration starts with `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` where `s =

@@ -22,11 +22,11 @@ const RAIL: f64 = 1e-9;
 pub struct Legs {
     /// The distance from the hip to the sole, in meters.
     pub length: f64,
-    /// The mass of the shanks, which is uniformly distributed between hip and sole, in kilograms.
+    /// The mass of the shanks, which is uniformly distributed between hip and sole (in kilograms).
     pub mass: f64,
-    /// The mass at the sole, in kilograms.
+    /// The mass at the sole (in kilograms).
     pub foot_mass: f64,
-    /// The radius of the round sole, whose center is on the leg, in meters.
+    /// The radius of the round sole, whose center is on the leg (in meters).
     pub foot_radius: f64,
 }
 
@@ -47,20 +47,20 @@ pub struct Legs {
 pub struct Walker {
     /// The outer and the inner legs.
     pub legs: [Legs; 2],
-    /// The mass at the hip, in kilograms.
+    /// The mass at the hip (in kilograms).
     pub hip_mass: f64,
-    /// The distance between the outer feet, in meters. The distance between the inner feet is half as large. It is used
-    /// in drawings and does not affect the motion in the plane.
+    /// The distance between the outer feet (in meters). The distance between the inner feet is half as large. It is
+    /// used in drawings and does not affect the motion in the plane.
     pub hip_spacing: f64,
     /// The coefficient of friction between the feet and the ground.
     pub friction: f64,
-    /// The stiffness of the contact between a foot and the ground \[N/m\].
+    /// The stiffness of the contact between a foot and the ground (in N/m).
     pub stiffness: f64,
     /// The damping ratio of this contact for the mass of the entire walker.
     pub damping_ratio: f64,
-    /// The largest angle between the inner and the outer legs, in both directions \[rad\].
+    /// The largest angle between the inner and the outer legs, in both directions (in radians).
     pub hip_range: f64,
-    /// The largest torque of the motor at the hip, in newton meters. A value of 0 removes the motor.
+    /// The largest torque of the motor at the hip (in newton meters). A value of 0 removes the motor.
     pub torque: f64,
 }
 
@@ -121,13 +121,13 @@ impl Legs {
 }
 
 impl Walker {
-    /// Returns the total mass, in kilograms.
+    /// Returns the total mass (in kilograms).
     pub fn mass(&self) -> f64 {
         self.hip_mass + self.legs.iter().map(|legs| legs.mass + legs.foot_mass).sum::<f64>()
     }
 
-    /// Returns the gravity vector \[m/s2\] of the given magnitude in the frame of a slope, which descends along x at
-    /// the given angle \[rad\].
+    /// Returns the gravity vector (in m/s2) of the given magnitude in the frame of a slope, which descends along x at
+    /// the given angle (in radians).
     pub fn gravity(size: f64, slope: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(slope);
         [size * sine, 0.0, -size * cosine]
@@ -212,9 +212,9 @@ impl Walker {
 /// The position and the velocity of a walker in its plane.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Posture {
-    /// The x and z coordinates of the hip, in meters.
+    /// The x and z coordinates of the hip (in meters).
     pub hip: [f64; 2],
-    /// The velocity of the hip, in meters per second.
+    /// The velocity of the hip (in meters per second).
     pub velocity: [f64; 2],
     /// The backward rotation of the outer and the inner legs from the normal of the ground, in radians.
     pub angles: [f64; 2],

@@ -78,8 +78,8 @@ impl Group {
 
 /// A part of the computation of a step. The blocks of a network are evaluated in their order.
 ///
-/// If a connection starts at neurons that are updated by a later block, it uses their activations from the previous
-/// step. The order of the blocks therefore determines which connections are recurrent.
+/// If a connection starts at neurons updated by a later block, it uses their activations from the previous step. The
+/// order of the blocks therefore determines which connections are recurrent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]

@@ -25,9 +25,9 @@ use crate::fault::{ParameterFault, Slice};
 /// | `END` | |
 ///
 /// In a `.phe` file there is a line `FREE PARAMETERS P` and `P` additional lines before `END`. Each of these lines
-/// contains a parameter, its mutation rate and its name. An asterisk represents a parameter that is drawn by the
-/// evolution or a rate that is set by it. Older files have no rates and use -99 instead of the asterisk. Empty lines
-/// and text after the numbers of a line are ignored.
+/// contains a parameter, its mutation rate and its name. An asterisk represents a parameter drawn by the evolution or a
+/// rate set by it. Older files have no rates and use -99 instead of the asterisk. Empty lines and text after the
+/// numbers of a line are ignored.
 ///
 /// Source: `[FARSA2]`. Deviation: an unexpected line is an error, whereas the source continues.
 #[derive(Clone, Debug, Default, PartialEq)]

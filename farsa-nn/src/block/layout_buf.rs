@@ -1,4 +1,4 @@
-//! Block layouts that are created at run time.
+//! Block layouts created at run time.
 
 use alloc::vec::Vec;
 

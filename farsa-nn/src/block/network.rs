@@ -8,7 +8,7 @@ use crate::leak::Leak;
 use crate::lesion::Lesion;
 use crate::network::{Data, Model, Network, check_parameters};
 
-/// A network of connections and updates that are evaluated in a configurable order.
+/// A network of connections and updates evaluated in a configurable order.
 ///
 /// At the beginning of each step, the net inputs are set to the biases and the gains to their parameters. Then the
 /// blocks are evaluated in order. With activations `a`, gains `g`, weights `w`, functions `f` with slopes `s`, and the

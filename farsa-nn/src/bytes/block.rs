@@ -65,7 +65,7 @@ pub struct BlockShape<'a> {
 }
 
 impl<'a> NetworkBytes<'a, BlockShape<'a>> {
-    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
+    /// Returns the number of bytes needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: &BlockLayout<'_>) -> usize {
         let description = description_len(layout.groups().len(), layout.blocks().len());
         frame_len(layout.parameter_count().saturating_add(description).saturating_mul(4))

@@ -17,7 +17,7 @@ use crate::network::Model as _;
 pub type CtrnnBytes<'a> = NetworkBytes<'a, CtrnnModel>;
 
 impl NetworkBytes<'_, CtrnnModel> {
-    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
+    /// Returns the number of bytes needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: CtrnnLayout) -> usize {
         byte_count::<f32>(layout.parameter_count())
     }

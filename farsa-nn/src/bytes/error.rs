@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::error::Error;
 
-/// A field of the header that is compared with an expected value.
+/// A field of the header compared with an expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {

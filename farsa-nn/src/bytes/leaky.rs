@@ -37,7 +37,7 @@ use crate::network::Model as _;
 pub type LeakyNetworkBytes<'a> = NetworkBytes<'a, LeakyModel>;
 
 impl NetworkBytes<'_, LeakyModel> {
-    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
+    /// Returns the number of bytes needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
         byte_count::<f32>(layout.parameter_count())
     }

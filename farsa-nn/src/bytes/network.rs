@@ -105,8 +105,8 @@ impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
     /// Reads a network. The format, the checksum, the layout and all parameters are checked.
     ///
     /// # Errors
-    /// Returns the first error that is found, which is [`BytesError::Magic`], [`BytesError::Length`],
-    /// [`BytesError::Mismatch`], [`BytesError::Word`] or [`BytesError::Parameters`].
+    /// Returns the first error found. This can be [`BytesError::Magic`], [`BytesError::Length`], [`BytesError::Mismatch`],
+    /// [`BytesError::Word`] or [`BytesError::Parameters`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
         let Frame { shape, channels, content } = Frame::open(S::KIND, bytes)?;
         let (shape, parameters) = S::read(shape, content)?;

@@ -13,7 +13,7 @@ use crate::perceptron::{Perceptron, PerceptronModel};
 pub type PerceptronBytes<'a> = NetworkBytes<'a, PerceptronModel>;
 
 impl NetworkBytes<'_, PerceptronModel> {
-    /// Returns the number of bytes that are needed for a layer with the given shape. The count saturates.
+    /// Returns the number of bytes needed for a layer with the given shape. The count saturates.
     pub const fn byte_count(inputs: usize, outputs: usize) -> usize {
         byte_count::<f32>(Perceptron::parameter_count(inputs, outputs))
     }

@@ -50,7 +50,7 @@ pub struct QuantizedShape {
 }
 
 impl NetworkBytes<'_, QuantizedShape> {
-    /// Returns the number of bytes that are needed for a network with the given layout. The count saturates.
+    /// Returns the number of bytes needed for a network with the given layout. The count saturates.
     pub const fn byte_count(layout: LeakyLayout) -> usize {
         byte_count::<i16>(layout.parameter_count())
     }

@@ -161,7 +161,7 @@ impl CtrnnLayout {
         self.activation
     }
 
-    /// Returns the number of parameters, which is `m*n + n*n + 3*n`.
+    /// Returns the number of parameters. This is `m*n + n*n + 3*n`.
     pub const fn parameter_count(&self) -> usize {
         self.range(CtrnnParameter::TimeConstant).end
     }

@@ -12,8 +12,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// A continuous-time recurrent neural network.
 ///
 /// Each neuron has a state `y_i`, an output `o_i`, a time constant `tau_i`, a bias `theta_i` and a gain `g_i`. With
-/// external inputs `I_i` and `sigma(x) = 1/(1 + exp(-x))`, or the function that is set by
-/// [`CtrnnLayout::with_activation`]:
+/// external inputs `I_i` and `sigma(x) = 1/(1 + exp(-x))`, or the function set by [`CtrnnLayout::with_activation`]:
 ///
 /// ```text
 /// tau_i dy_i/dt = -y_i + sum_j w_ji o_j + I_i          o_j = sigma( g_j (y_j + theta_j) )

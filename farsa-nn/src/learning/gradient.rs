@@ -128,7 +128,7 @@ impl<R: Real> Gradient<R> {
         (self.cost, self.ticks) = (R::default(), 0);
     }
 
-    /// Computes the cost of a demonstration, which is summed over its ticks and motor values. The gradient is not
+    /// Computes the cost of a demonstration, summed over its ticks and motor values. The gradient is not
     /// changed. The number of parameters must be [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors

@@ -177,8 +177,8 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         self.mean.as_ref().and_then(|mean| mean.state.get(1..)).unwrap_or(&self.parameters)
     }
 
-    /// Returns the state that is needed to resume the training. It contains the parameters and the memory of the
-    /// optimizer. With averaging, it also contains the total weight and the mean.
+    /// Returns the state needed to resume the training. It contains the parameters and the memory of the optimizer.
+    /// With averaging, it also contains the total weight and the mean.
     pub fn state(&self) -> impl Iterator<Item = R> + '_ {
         let mean = self.mean.iter().flat_map(|mean| &mean.state);
         self.parameters.iter().chain(&self.memory).chain(mean).copied()

@@ -4,8 +4,8 @@ use farsa_num::Real;
 
 /// An optimizer, which minimizes a cost by means of its gradient.
 ///
-/// An implementation contains only its settings. Its memory is a slice that is provided by the caller and initially
-/// zero, so a checkpoint consists of two slices.
+/// An implementation contains only its settings. Its memory is a slice provided by the caller and initially zero, so a
+/// checkpoint consists of two slices.
 ///
 /// # For implementors
 /// - Equal calls with equal memory must produce equal bits on every machine. Use + - * / and square root in a fixed
@@ -27,7 +27,7 @@ pub trait Optimizer<R: Real> {
 pub struct Momentum {
     /// The learning rate, by which the gradient is multiplied.
     pub rate: f64,
-    /// The fraction of a change that is added to the next one, in [0, 1).
+    /// The fraction of a change added to the next one, in [0, 1).
     pub momentum: f64,
 }
 
@@ -56,7 +56,7 @@ pub struct Adam {
     pub rate: f64,
     /// The decay rates of the mean gradient and of the mean squared gradient, each in [0, 1).
     pub decays: [f64; 2],
-    /// A small number that is added to the root of the mean squared gradient.
+    /// A small number added to the root of the mean squared gradient.
     pub epsilon: f64,
 }
 

@@ -29,7 +29,7 @@ const STATE_BITS: u32 = 30;
 /// and the results are added as integers. Therefore the order of the sums does not matter. The constructor checks that
 /// no sum can overflow. The measured effect on motor values is documented in the README of the crate.
 ///
-/// As a [`Controller`], the network reads and writes `f32`. Sensor values are clamped to the range that is defined by
+/// As a [`Controller`], the network reads and writes `f32`. Sensor values are clamped to the range defined by
 /// [`input_bits`](QuantizedScale::input_bits). Motor values are multiples of 2^-15 in [0, 1 - 2^-15].
 ///
 /// Source: the equations of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the

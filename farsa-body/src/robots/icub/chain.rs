@@ -42,7 +42,7 @@ impl Side {
     /// Both sides. The left side comes first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Returns the prefix that is used in the names of joints, segments and colliders.
+    /// Returns the prefix used in the names of joints, segments and colliders.
     pub fn prefix(self) -> &'static str {
         ["l_", "r_"][self as usize]
     }
@@ -63,7 +63,7 @@ impl Chain {
     pub const ALL: [Self; 6] =
         [Self::Torso, Self::Neck, Self::LeftArm, Self::RightArm, Self::LeftHand, Self::RightHand];
 
-    /// Returns the name of the chain, which is `torso`, `neck`, `left-arm`, `right-arm`, `left-hand` or `right-hand`.
+    /// Returns the name of the chain. This is `torso`, `neck`, `left-arm`, `right-arm`, `left-hand` or `right-hand`.
     pub fn name(self) -> &'static str {
         ["torso", "neck", "left-arm", "right-arm", "left-hand", "right-hand"][self as usize]
     }
@@ -86,7 +86,7 @@ impl Chain {
         }
     }
 
-    /// Returns the indices of the bodies, which are also the indices of the joints.
+    /// Returns the indices of the bodies. These are also the indices of the joints.
     pub fn bodies(self) -> Range<usize> {
         [0..3, 3..6, 6..13, 13..20, 20..40, 40..60][self as usize].clone()
     }

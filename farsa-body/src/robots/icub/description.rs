@@ -63,7 +63,7 @@ pub enum JointControl {
 pub struct Icub {
     /// The position of the root link in the world, in meters.
     pub root: [f64; 3],
-    /// The chains that are actuated, in any order. The joints of all other chains are fixed.
+    /// The chains actuated, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
     /// The angles at which rigid chains are fixed, and the initial angles of the other chains.
     pub posture: IcubPosture,
@@ -71,14 +71,14 @@ pub struct Icub {
     pub control: JointControl,
     /// The position error at which a servo reaches the maximum effort of its joint, in radians.
     pub saturation_angle: f64,
-    /// The ratio of the damping and the stiffness of a servo, in seconds.
+    /// The ratio of the damping and the stiffness of a servo (in seconds).
     pub servo_time: f64,
-    /// The speed error at which a velocity motor reaches the maximum effort of its joint, in radians per second.
+    /// The speed error at which a velocity motor reaches the maximum effort of its joint (in radians per second).
     pub saturation_speed: f64,
-    /// The viscous damping of the joints of the torso, the neck and the arms, relative to their effort [s/rad]. Its
+    /// The viscous damping of the joints of the torso, the neck and the arms, relative to their effort (in s/rad). Its
     /// inverse is the highest speed.
     pub damping_per_effort: f64,
-    /// The armature of these joints [kg m2].
+    /// The armature of these joints (in kg m2).
     pub armature: f64,
     /// The parameters of both hands.
     pub hand: Hand,
@@ -115,8 +115,8 @@ impl Icub {
     pub const CHEST: BodyId = BodyId(2);
     /// The body of the head.
     pub const HEAD: BodyId = BodyId(5);
-    /// The centers of the left and the right eye in the frame of the head, in meters. Their distance is 68 mm, and they
-    /// cannot move.
+    /// The centers of the left and the right eye in the frame of the head (in meters). Their distance is 68 mm, and
+    /// they cannot move.
     ///
     /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011], which describes a different
     /// version of the neck than the file.
@@ -124,12 +124,12 @@ impl Icub {
     /// The outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = Hand::PALM_NORMAL;
 
-    /// Returns the palm on the given side, which is the last segment of the arm.
+    /// Returns the palm on the given side. This is the last segment of the arm.
     pub fn palm(side: Side) -> BodyId {
         BodyId(side.arm().bodies().end as u16 - 1)
     }
 
-    /// Returns the point on the inner side of a palm that is used as its center, in the frame of the palm, in meters.
+    /// Returns the point on the inner side of a palm used as its center, in the frame of the palm, in meters.
     pub fn palm_centre(&self, side: Side) -> [f64; 3] {
         on_side(side, self.hand.palm_centre)
     }
@@ -139,8 +139,8 @@ impl Icub {
         [1, 2, 3].map(|i| BodyId((side.hand().bodies().start + 4 * finger as usize + i) as u16))
     }
 
-    /// Returns the distal phalange of a finger and the position of its tip in this frame, in meters. The tip is the end
-    /// of the capsule's axis.
+    /// Returns the distal phalange of a finger and the position of its tip in this frame (in meters). The tip is the
+    /// end of the capsule's axis.
     pub fn fingertip(&self, side: Side, finger: Finger) -> (BodyId, [f64; 3]) {
         (Self::phalanges(side, finger)[2], on_side(side, self.hand.fingertip(finger)))
     }
@@ -174,7 +174,7 @@ impl Icub {
         Ok(self.ranges(chain)[i])
     }
 
-    /// Returns the limits of the joints of a chain, in radians.
+    /// Returns the limits of the joints of a chain (in radians).
     pub fn ranges(&self, chain: Chain) -> Vec<[f64; 2]> {
         match chain.parts() {
             [] => self.hand.ranges().to_vec(),

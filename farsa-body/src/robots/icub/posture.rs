@@ -34,7 +34,7 @@ impl IcubPosture {
         }
     }
 
-    /// Returns a mutable reference to the joint angles of a chain, in radians.
+    /// Returns a mutable reference to the joint angles of a chain (in radians).
     pub fn chain_mut(&mut self, chain: Chain) -> &mut [f64] {
         match chain {
             Chain::Torso => &mut self.torso,

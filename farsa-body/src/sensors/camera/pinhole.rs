@@ -13,8 +13,8 @@ use crate::recorder::Recorder;
 /// More pixels than this are not needed, and a mistake could run out of memory.
 const MAX_PIXELS: usize = 1 << 20;
 
-/// A pinhole camera that is attached to a body. In its frame, x is the viewing direction, y points to the left and z
-/// up. Pixels are square and numbered row by row, starting at the upper left corner.
+/// A pinhole camera attached to a body. In its frame, x is the viewing direction, y points to the left and z up. Pixels
+/// are square and numbered row by row, starting at the upper left corner.
 ///
 /// A point (x, y, z) in this frame is projected to (y, z) / (x w) in the image, where w is the tangent of half the
 /// field of view. The left edge of the image is at 1 and the right edge at -1. The vertical axis has the same scale.
@@ -125,8 +125,9 @@ impl<B: Copy> Camera<B> {
         [(columns - 1.0 - 2.0 * column) / columns, (rows - 1.0 - 2.0 * row) / columns]
     }
 
-    /// Projects a point of the world [m] to the image. The result is the position to the left and upwards in units of
-    /// half the width, which exceeds 1 outside the image. It is `None` if the point is not in front of the camera.
+    /// Projects a point of the world (in meters) to the image. The result is the position to the left and upwards in
+    /// units of half the width, which exceeds 1 outside the image. It is `None` if the point is not in front of the
+    /// camera.
     pub fn project(&self, pose: &Pose, place: [f32; 3]) -> Option<[f32; 2]> {
         let [ahead, left, up] = pose.transform_back(place);
         (ahead > 0.0).then(|| [left, up].map(|x| x / (ahead * self.tangent)))

@@ -1,4 +1,4 @@
-//! Infrared sensors that are based on a formula, for planar worlds.
+//! Infrared sensors based on a formula, for planar worlds.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -12,8 +12,7 @@ use crate::sensors::beam::Beam;
 use crate::sensors::infrared::model::InfraredModel;
 use crate::sensors::stance::Stance;
 
-/// A ring of infrared sensors that is simulated by a formula (see [`InfraredModel`]). Each sensor has one channel in
-/// [0, 1].
+/// A ring of infrared sensors simulated by a formula (see [`InfraredModel`]). Each sensor has one channel in [0, 1].
 ///
 /// The responses to all walls and all other bodies are added, and objects do not hide each other. A response depends on
 /// the radius of the object and on the distance between the hull and its nearest point. It also depends on the angle

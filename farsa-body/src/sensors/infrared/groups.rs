@@ -1,4 +1,4 @@
-//! Infrared sensors that are simulated by rays and combined in groups of neighbors.
+//! Infrared sensors simulated by rays and combined in groups of neighbors.
 
 use alloc::{vec, vec::Vec};
 

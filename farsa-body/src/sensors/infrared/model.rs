@@ -89,9 +89,9 @@ impl InfraredModel {
         self.far
     }
 
-    /// Computes the response to one surface, which is in [0..1].
+    /// Computes the response to one surface. The result is between 0 and 1.
     ///
-    /// The `distance` is measured from the hull of the robot to the nearest point of the surface, in meters. The
+    /// The `distance` is measured from the hull of the robot to the nearest point of the surface (in meters). The
     /// `cosine` is that of the angle between the axis of the sensor and the bearing of this point from the center of
     /// the robot. If one of them is NaN, the response is 0.
     #[inline(always)]
@@ -99,7 +99,7 @@ impl InfraredModel {
         self.distance_term(distance) * self.angle_term(cosine)
     }
 
-    /// Computes the factor of [`response`](Self::response) that is common to all sensors of a robot [0..1].
+    /// Computes the factor of [`response`](Self::response) that is common to all sensors of a robot (between 0 and 1).
     #[inline(always)]
     pub fn distance_term<S: Scalar>(&self, distance: S) -> S {
         let slope = distance.constant(f64::from(self.per_metre));
@@ -107,7 +107,8 @@ impl InfraredModel {
         ((far - distance) * slope).clamp(distance.constant(0.0), distance.constant(1.0))
     }
 
-    /// Computes the factor of [`response`](Self::response) that depends on the direction of the sensor [0..1].
+    /// Computes the factor of [`response`](Self::response) that depends on the direction of the sensor (between 0 and
+    /// 1).
     #[inline(always)]
     pub fn angle_term<S: Scalar>(&self, cosine: S) -> S {
         let slope = cosine.constant(f64::from(self.per_cosine));

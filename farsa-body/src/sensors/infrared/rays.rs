@@ -1,4 +1,4 @@
-//! Infrared sensors that are simulated by rays. They work in any world that supports ray casts.
+//! Infrared sensors simulated by rays. They work in any world that supports ray casts.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -46,8 +46,8 @@ pub struct InfraredRays<L, B = BodyId> {
 }
 
 impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
-    /// Creates sensors with `rays` beams each. They are located at `height` [m] above the origin of `body` and have a
-    /// range of `range` [m] from the hull.
+    /// Creates sensors with `rays` beams each. They are located at `height` (in meters) above the origin of `body` and
+    /// have a range of `range` (in meters) from the hull.
     ///
     /// # Errors
     /// Returns [`ChannelError::Groups`] if the number of beams is not a multiple of `rays`. Returns
@@ -63,8 +63,8 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
 impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
     /// Reads the sensors like [`Sensor::read`], but skips rays that cannot hit anything.
     ///
-    /// The closure `meets` is called with both ends of a ray \[m\] and returns true if there may be something between
-    /// them. Rays that are skipped read 0.
+    /// The closure `meets` is called with both ends of a ray (in meters) and returns true if there may be something
+    /// between them. Skipped rays read 0.
     #[inline]
     pub fn read_where<W>(&self, world: &W, out: &mut [f32], mut meets: impl FnMut([f32; 3], [f32; 3]) -> bool)
     where

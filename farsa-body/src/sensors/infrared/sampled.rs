@@ -1,4 +1,4 @@
-//! Infrared sensors that are based on measured tables, for planar worlds.
+//! Infrared sensors based on measured tables, for planar worlds.
 
 use alloc::vec::Vec;
 use core::borrow::Borrow;
@@ -18,8 +18,8 @@ pub struct InfraredTables {
 }
 
 impl InfraredTables {
-    /// Combines a table for walls with tables for round bodies. Each of the latter is given with the radius [m] at
-    /// which it was measured.
+    /// Combines a table for walls with tables for round bodies. Each of the latter is given with the radius (in meters)
+    /// at which it was measured.
     ///
     /// A body uses the table with the most similar radius, and the earlier one of two equally similar tables. If there
     /// are no tables for bodies, the table of the walls is used.
@@ -63,7 +63,7 @@ impl InfraredTables {
     }
 }
 
-/// A ring of infrared sensors that is simulated with measured tables. Each sensor has one channel in [0, 1].
+/// A ring of infrared sensors simulated with measured tables. Each sensor has one channel in [0, 1].
 ///
 /// The tables provide the response to each wall and each other body. It depends on the distance between the hull and
 /// the nearest point of the object, and on the bearing of this point from the center of the robot. The responses are

@@ -113,8 +113,8 @@ impl InfraredTable {
         (self.first + self.step * self.distances as f32) / 1000.0
     }
 
-    /// Returns the readings of all sensors for a surface at the given distance from the hull [m] and the given bearing
-    /// [rad], counter-clockwise from straight ahead. The readings are in [0, 1).
+    /// Returns the readings of all sensors for a surface at the given distance from the hull (in meters) and the given
+    /// bearing (in radians), counter-clockwise from straight ahead. The readings are in [0, 1).
     ///
     /// The row is chosen as in FARSA. The index of the distance is trunc((distance - first) / step). It is 0 below the
     /// first distance, and the result is `None` after the last one. The index of the angle is trunc(angle / 360 angles)

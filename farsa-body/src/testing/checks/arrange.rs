@@ -18,7 +18,7 @@ const NEAR: f32 = 1e-4;
 /// restored.
 ///
 /// # Errors
-/// Returns the first promise that is violated.
+/// Returns the first promise violated.
 pub fn check_arrange<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,

@@ -16,7 +16,7 @@ const BEYOND: usize = 3;
 /// sensors, because a reset rewinds the noise.
 ///
 /// # Errors
-/// Returns the first promise that is violated.
+/// Returns the first promise violated.
 pub fn check_sensor<W, S>(sensor: &mut S, world: &W) -> Result<(), ConformanceError>
 where
     W: ?Sized,
@@ -62,7 +62,7 @@ where
 /// observed through snapshots of the world.
 ///
 /// # Errors
-/// Returns the first promise that is violated.
+/// Returns the first promise violated.
 pub fn check_motor<W, M>(motor: &mut M, make: impl Fn() -> W) -> Result<(), ConformanceError>
 where
     W: Actuated + Snapshot,

@@ -14,7 +14,7 @@ use crate::testing::trace::{Instant, parting, saved, trace};
 /// not change any bit. A world that was restored has no pending forces.
 ///
 /// # Errors
-/// Returns the first promise that is violated.
+/// Returns the first promise violated.
 pub fn check_external_forces<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,

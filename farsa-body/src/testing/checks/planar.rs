@@ -13,7 +13,8 @@ const LOOKS: usize = 256;
 /// The tolerance between two ways to the same point [m].
 const CLOSE: f32 = 1e-4;
 
-/// Checks the port [`Sight`](crate::ports::Sight) at the given positions [m] with a range of `range` [m].
+/// Checks the port [`Sight`](crate::ports::Sight) at the given positions (in meters) with a range of `range` (in
+/// meters).
 ///
 /// Nearby surfaces must be within the range and have the distance of their point. They must also be reported for twice
 /// the range. The first surface in a random direction must be the nearest object, must be reported as nearby, and must

@@ -11,7 +11,7 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 const RAYS: usize = 256;
 
 /// Checks the port [`Rays`](crate::ports::Rays) with many rays in random directions. They start at each of the given
-/// origins and have a length of `range`, in meters.
+/// origins and have a length of `range` (in meters).
 ///
 /// The argument `bodies` must contain all bodies of the world. At least one ray must hit something.
 ///

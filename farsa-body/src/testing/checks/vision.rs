@@ -12,7 +12,7 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 const RAYS: usize = 256;
 
 /// Checks the port [`Vision`](crate::ports::Vision) with many rays in random directions. They start at each of the
-/// given origins and have a length of `range`, in meters.
+/// given origins and have a length of `range` (in meters).
 ///
 /// A hit must be within the range, belong to a body of the world and have a color in [0, 1]. A single ray must produce
 /// the same hit, also for twice the range. It must not produce it if the range is shorter than the distance or if the

@@ -16,7 +16,7 @@ use crate::testing::trace::{HOLD, Instant, command, pairs, parting, saved, trace
 /// from each other, with a tolerance of [`Probe::slack`].
 ///
 /// # Errors
-/// Returns the first promise that is violated.
+/// Returns the first promise violated.
 pub fn check_world<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,
