@@ -1,6 +1,6 @@
 //! Another fitness for a task that there is: foraging, where the death of a robot costs.
 
-use farsa_experiments::Foraging;
+use farsa_experiments::FORAGING;
 use farsa_lab::advanced::Rescored;
 use farsa_lab::{Error, Evaluator, Experiment, Note, Outcome, Setting, Settings, cli};
 
@@ -19,7 +19,7 @@ impl Experiment for Judges {
     }
     fn settings(&self, condition: &str) -> Vec<Setting> {
         let cost = if condition == "lives" { 10.0 } else { 0.0 };
-        let mut table = Foraging.settings("khepera");
+        let mut table = FORAGING.settings("khepera");
         table.push(Setting::number("fitness.death", cost, 0.0..=1000.0).doc("Pieces of food that a death costs."));
         table
             .push(Setting::flag("fitness.per_survivor", false).doc("Whether food is counted per robot that is alive."));
@@ -33,7 +33,7 @@ impl Experiment for Judges {
             let share = if per_survivor { robots / (robots - deaths) } else { 1.0 };
             vec![food * share, -death * deaths]
         };
-        let task = Foraging.prepare("khepera", settings)?;
+        let task = FORAGING.prepare("khepera", settings)?;
         Ok(Box::new(Rescored::new(task, ["food", "cost of deaths"], score)))
     }
 }

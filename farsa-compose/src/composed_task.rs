@@ -80,12 +80,14 @@ impl<E: Body> Task for ComposedTask<E> {
         // A network with wires set by hand has inputs and links, but no neurons.
         let anatomy = Some(agents.anatomy(&schema));
         let info = TaskInfo::new(agents.spec.searched.parameters().to_vec(), schema);
-        let populations = agents.groups.populations();
+        let (populations, robots) = (agents.groups.populations(), agents.groups.robots());
+        let robots = info.schema.bodies.iter().take(if robots > 1 { robots } else { 0 }).cloned().collect();
         TaskInfo {
             description: agents.description(),
             trials: agents.document.episode.trials as usize,
             terms: agents.ledger.names(),
             populations: if populations.is_empty() { info.populations } else { populations },
+            robots,
             observations: agents.spec.inputs.len(),
             protocols: agents.interventions.protocols(),
             anatomy,
@@ -113,7 +115,7 @@ impl<E: Body> Rollout for ComposedTask<E> {
     }
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
         let agents = self.0.agents();
-        recorder.parameters(agents.networks[agents.evolving[0]].controller().own_parameters());
+        recorder.parameters(agents.networks[agents.watched].controller().own_parameters());
     }
     fn outcome(&self) -> Outcome {
         self.0.agents().outcome()
@@ -191,6 +193,7 @@ fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
         AnyNetwork::Ctrnn(ctrnn) => {
             NetworkExport::Ctrnn { layout: ctrnn.layout(), time_step: time_step as f32, parameters }
         }
+        AnyNetwork::Reflex(_) => return None,
         AnyNetwork::HandWired(wired) => {
             NetworkExport::Perceptron { inputs, outputs, slope: 1.0, parameters: wired.as_layer()? }
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_lab::advanced::{Lanes, PlanarWorld, Value as SettingValue, read_text_file};
+use farsa_lab::advanced::{Lanes, NormalizedController, PlanarWorld, Value as SettingValue, read_text_file};
 use farsa_lab::strategy::{StrategyDefinition, Truncation};
 use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, InWorld, Setting, Settings};
 use farsa_physics::articulated::{self, Batch, Model, ModelError};
@@ -22,6 +22,8 @@ use crate::jointed::episode::JointedEpisode;
 use crate::limits::Limits;
 use crate::name::is_name;
 use crate::parts::agents::Agents;
+use crate::parts::network::AnyNetwork;
+use crate::parts::reflex::{Reflex, ReflexController};
 
 /// Most bytes of a file.
 const MAX_BYTES: u64 = 1_000_000;
@@ -178,6 +180,42 @@ impl ComposedExperiment {
         let mut world = world.map_err(|error| self.source.wrong("/world", error))?;
         let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
+    }
+
+    /// Prepares the experiment with functions that drive some robots, by their numbers from 0, instead of networks.
+    ///
+    /// # Errors
+    /// As [`Experiment::prepare`], and [`Error::Usage`] for a robot that does not exist or has joints.
+    pub fn prepare_with(
+        &self,
+        settings: &Settings,
+        reflexes: Vec<(usize, Reflex)>,
+    ) -> Result<Box<dyn Evaluator>, Error> {
+        let document = self.document(settings)?;
+        let none = |robot: usize| Error::Usage(format!("there is no robot {robot} on wheels"));
+        if document.has_joints() {
+            return reflexes.first().map_or_else(|| self.with_joints(document), |(robot, _)| Err(none(*robot)));
+        }
+        let mut composed = Setup::new(document, &self.source)?;
+        let agents = &mut composed.1;
+        let shape = [agents.spec.inputs.len(), agents.spec.outputs.len()];
+        for (robot, reflex) in reflexes {
+            let network = agents.networks.get_mut(robot).ok_or_else(|| none(robot))?;
+            *network = NormalizedController::new(AnyNetwork::Reflex(ReflexController { shape, reflex }));
+        }
+        if agents.document.team.coevolution {
+            agents.size = settings.count("evolution.population")?;
+        }
+        if agents.document.world.engine == Engine::Rapier {
+            #[cfg(feature = "rapier")]
+            return self.in_rapier(composed);
+            #[cfg(not(feature = "rapier"))]
+            return Err(self.without_rapier());
+        }
+        let arena = composed.0.scene.arena.clone();
+        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.source.wrong("/world", error))?;
+        let episode = self.episode(composed, &mut world)?;
+        Ok(Box::new(InWorld::in_arena(&arena, episode)?))
     }
 
     fn document(&self, settings: &Settings) -> Result<Document, Error> {
@@ -375,23 +413,6 @@ impl Experiment for ComposedExperiment {
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        let document = self.document(settings)?;
-        if document.has_joints() {
-            return self.with_joints(document);
-        }
-        let mut composed = Setup::new(document, &self.source)?;
-        if composed.1.document.team.coevolution {
-            composed.1.size = settings.count("evolution.population")?;
-        }
-        if composed.1.document.world.engine == Engine::Rapier {
-            #[cfg(feature = "rapier")]
-            return self.in_rapier(composed);
-            #[cfg(not(feature = "rapier"))]
-            return Err(self.without_rapier());
-        }
-        let arena = composed.0.scene.arena.clone();
-        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.source.wrong("/world", error))?;
-        let episode = self.episode(composed, &mut world)?;
-        Ok(Box::new(InWorld::in_arena(&arena, episode)?))
+        self.prepare_with(settings, Vec::new())
     }
 }

@@ -13,8 +13,8 @@ mod limits;
 mod name;
 mod parts;
 
-pub use arena::field::{Field, Forager};
 pub use check::schema::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
 pub use limits::Limits;
+pub use parts::reflex::Reflex;

@@ -4,18 +4,18 @@
 //! `aggregation` and `predator-prey` and prints tables: means with 95 % confidence intervals (Student's t), those in
 //! docs/results/swarm.md. All run the same starts, so that differences are taken start by start.
 
+mod by_hand;
+
 use std::path::Path;
 use std::process::ExitCode;
 
 use farsa_evo::words::randomize;
-use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, aggregate};
-use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
-use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
-use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
-use farsa_lab::advanced::{Genotype, OwnedNetwork, RunDirectory};
+use farsa_experiments::{AGGREGATION, FORAGING, PREDATOR_PREY};
+use farsa_lab::advanced::{Genotype, RunDirectory};
 use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator, Laboratory, Note, Outcome};
-use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
+
+use by_hand::{Aim, beacon_seeker, chaser, homing_forager};
 
 /// The first of the seeds of the starts. Runs have small ones.
 const FIRST: u64 = 1_000_001;
@@ -78,19 +78,13 @@ fn team(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
     let mut evaluate = |parameters: &[f32], id| evaluator.evaluate(Evaluation::new(parameters, id), None);
     let evolved: Vec<Outcome> = ids().map(|id| evaluate(&parameters[0], id)).collect();
     let random: Vec<Outcome> = ids().map(|id| evaluate(&random(&genotype, id, 0), id)).collect();
-    let by_hand: Vec<Outcome> = if run.experiment() == "foraging" {
-        let config = ForagingConfig::for_condition(condition).read(settings)?;
-        let mut world = config.world()?;
-        let robots = vec![HomingForager::new(&config); config.team.robots];
-        let mut episode = ForagingEpisode::new(config, robots)?;
-        ids().map(|id| forage(&mut episode, &mut world, id)).collect()
-    } else {
-        let config = AggregationConfig::for_condition(condition).read(settings)?;
-        let mut world = config.world()?;
-        let robots = vec![BeaconSeeker::new(&config); config.team.robots];
-        let mut episode = AggregationEpisode::new(config, robots)?;
-        ids().map(|id| aggregate(&mut episode, &mut world, id)).collect()
+    let (experiment, reflex) = match run.experiment() {
+        "foraging" => (&FORAGING, homing_forager(condition, settings)?),
+        _ => (&AGGREGATION, beacon_seeker(condition)),
     };
+    let robots = (0..settings.count("team.robots")?).map(|robot| (robot, reflex.clone())).collect();
+    let mut team = experiment.prepare_with(condition, settings, robots)?;
+    let by_hand: Vec<Outcome> = ids().map(|id| team.evaluate(Evaluation::new(&parameters[0], id), None)).collect();
     let names: Vec<&str> = evolved[0].notes.iter().map(|(name, _)| *name).collect();
     println!("| controller | fitness | evolved more by | {} |", names.join(" | "));
     println!("|---|---|---|{}", "---|".repeat(names.len()));
@@ -100,62 +94,33 @@ fn team(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
     Ok(())
 }
 
-/// The controller of a robot.
-enum Mind {
-    Network(OwnedNetwork),
-    ByHand(Chaser),
-}
-
-impl Controller for Mind {
-    fn inputs(&self) -> usize {
-        match self {
-            Self::Network(network) => network.inputs(),
-            Self::ByHand(chaser) => chaser.inputs(),
-        }
-    }
-    fn outputs(&self) -> usize {
-        match self {
-            Self::Network(network) => network.outputs(),
-            Self::ByHand(chaser) => chaser.outputs(),
-        }
-    }
-    fn reset(&mut self) {
-        match self {
-            Self::Network(network) => network.reset(),
-            Self::ByHand(chaser) => chaser.reset(),
-        }
-    }
-    fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        match self {
-            Self::Network(network) => network.step(x, y),
-            Self::ByHand(chaser) => chaser.step(x, y),
-        }
-    }
-}
-
 const WHO: [&str; 3] = ["evolved", "hand-written", "random genomes"];
 
 fn pair(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
-    let config = PredatorPreyConfig::default().read(run.settings())?;
+    let (condition, settings) = (run.condition(), run.settings());
     let genotype = genotype(run.evaluator()?.as_ref());
-    let mut world = config.world()?;
-    let mind = |who: usize, robot: usize, id: EpisodeId| {
-        Ok::<Mind, Error>(match (who, robot) {
-            (0, robot) => Mind::Network(config.network(&parameters[robot])?),
-            (1, 0) => Mind::ByHand(Chaser::predator(&config)),
-            (1, _) => Mind::ByHand(Chaser::prey(&config)),
-            (_, robot) => Mind::Network(config.network(&random(&genotype, id, robot as u32))?),
-        })
+    let network = |who: usize, robot: usize, id: EpisodeId| match who {
+        0 => parameters[robot].clone(),
+        _ => random(&genotype, id, robot as u32),
     };
     let mut rewards = vec![vec![Vec::new(); 3]; 3];
     let mut captures = [[0; 3]; 3];
     for predator in 0..3 {
         for prey in 0..3 {
+            let mut reflexes = Vec::new();
+            for (robot, who, aim) in [(0, predator, Aim::To), (1, prey, Aim::From)] {
+                if who == 1 {
+                    reflexes.push((robot, chaser(aim, settings)?));
+                }
+            }
+            let mut evaluator = PREDATOR_PREY.prepare_with(condition, settings, reflexes)?;
             for id in ids() {
-                let minds = [mind(predator, 0, id)?, mind(prey, 1, id)?];
-                let mut episode = PredatorPreyEpisode::new(config.clone(), minds)?;
-                rewards[predator][prey].push(chase(&mut episode, &mut world, id).terms[0]);
-                captures[predator][prey] += u32::from(episode.captured());
+                let [own, other] = [network(predator, 0, id), network(prey, 1, id)];
+                let opponents = [&other[..]];
+                let evaluation = Evaluation { opponents: &opponents, ..Evaluation::new(&own, id) };
+                let outcome = evaluator.evaluate(evaluation, None);
+                rewards[predator][prey].push(outcome.terms[0]);
+                captures[predator][prey] += u32::from(outcome.success);
             }
         }
     }
@@ -189,7 +154,7 @@ fn pair(run: &RunDirectory<'_>, parameters: &[Vec<f32>]) -> Result<(), Error> {
 }
 
 fn compare(directory: &Path) -> Result<(), Error> {
-    let laboratory = Laboratory::new(&[&Foraging, &Aggregation, &PredatorPrey]);
+    let laboratory = Laboratory::new(&[&FORAGING, &AGGREGATION, &PREDATOR_PREY]);
     let run = RunDirectory::open(directory, &laboratory)?;
     let champion = run.champion()?;
     let (experiment, condition, seed, generation) =

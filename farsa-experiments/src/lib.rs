@@ -1,36 +1,32 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
-pub mod aggregation;
 pub mod compositional_instructions;
 pub mod double_pole;
 mod embedded;
-pub mod foraging;
 mod icub_limits;
 pub mod icub_reach;
 pub mod icub_reach_grasp;
 pub mod kinesthetic_grasp;
 pub mod minimal_cognition;
-pub mod predator_prey;
 pub mod push_box;
 pub mod reach_grasp_lift;
 mod smooth;
 mod strategy;
-mod team;
 mod walking;
 mod wheeled;
 mod worlds;
 
-pub use aggregation::Aggregation;
 pub use compositional_instructions::CompositionalInstructions;
 pub use double_pole::DoublePole;
-pub use embedded::{BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment};
-pub use foraging::Foraging;
+pub use embedded::{
+    AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING, PREDATOR_PREY,
+};
+pub use farsa_compose::Reflex;
 pub use icub_reach::IcubReach;
 pub use icub_reach_grasp::IcubReachGrasp;
 pub use kinesthetic_grasp::KinestheticGrasp;
 pub use minimal_cognition::MinimalCognition;
-pub use predator_prey::PredatorPrey;
 pub use push_box::PushBox;
 pub use reach_grasp_lift::ReachGraspLift;
 pub use walking::body_evolution;
@@ -63,9 +59,9 @@ pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
         &BRAITENBERG,
         &MinimalCognition,
         &DoublePole,
-        &Foraging,
-        &Aggregation,
-        &PredatorPrey,
+        &FORAGING,
+        &AGGREGATION,
+        &PREDATOR_PREY,
         &PushBox,
         &PassiveWalker,
         &BodyEvolution,

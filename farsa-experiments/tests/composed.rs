@@ -1,4 +1,4 @@
-//! The reference experiments as files: the same bits as those that are built in.
+//! Experiments from files, through the command.
 
 #[path = "../../farsa-compose/tests/drawn/mod.rs"]
 mod drawn;
@@ -6,87 +6,8 @@ mod drawn;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use farsa_compose::ComposedExperiment;
-use farsa_experiments::{Aggregation, Foraging};
-use farsa_lab::advanced::Genotype;
-use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
-use farsa_num::{Domain, Stream};
-
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments")
-}
-
-fn from_file(name: &str) -> ComposedExperiment {
-    ComposedExperiment::from_file(&folder().join(name), farsa_lab::strategy::strategies())
-        .unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn evaluator(experiment: &dyn Experiment, condition: &str) -> Box<dyn Evaluator> {
-    let settings = Settings::new(experiment.settings(condition)).expect("its settings");
-    experiment.prepare(condition, &settings).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The values that both have in common.
-fn compared(outcome: &Outcome, terms: usize) -> (Vec<u64>, u32, bool) {
-    (outcome.terms[..terms].iter().map(|term| term.to_bits()).collect(), outcome.steps, outcome.success)
-}
-
-/// The same as [`same_evaluators`], and the same defaults of what individuals are searched with.
-fn same_bits(file: &str, built_in: &dyn Experiment, condition: &str, individuals: u32, trials: u32) {
-    let composed = from_file(file);
-    assert_eq!(composed.gene_bits(), built_in.gene_bits());
-    assert_eq!(composed.strategy(condition).name(), built_in.strategy(condition).name());
-    let (ours, theirs) = (evaluator(&composed, condition), evaluator(built_in, condition));
-    same_evaluators(ours, theirs, built_in.gene_bits(), file, individuals, trials);
-}
-
-/// The same outcomes and fitness for individuals drawn at random.
-fn same_evaluators(
-    mut ours: Box<dyn Evaluator>,
-    mut theirs: Box<dyn Evaluator>,
-    gene_bits: u32,
-    file: &str,
-    individuals: u32,
-    trials: u32,
-) {
-    let terms = theirs.info().terms.len();
-    assert_eq!(ours.info().parameters.len(), theirs.info().parameters.len());
-    assert_eq!(ours.info().trials, theirs.info().trials);
-    for (ours, theirs) in ours.info().parameters.iter().zip(theirs.info().parameters) {
-        assert_eq!(ours.ends, theirs.ends, "{} and {}", ours.name, theirs.name);
-    }
-    let genotype = Genotype::new(&theirs.info().parameters, gene_bits);
-    let mut earned = 0;
-    for individual in 0..individuals {
-        let mut draw = Stream::new(1, Domain::InitialGenome, 0, individual, 0);
-        let genes: Vec<u16> = theirs.info().parameters.iter().map(|_| draw.below(1 << gene_bits) as u16).collect();
-        let parameters = genotype.decode(&genes).expect("as many genes as parameters");
-        let (mut own, mut other) = (Vec::new(), Vec::new());
-        for trial in 0..trials {
-            let id = EpisodeId { seed: 7, generation: 3, individual, trial };
-            own.push(ours.evaluate(Evaluation::new(&parameters, id), None));
-            other.push(theirs.evaluate(Evaluation::new(&parameters, id), None));
-            let (own, other) = (compared(&own[trial as usize], terms), compared(&other[trial as usize], terms));
-            assert_eq!(own, other, "{file}, individual {individual}, trial {trial}");
-        }
-        assert_eq!(ours.fitness(&own).to_bits(), theirs.fitness(&other).to_bits());
-        earned += usize::from(theirs.fitness(&other) != 0.0);
-    }
-    assert!(earned > 0, "none of {individuals} individuals earned anything: nothing was compared");
-}
-
-#[test]
-fn aggregation_is_the_same() {
-    for condition in ["marxbot", "e-puck", "khepera"] {
-        same_bits("aggregation.toml", &Aggregation, condition, 6, 2);
-    }
-}
-
-#[test]
-fn foraging_is_the_same() {
-    for condition in ["marxbot", "e-puck"] {
-        same_bits("foraging.toml", &Foraging, condition, 8, 3);
-    }
 }
 
 /// A run that was interrupted, by another number of threads, has the bytes of one that was not, and its trials can be replayed.

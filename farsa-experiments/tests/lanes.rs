@@ -7,7 +7,7 @@ use std::sync::Arc;
 use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
-use farsa_experiments::{Aggregation, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, Foraging, PredatorPrey};
+use farsa_experiments::{AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, PREDATOR_PREY};
 use farsa_lab::advanced::{Displacement, Genotype, Lanes, Push, Value, run_episode, run_in_lanes};
 use farsa_lab::{Episode, EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
@@ -209,13 +209,13 @@ fn vehicles_in_lanes_are_those_alone() {
 #[test]
 fn teams_in_lanes_are_those_alone() {
     let two = ("team.robots", Value::Whole(2));
-    for condition in Foraging.conditions() {
-        wheels(&Foraging, condition, &[steps(60), two.clone()]);
-        wheels(&Aggregation, condition, &[steps(60), two.clone()]);
+    for condition in FORAGING.conditions() {
+        wheels(&FORAGING, condition, &[steps(60), two.clone()]);
+        wheels(&AGGREGATION, condition, &[steps(60), two.clone()]);
     }
 }
 
 #[test]
 fn predators_and_prey_in_lanes_are_those_alone() {
-    some_end_early(&wheels(&PredatorPrey, "", &[steps(200)]), 200);
+    some_end_early(&wheels(&PREDATOR_PREY, "", &[steps(200)]), 200);
 }

@@ -1,29 +1,31 @@
 //! The experiments on teams: trials repeat, robots stay where they can be, and the scores are right.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[path = "../examples/by_hand/mod.rs"]
+mod by_hand;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
 use farsa_body::ports::BodyId;
 use farsa_evo::words::randomize;
-use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, Gathering, aggregate};
-use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
-use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
-use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
+use farsa_experiments::{AGGREGATION, EmbeddedExperiment, FORAGING, PREDATOR_PREY, Reflex};
 use farsa_lab::advanced::{Genotype, Value};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Note, Outcome, Settings};
 use farsa_num::{Domain, Stream};
 use farsa_view::Recording;
 
+use by_hand::{Aim, beacon_seeker, chaser, homing_forager};
+
 const ALL: [(&dyn Experiment, &str); 7] = [
-    (&Foraging, "marxbot"),
-    (&Foraging, "e-puck"),
-    (&Foraging, "khepera"),
-    (&Aggregation, "marxbot"),
-    (&Aggregation, "e-puck"),
-    (&Aggregation, "khepera"),
-    (&PredatorPrey, ""),
+    (&FORAGING, "marxbot"),
+    (&FORAGING, "e-puck"),
+    (&FORAGING, "khepera"),
+    (&AGGREGATION, "marxbot"),
+    (&AGGREGATION, "e-puck"),
+    (&AGGREGATION, "khepera"),
+    (&PREDATOR_PREY, ""),
 ];
 
 fn settings(experiment: &dyn Experiment, condition: &str, changes: &[(&str, Value)]) -> Settings {
@@ -73,12 +75,13 @@ fn recorded(evaluator: &mut dyn Evaluator, own: &[f32], other: &[f32], id: Episo
 /// it sensed.
 fn rays_belong_to_robots(recording: &Recording, tick: usize, sensors: usize, [radius, range, height]: [f32; 3]) {
     let rays = recording.rays_at(tick);
-    // The dead sense nothing.
-    let eye = recording.schema().columns().iter().position(|name| name == "sensor.infrared 1").unwrap();
-    let sensors = if recording.row(tick).nth(eye).unwrap().is_nan() { 0 } else { sensors };
-    assert!(rays.len() >= sensors, "{tick}: {}", rays.len());
     // Before the first step it is unknown where the robots were.
     let Some(before) = tick.checked_sub(1) else { return };
+    // The dead sense nothing.
+    let energy = recording.schema().columns().iter().position(|name| name == "energy 1");
+    let dead = energy.is_some_and(|energy| recording.row(before).nth(energy) == Some(0.0));
+    let sensors = if dead { 0 } else { sensors };
+    assert!(rays.len() >= sensors, "{tick}: {}", rays.len());
     let robots: Vec<[f32; 3]> =
         (0..10).map_while(|robot| recording.pose_at(before, BodyId(robot))).map(|pose| pose.position).collect();
     let mut of_own = 0;
@@ -143,7 +146,7 @@ fn trials_repeat_and_robots_stay_between_the_walls_and_apart() {
 
 #[test]
 fn the_book_of_food_is_what_the_robots_ways_tell() {
-    let mut evaluator = prepare(&Foraging, "marxbot", 400);
+    let mut evaluator = prepare(&FORAGING, "marxbot", 400);
     let columns = evaluator.info().schema.columns();
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap_or_else(|| panic!("{name}"));
     let (mut deaths, mut food) = (0.0, 0.0);
@@ -183,7 +186,7 @@ fn the_book_of_food_is_what_the_robots_ways_tell() {
             let food: Vec<bool> = recording.image_at(tick, 0).unwrap().map(|color| color != [0.0; 3]).collect();
             assert_eq!(food, left.as_flattened(), "{number} {tick}");
             let row: Vec<f64> = recording.row(tick).collect();
-            assert_eq!([row[column("collected")], row[column("lost")]], [paid, lost]);
+            assert_eq!([row[column("food collected")], row[column("food lost with the dead")]], [paid, lost]);
             for robot in 0..10 {
                 assert_eq!(row[column(&format!("carried {}", robot + 1))], carried[robot]);
                 let energy = if grave[robot].is_some() { 0.0 } else { 1.0 - 0.01 * f64::from(away[robot]) };
@@ -201,7 +204,7 @@ fn the_book_of_food_is_what_the_robots_ways_tell() {
 
 #[test]
 fn the_reward_of_aggregation_is_that_of_the_last_places() {
-    let mut evaluator = prepare(&Aggregation, "marxbot", 200);
+    let mut evaluator = prepare(&AGGREGATION, "marxbot", 200);
     let radius = 0.085;
     for number in 0..5 {
         let own = parameters(evaluator.as_ref(), number);
@@ -221,14 +224,26 @@ fn the_reward_of_aggregation_is_that_of_the_last_places() {
         }
         assert!((outcome.terms.iter().sum::<f64>() - reward / 10.0).abs() < 1e-5, "{outcome:?} {reward}");
         assert!((note(&outcome, "share on a nest") - home as f64 / 10.0).abs() < 1e-9);
-        let gathering = Gathering::new(&(0..10).map(place).collect::<Vec<_>>(), radius);
-        assert_eq!(note(&outcome, "clusters"), gathering.clusters as f64);
+        // Robots with less than a diameter between their hulls are of one cluster.
+        let mut cluster: Vec<u16> = (0..10).collect();
+        for _ in 0..10 {
+            for (a, b) in (0..10).flat_map(|a| (0..10).map(move |b| (a, b))) {
+                if far(place(a), place(b)) < 4.0 * radius {
+                    let least = cluster[usize::from(a)].min(cluster[usize::from(b)]);
+                    cluster[usize::from(a)] = least;
+                    cluster[usize::from(b)] = least;
+                }
+            }
+        }
+        cluster.sort_unstable();
+        cluster.dedup();
+        assert_eq!(note(&outcome, "clusters"), cluster.len() as f64);
     }
 }
 
 #[test]
 fn capture_is_the_same_for_both() {
-    let mut evaluator = prepare(&PredatorPrey, "", 400);
+    let mut evaluator = prepare(&PREDATOR_PREY, "", 400);
     let (mut captures, mut escapes) = (0, 0);
     for number in 0..24 {
         let (own, other) = (parameters(evaluator.as_ref(), number), parameters(evaluator.as_ref(), number + 100));
@@ -251,22 +266,22 @@ fn capture_is_the_same_for_both() {
 
 #[test]
 fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
-    let config = PredatorPreyConfig::default();
-    let minds = [Chaser::predator(&config), Chaser::prey(&config)];
-    let mut world = config.world().unwrap();
-    let mut episode = PredatorPreyEpisode::new(config.clone(), minds).unwrap();
-    for seed in 0..10 {
-        let outcome = chase(&mut episode, &mut world, EpisodeId { seed, ..EpisodeId::default() });
+    let settings = settings(&PREDATOR_PREY, "", &[]);
+    let chase = |aims: [Aim; 2]| -> Vec<Outcome> {
+        let robots = [0, 1].map(|robot| (robot, chaser(aims[robot], &settings).unwrap()));
+        let mut evaluator = PREDATOR_PREY.prepare_with("", &settings, robots.into()).unwrap();
+        let unused = parameters(evaluator.as_ref(), 0);
+        let ids = (0..10).map(|seed| EpisodeId { seed, ..EpisodeId::default() });
+        ids.map(|id| evaluator.evaluate(against(&unused, &[&unused], id), None)).collect()
+    };
+    for outcome in chase([Aim::To, Aim::From]) {
         // Capture leaves no gap that a step could not close. Without it there was one at every step.
-        assert!(!episode.captured() || episode.gap() < 2.0 * 0.027, "{seed}: {}", episode.gap());
+        assert!(!outcome.success || note(&outcome, "gap at the end [m]") < 2.0 * 0.027, "{outcome:?}");
         assert!(outcome.is_finite());
     }
     // A predator that steers to a prey that steers to it: no chase lasts long.
-    let minds = [Chaser::predator(&config), Chaser::predator(&config)];
-    let mut episode = PredatorPreyEpisode::new(config, minds).unwrap();
-    for seed in 0..10 {
-        let outcome = chase(&mut episode, &mut world, EpisodeId { seed, ..EpisodeId::default() });
-        assert!(episode.captured() && outcome.steps < 60, "{seed}: {outcome:?}");
+    for outcome in chase([Aim::To, Aim::To]) {
+        assert!(outcome.success && outcome.steps < 60, "{outcome:?}");
     }
 }
 
@@ -277,23 +292,23 @@ fn hand_written_teams_do_what_they_are_for() {
         outcomes.iter().map(|outcome| outcome.terms.iter().sum::<f64>()).sum::<f64>() / outcomes.len() as f64
     };
     for condition in ["marxbot", "e-puck", "khepera"] {
-        let mut evaluator = prepare(&Foraging, condition, 1000);
+        let mut evaluator = prepare(&FORAGING, condition, 1000);
         let mut random = Vec::new();
         for id in ids() {
             let own = parameters(evaluator.as_ref(), id.seed as u32);
             random.push(evaluator.evaluate(against(&own, &[], id), None));
         }
-        let config = ForagingConfig::for_condition(condition);
-        let mut world = config.world().unwrap();
-        let mut episode = ForagingEpisode::new(config.clone(), vec![HomingForager::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = ids().map(|id| forage(&mut episode, &mut world, id)).collect();
-        assert!(mean(&by_hand) > 2.0 * mean(&random), "{condition}: {} {}", mean(&by_hand), mean(&random));
-
-        let config = AggregationConfig::for_condition(condition);
-        let mut world = config.world().unwrap();
-        let mut episode = AggregationEpisode::new(config.clone(), vec![BeaconSeeker::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = ids().map(|id| aggregate(&mut episode, &mut world, id)).collect();
-        assert!(mean(&by_hand) > 30.0, "{condition}: {}", mean(&by_hand));
+        let by_hand = |experiment: &'static EmbeddedExperiment, reflex: Reflex, settings: &Settings| -> Vec<Outcome> {
+            let robots = (0..10).map(|robot| (robot, reflex.clone())).collect();
+            let mut team = experiment.prepare_with(condition, settings, robots).unwrap();
+            let unused = parameters(team.as_ref(), 0);
+            ids().map(|id| team.evaluate(against(&unused, &[], id), None)).collect()
+        };
+        let plain = settings(&FORAGING, condition, &[]);
+        let foragers = by_hand(&FORAGING, homing_forager(condition, &plain).unwrap(), &plain);
+        assert!(mean(&foragers) > 2.0 * mean(&random), "{condition}: {} {}", mean(&foragers), mean(&random));
+        let seekers = by_hand(&AGGREGATION, beacon_seeker(condition), &settings(&AGGREGATION, condition, &[]));
+        assert!(mean(&seekers) > 30.0, "{condition}: {}", mean(&seekers));
     }
 }
 
@@ -303,19 +318,19 @@ fn what_cannot_be_is_refused_by_name() {
         let settings = settings(experiment, condition, &[(key, value)]);
         experiment.prepare(condition, &settings).err().unwrap().to_string()
     };
-    let error = refused(&Foraging, "marxbot", "team.robots", Value::Whole(200));
+    let error = refused(&FORAGING, "marxbot", "team.robots", Value::Whole(200));
     assert!(error.starts_with("`team.robots`: no free place for a disc of 0.085 m in 1000 tries"), "{error}");
-    let error = refused(&Foraging, "khepera", "nest.to_wall", Value::Number(1.5));
+    let error = refused(&FORAGING, "khepera", "nest.to_wall", Value::Number(1.5));
     assert!(error.contains("`nest.to_wall`") && error.contains("at most 1 m"), "{error}");
-    let error = refused(&Foraging, "marxbot", "robot.speed", Value::Number(5.0));
+    let error = refused(&FORAGING, "marxbot", "robot.speed", Value::Number(5.0));
     assert!(error.contains("robot 0 may go 0.5 m in a step"), "{error}");
-    let error = refused(&Foraging, "marxbot", "nest.radius", Value::Number(0.0));
+    let error = refused(&FORAGING, "marxbot", "nest.radius", Value::Number(0.0));
     assert!(error.contains("`nest.radius`"), "{error}");
-    let error = refused(&Aggregation, "marxbot", "nest.count", Value::Whole(50));
+    let error = refused(&AGGREGATION, "marxbot", "nest.count", Value::Whole(50));
     assert!(error.contains("no free place for a disc of 0.51 m in 1000 tries"), "{error}");
-    let error = refused(&Aggregation, "e-puck", "world.size", Value::Number(0.2));
+    let error = refused(&AGGREGATION, "e-puck", "world.size", Value::Number(0.2));
     assert!(error.contains("`nest.to_wall`"), "{error}");
-    let error = refused(&PredatorPrey, "", "world.size", Value::Number(0.5));
+    let error = refused(&PREDATOR_PREY, "", "world.size", Value::Number(0.5));
     assert!(error.contains("`world.size`: no free place"), "{error}");
     for (experiment, condition) in ALL {
         let given = experiment.settings(condition);

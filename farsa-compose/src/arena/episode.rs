@@ -1,6 +1,6 @@
 //! An episode of robots in an arena.
 
-use farsa_body::ports::{BodyId, PairId};
+use farsa_body::ports::{BodyId, Channels as _, PairId};
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
 use farsa_lab::advanced::{PlanarWorld, seconds};
@@ -10,6 +10,7 @@ use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};
 
 use crate::arena::channel_quantity::{driven, sensed};
+use crate::arena::sensing::Sensing;
 use crate::arena::setup::Setup;
 use crate::arena::term::{Numbers, Rows, Term};
 use crate::composed_task::Body;
@@ -66,8 +67,11 @@ impl ArenaEpisode {
         world: &mut W,
         id: EpisodeId,
     ) -> Result<(), farsa_physics::arena::ArenaError> {
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
-        self.setup.starting.arrange(world, &mut stream)
+        let Agents { document, size, present, .. } = &self.agents;
+        let individual =
+            if document.team.common_starts { id.individual % (*size).max(1) as u32 } else { id.individual };
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, individual, id.generation);
+        self.setup.starting.arrange(world, &mut stream, *present)
     }
 
     /// Measures the terms of each step, or the late ones.
@@ -97,8 +101,11 @@ impl ArenaEpisode {
 
     /// Returns the mean of a term over its robots.
     fn mean<W: PlanarWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
+        if term.is_of_team() {
+            return self.value(world, term, 0);
+        }
         let mut value = 0.0;
-        let robots = self.setup.members.iter().zip(&self.poses).zip(&self.numbers);
+        let robots = self.setup.members.iter().zip(&self.poses).zip(&self.numbers).take(self.agents.present);
         for (robot, ((member, pose), numbers)) in robots.enumerate() {
             let quick = term.quick(world, &member.parts, pose, numbers);
             let share = quick.unwrap_or_else(|| self.value(world, term, robot));
@@ -121,15 +128,26 @@ impl ArenaEpisode {
         let Self { setup, agents, started, before, poses, numbers, .. } = self;
         let (inputs, outputs) = (agents.spec.inputs.len(), agents.spec.outputs.len());
         let field = setup.foraging.as_ref().map(|(_, field)| field);
-        let rows = Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field };
+        let steps = [agents.ledger.steps, agents.document.episode.steps];
+        let poses = &poses[..agents.present];
+        let rows = Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field, steps };
         term.value(world, &setup.members[robot].parts, (&rows, robot), &numbers[robot])
     }
 
     /// Returns the current value of a late term.
     fn late_value<W: PlanarWorld>(&self, world: &W, number: usize) -> f64 {
         let (term, tally) = (&self.setup.terms[number], &self.agents.ledger.tallies[number]);
-        let robots = self.setup.members.len();
-        (0..robots).map(|robot| tally.share(robot, self.value(world, term, robot))).sum::<f64>() / tally.robots()
+        if term.is_of_team() {
+            return self.value(world, term, 0);
+        }
+        (0..self.agents.present).map(|robot| tally.share(robot, self.value(world, term, robot))).sum::<f64>()
+            / tally.robots()
+    }
+
+    /// Returns true for a robot that takes part and is not dead.
+    fn is_alive(&self, robot: usize) -> bool {
+        let field = self.setup.foraging.as_ref().map(|(_, field)| field);
+        robot < self.agents.present && field.is_none_or(|field| field.robots()[robot].alive)
     }
 
     /// Returns true after an event that ends the trial early.
@@ -144,10 +162,10 @@ impl ArenaEpisode {
     /// Separate, because the compiler would load its inputs in each step of a trial that ends by collision.
     #[inline(never)]
     fn has_rare_event(&self, ending: Ending) -> bool {
-        let Setup { members, foraging, .. } = &self.setup;
+        let (foraging, present) = (&self.setup.foraging, self.agents.present);
         match ending {
             Ending::Success => self.agents.ledger.would_succeed(),
-            Ending::Death => foraging.as_ref().is_some_and(|(_, field)| field.deaths() == members.len()),
+            Ending::Death => foraging.as_ref().is_some_and(|(_, field)| field.deaths() == present),
             Ending::Collision => false,
         }
     }
@@ -156,11 +174,11 @@ impl ArenaEpisode {
     #[inline(never)]
     fn act_as_team<W: PlanarWorld>(&mut self, world: &mut W) {
         let Setup { members, foraging, .. } = &mut self.setup;
-        let Agents { spec: NetworkSpec { sensors, motors, inputs, outputs, .. }, networks, x, y, .. } =
+        let Agents { spec: NetworkSpec { sensors, motors, inputs, outputs, .. }, networks, x, y, present, .. } =
             &mut self.agents;
         let (inputs, outputs) = (inputs.len(), outputs.len());
         let foragers = foraging.as_ref().map(|(_, field)| field.robots());
-        let alive = |robot: usize| foragers.is_none_or(|foragers| foragers[robot].alive);
+        let alive = |robot: usize| robot < *present && foragers.is_none_or(|foragers| foragers[robot].alive);
         for (robot, (member, x)) in members.iter_mut().zip(x.chunks_exact_mut(inputs)).enumerate() {
             if let Some(foragers) = foragers {
                 let sensors = member.equipment.sensors.iter_mut();
@@ -261,10 +279,10 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.agents.ledger.steps += 1;
-        let Self { setup, poses, .. } = self;
+        let Self { setup, agents, poses, .. } = self;
         for (robot, (pose, member)) in poses.iter_mut().zip(&setup.members).enumerate() {
             *pose = world.pose(member.parts.body);
-            if let Some((_, field)) = &mut setup.foraging {
+            if let Some((_, field)) = setup.foraging.as_mut().filter(|_| robot < agents.present) {
                 field.step(robot, [0, 1].map(|k| f64::from(pose.position[k])));
             }
         }
@@ -272,19 +290,24 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         (self.agents.ledger.is_over() || self.has_event(world)).then(|| self.conclude(world))
     }
 
-    /// Records the infrared rays: all of the first evolving robot, of the others those with a hit.
+    /// Records the infrared rays: all of the recorded robot, of the others those with a hit. Dead robots have none.
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         let inputs = self.agents.spec.inputs.len();
-        for (robot, (member, x)) in self.setup.members.iter().zip(self.agents.x.chunks_exact(inputs)).enumerate() {
-            for (first, drawing) in &member.drawn {
-                let x = &x[*first..*first + drawing.count()];
-                drawing.record(world.pose(member.parts.body), x, robot != self.agents.evolving[0], recorder);
+        let robots = self.setup.members.iter().zip(self.agents.x.chunks_exact(inputs)).enumerate();
+        for (robot, (member, x)) in robots.filter(|(robot, _)| self.is_alive(*robot)) {
+            for ([number, first], drawing) in &member.drawn {
+                let x = match member.equipment.sensors[*number].kind() {
+                    // Sensors in groups have fewer channels than rays.
+                    Sensing::Rays(infrared) if infrared.channels() < drawing.count() => infrared.ring(),
+                    _ => &x[*first..*first + drawing.count()],
+                };
+                drawing.record(world.pose(member.parts.body), x, robot != self.agents.watched, recorder);
             }
         }
     }
 
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        let Agents { document, spec, ledger, networks, x, y, evolving: [shown, _], .. } = &self.agents;
+        let Agents { document, spec, ledger, networks, x, y, watched: shown, .. } = &self.agents;
         let row = |count: usize| shown * count..(shown + 1) * count;
         recorder.sensors(&x[row(spec.inputs.len())]);
         recorder.neurons(networks[*shown].controller().activations());

@@ -2,13 +2,13 @@
 
 /// The state of a forager.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Forager {
+pub(crate) struct Forager {
     /// Energy \[0..1\], 0 for a dead robot.
-    pub energy: f64,
+    pub(crate) energy: f64,
     /// False after death.
-    pub alive: bool,
+    pub(crate) alive: bool,
     /// Pieces of food that it carries.
-    pub carried: u32,
+    pub(crate) carried: u32,
     /// Steps since its last visit to the nest.
     away: u32,
 }
@@ -18,7 +18,7 @@ pub struct Forager {
 /// A robot that enters a cell takes its food. In the nest it delivers its load and its energy returns to 1. Without
 /// energy it dies and its load is lost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub(crate) struct Field {
     /// Width and depth [m].
     size: [f64; 2],
     /// Cells along each side.
@@ -37,14 +37,14 @@ pub struct Field {
 impl Field {
     /// Creates a field of this size \[m\] with `cells` times `cells` cells from the origin. `cost` is the energy cost
     /// of a step and `radius` the radius of the nest \[m\].
-    pub fn new(size: [f64; 2], cells: usize, cost: f64, radius: f64, robots: usize) -> Self {
+    pub(crate) fn new(size: [f64; 2], cells: usize, cost: f64, radius: f64, robots: usize) -> Self {
         let robot = Forager { energy: 1.0, alive: true, carried: 0, away: 0 };
         let (food, robots) = (vec![true; cells * cells], vec![robot; robots]);
         Self { size, cells, cost, nest: [0.0; 2], radius, food, robots, collected: 0, lost: 0 }
     }
 
     /// Restores all food and the energy of all robots, with the nest at this place \[m\].
-    pub fn begin(&mut self, nest: [f64; 2]) {
+    pub(crate) fn begin(&mut self, nest: [f64; 2]) {
         self.nest = nest;
         self.food.fill(true);
         self.robots.fill(Forager { energy: 1.0, alive: true, carried: 0, away: 0 });
@@ -52,7 +52,7 @@ impl Field {
     }
 
     /// Returns true for a place in the nest.
-    pub fn in_nest(&self, [x, y]: [f64; 2]) -> bool {
+    pub(crate) fn in_nest(&self, [x, y]: [f64; 2]) -> bool {
         let [x, y] = [x - self.nest[0], y - self.nest[1]];
         x * x + y * y <= self.radius * self.radius
     }
@@ -60,7 +60,7 @@ impl Field {
     /// Steps a robot that has moved to this place \[m\]. It pays for the step, takes food, and delivers it or dies.
     ///
     /// A robot that reaches the nest with its last energy survives. Places outside the field have no food.
-    pub fn step(&mut self, robot: usize, at: [f64; 2]) {
+    pub(crate) fn step(&mut self, robot: usize, at: [f64; 2]) {
         let nest = self.in_nest(at);
         let Some(forager) = self.robots.get_mut(robot).filter(|forager| forager.alive) else { return };
         forager.away += 1;
@@ -83,12 +83,12 @@ impl Field {
     }
 
     /// Returns the states of all robots.
-    pub fn robots(&self) -> &[Forager] {
+    pub(crate) fn robots(&self) -> &[Forager] {
         &self.robots
     }
 
     /// Returns the food of each cell, row by row from the origin along x.
-    pub fn food(&self) -> &[bool] {
+    pub(crate) fn food(&self) -> &[bool] {
         &self.food
     }
 
@@ -103,27 +103,28 @@ impl Field {
     }
 
     /// Returns the number of delivered pieces of food.
-    pub fn collected(&self) -> u32 {
+    pub(crate) fn collected(&self) -> u32 {
         self.collected
     }
 
     /// Returns the number of pieces lost with dead robots.
-    pub fn lost(&self) -> u32 {
+    pub(crate) fn lost(&self) -> u32 {
         self.lost
     }
 
     /// Returns the number of pieces that robots carry.
-    pub fn carried(&self) -> u32 {
+    pub(crate) fn carried(&self) -> u32 {
         self.robots.iter().map(|forager| forager.carried).sum()
     }
 
     /// Returns the number of pieces on the field.
-    pub fn left(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn left(&self) -> usize {
         self.food.iter().filter(|food| **food).count()
     }
 
     /// Returns the number of dead robots.
-    pub fn deaths(&self) -> usize {
+    pub(crate) fn deaths(&self) -> usize {
         self.robots.iter().filter(|forager| !forager.alive).count()
     }
 }

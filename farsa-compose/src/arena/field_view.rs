@@ -31,7 +31,7 @@ fn carried(robot: usize) -> String {
 impl Field {
     /// Returns the channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food,
     /// `carried 1`...
-    pub fn channels(&self) -> Vec<Channel> {
+    pub(crate) fn channels(&self) -> Vec<Channel> {
         let of_robot = |robot| {
             [Channel::new(&energy(robot)).group("energy").range(0.0, 1.0), Channel::new(&carried(robot)).group("food")]
         };
@@ -39,7 +39,7 @@ impl Field {
     }
 
     /// Returns the energy and the food load of each robot.
-    pub fn scalars(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn scalars(&self) -> impl Iterator<Item = f64> + '_ {
         self.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)])
     }
 
@@ -49,7 +49,7 @@ impl Field {
     /// A ball marks a robot with food, and a dark cover with a bar a dead one. `robots` are the first bodies. Fields
     /// with more than 64 cells along a side are not drawn, nor are marks of more than 50 robots.
     #[must_use]
-    pub fn shown_in(&self, mut schema: Schema, robots: &[&MobileRobot]) -> Schema {
+    pub(crate) fn shown_in(&self, mut schema: Schema, robots: &[&MobileRobot]) -> Schema {
         if let Some(cells) = self.shown_cells() {
             schema.images.push(ImageChannel::new("food", [cells; 2]).on_ground([0.0; 2], self.size()));
         }
@@ -63,7 +63,7 @@ impl Field {
     }
 
     /// Records the food as the image of this number, which [`shown_in`](Self::shown_in) added to the schema.
-    pub fn record(&self, image: usize, recorder: &mut dyn Recorder) {
+    pub(crate) fn record(&self, image: usize, recorder: &mut dyn Recorder) {
         if self.shown_cells().is_none() {
             return;
         }

@@ -33,21 +33,47 @@ pub(crate) enum Measure {
     StraightOn,
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
-    InArea {
-        /// Body with half its sides [m], or the radius of a disc.
-        areas: Vec<(BodyId, [f64; 2], bool)>,
-    },
+    InArea(Vec<MeasuredArea>),
+    FullestArea(Vec<MeasuredArea>),
+    Dispersion,
+    Clusters,
+    LargestCluster,
     /// In units of the arena's diagonal [m].
     NearOthers {
         diagonal: f64,
     },
     Food,
+    CarriedFood,
+    LostFood,
+    Deaths,
     Energy,
     Alive,
     Held,
     Effort,
     Control,
     Steps,
+    Time,
+    /// With the radius of the thing [m].
+    Gap {
+        radius: f64,
+    },
+    Contact {
+        radius: f64,
+        within: f64,
+    },
+    /// With the robots for which it is the rest of 1.
+    TimeLeft {
+        rest: [usize; 2],
+    },
+}
+
+/// An area.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeasuredArea {
+    pub(crate) body: BodyId,
+    /// Half the sides [m], or twice the radius of a disc.
+    pub(crate) half: [f64; 2],
+    pub(crate) disc: bool,
 }
 
 impl Measure {
@@ -62,15 +88,27 @@ impl Measure {
     ) -> Result<(Self, Option<BodyId>), Error> {
         check(kind, path, source)?;
         let body = |name: &str| scene.body(name, &format!("{path}/object"), source);
+        let cylinder = |name: &str| {
+            let path = format!("{path}/object");
+            let solid = scene.thing(name, &path, source)?.solid();
+            solid.ok_or_else(|| source.wrong(&path, format!("`{name}` is no cylinder")))
+        };
         let mut about = None;
         let measure = match kind {
             RewardKind::Near { object, within, .. } => {
-                let path = format!("{path}/object");
-                let Some((thing, radius)) = scene.thing(object, &path, source)?.solid() else {
-                    return Err(source.wrong(&path, format!("`{object}` is no cylinder")));
-                };
+                let (thing, radius) = cylinder(object)?;
                 about = Some(thing);
                 Measure::Near { radius, within: *within }
+            }
+            RewardKind::Gap { object } => {
+                let (thing, radius) = cylinder(object)?;
+                about = Some(thing);
+                Measure::Gap { radius }
+            }
+            RewardKind::Contact { object, within } => {
+                let (thing, radius) = cylinder(object)?;
+                about = Some(thing);
+                Measure::Contact { radius, within: *within }
             }
             RewardKind::Distance { object, .. } => {
                 about = Some(body(object)?);
@@ -107,30 +145,48 @@ impl Measure {
                 Measure::Sensor(channels.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
             }
             RewardKind::InArea { area, or } => {
-                let others = or.iter().enumerate().map(|(index, area)| (format!("{path}/or/{index}"), area));
-                let areas =
-                    std::iter::once((format!("{path}/area"), area)).chain(others).map(|(path, area)| {
-                        match scene.thing(area, &path, source)? {
-                            Thing::Area { body, half, disc } => Ok((body, half, disc)),
-                            _ => Err(source.wrong(&path, format!("`{area}` is no disc or rectangle"))),
-                        }
-                    });
-                Measure::InArea { areas: areas.collect::<Result<_, Error>>()? }
+                let mut all = areas(area, &format!("{path}/area"), scene, source)?;
+                for (index, area) in or.iter().enumerate() {
+                    all.extend(areas(area, &format!("{path}/or/{index}"), scene, source)?);
+                }
+                Measure::InArea(all)
             }
+            RewardKind::FullestArea { area } => {
+                Measure::FullestArea(areas(area, &format!("{path}/area"), scene, source)?)
+            }
+            RewardKind::Dispersion {} => Measure::Dispersion,
+            RewardKind::Clusters {} => Measure::Clusters,
+            RewardKind::LargestCluster {} => Measure::LargestCluster,
             RewardKind::NearOthers {} => {
                 let [width, depth] = scene.size;
                 Measure::NearOthers { diagonal: Scalar::sqrt(width * width + depth * depth) }
             }
             RewardKind::Food {} => Measure::Food,
+            RewardKind::CarriedFood {} => Measure::CarriedFood,
+            RewardKind::LostFood {} => Measure::LostFood,
+            RewardKind::Deaths {} => Measure::Deaths,
             RewardKind::Energy {} => Measure::Energy,
             RewardKind::Alive {} => Measure::Alive,
             RewardKind::Held {} => Measure::Held,
             RewardKind::Effort {} => Measure::Effort,
             RewardKind::Control {} => Measure::Control,
             RewardKind::Steps {} => Measure::Steps,
+            RewardKind::Time {} => Measure::Time,
+            RewardKind::TimeLeft { rest } => {
+                Measure::TimeLeft { rest: scene.groups.find(rest, &format!("{path}/rest"), source)? }
+            }
         };
         Ok((measure, about))
     }
+}
+
+/// Returns all areas of a name.
+fn areas(name: &str, path: &str, scene: &Scene, source: &Source) -> Result<Vec<MeasuredArea>, Error> {
+    let area = |thing: Thing| match thing {
+        Thing::Area { body, half, disc } => Ok(MeasuredArea { body, half, disc }),
+        _ => Err(source.wrong(path, format!("`{name}` is no disc or rectangle"))),
+    };
+    scene.things(name, path, source)?.into_iter().map(area).collect()
 }
 
 /// Returns a direction of the world as a unit vector of the plane.

@@ -12,6 +12,8 @@ pub(crate) mod episode;
 pub(crate) mod field;
 /// The field in recordings and animations.
 mod field_view;
+/// Spread and clusters of robots.
+mod gathering;
 /// The measures of terms.
 pub(crate) mod measure;
 /// The arena, and the bodies that names refer to.

@@ -3,10 +3,10 @@
 use farsa_body::ports::BodyId;
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::Error;
-use farsa_physics::arena::{Area, Arena, Cylinder, Wall};
+use farsa_physics::arena::{Area, Arena, CollisionRule, Cylinder, Wall};
 
 use crate::check::source::Source;
-use crate::document::{Document, Engine, Object, ObjectKind, Robot, RobotKind};
+use crate::document::{Collisions, Document, Engine, Object, ObjectKind, Robot, RobotKind};
 use crate::parts::groups::Groups;
 
 /// A named thing.
@@ -106,6 +106,9 @@ impl Scene {
         let arena = if world.walls { Arena::walled(width, depth) } else { Arena::new() };
         // Without bounds, because things wait outside before they are placed.
         let mut arena = Arena { time_step: world.time_step, ground: world.ground, size: None, ..arena };
+        if world.collisions == Some(Collisions::Circles) {
+            arena.collisions = CollisionRule::Circles;
+        }
         let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
         let apart = BESIDE + 3.0 * widest;
         for (number, robot) in robots.iter().enumerate() {
@@ -129,15 +132,11 @@ impl Scene {
                     return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
             };
-            // In rapier the order of contacts, and so the last bits, depend on these first places.
-            x += (BESIDE + 2.0 * reach).max(last_reach + reach);
-            last_reach = reach;
             let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), source));
             let at = at.transpose()?;
             if let Some(at) = at.filter(|_| !object.shines()) {
                 within_walls(document, at, &format!("/objects/{index}/at"), source)?;
             }
-            let at = at.unwrap_or([x, 0.0]);
             if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
                 return Err(source.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
             }
@@ -145,7 +144,15 @@ impl Scene {
                 let why = "is a block, which nothing pushes in the engine `arena`; `rapier` is the one for it";
                 return Err(source.wrong(&format!("/objects/{index}"), why));
             }
-            built.push((object.name.clone(), add(&mut arena, &mut blocks, object, at)));
+            if at.is_some() && object.count.is_some() {
+                return Err(source.wrong(&format!("/objects/{index}/count"), "is for things that a trial places"));
+            }
+            for _ in 0..object.count.unwrap_or(1) {
+                // In rapier the order of contacts, and so the last bits, depend on these first places.
+                x += (BESIDE + 2.0 * reach).max(last_reach + reach);
+                last_reach = reach;
+                built.push((object.name.clone(), add(&mut arena, &mut blocks, object, at.unwrap_or([x, 0.0]))));
+            }
         }
         // Bodies are numbered after the last one is added.
         let [mut cylinders, mut areas, mut pushed] = [0; 3];
@@ -184,10 +191,25 @@ impl Scene {
 
     /// Returns the thing of a name at a path of the document.
     pub(crate) fn thing(&self, name: &str, path: &str, source: &Source) -> Result<Thing, Error> {
-        let thing = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
+        match self.things(name, path, source)?[..] {
+            [thing] => Ok(thing),
+            _ => Err(source.wrong(path, format!("`{name}` names several things"))),
+        }
+    }
+
+    /// Returns all things of a name at a path of the document, at least one.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] with the nearest name.
+    pub(crate) fn things(&self, name: &str, path: &str, source: &Source) -> Result<Vec<Thing>, Error> {
+        let of_name = self.things.iter().filter(|(known, _)| known == name);
+        let things: Vec<Thing> = of_name.map(|(_, thing)| *thing).collect();
+        if !things.is_empty() {
+            return Ok(things);
+        }
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
         let names = self.things[..named].iter().map(|(name, _)| name.as_str());
-        thing.ok_or_else(|| Error::unknown(&source.of(path), "object", name, names))
+        Err(Error::unknown(&source.of(path), "object", name, names))
     }
 
     /// Returns the body of a named thing.
@@ -203,11 +225,9 @@ impl Scene {
 
     /// Returns the cylinders and blocks with a fixed initial place.
     pub(crate) fn standing<'s>(&'s self, document: &'s Document) -> impl Iterator<Item = (BodyId, f64)> + 's {
-        let placed =
-            document.objects.iter().zip(&self.things[..self.standing]).filter(|(object, _)| object.at.is_some());
-        placed
-            .filter(|(_, (_, thing))| thing.is_solid())
-            .filter_map(|(_, (_, thing))| Some((thing.body()?, thing.reach())))
+        let is_placed = |name: &str| document.objects.iter().any(|object| object.name == name && object.at.is_some());
+        let placed = self.things[..self.standing].iter().filter(move |(name, _)| is_placed(name));
+        placed.filter(|(_, thing)| thing.is_solid()).filter_map(|(_, thing)| Some((thing.body()?, thing.reach())))
     }
 
     /// Number of bodies.

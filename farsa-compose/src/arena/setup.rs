@@ -13,7 +13,7 @@ use crate::arena::sensing::{Sensing, sensor};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
 use crate::check::source::Source;
-use crate::document::{Document, Ending, MotorKind, SensorKind};
+use crate::document::{Document, Ending, MotorKind, SensorKind, TestProtocol};
 use crate::parts::agents::Agents;
 use crate::parts::equipment::Equipment;
 use crate::parts::files::Files;
@@ -42,8 +42,8 @@ pub(crate) struct Setup {
 pub(crate) struct Member {
     pub(crate) parts: farsa_body::robots::MobileParts,
     pub(crate) equipment: Equipment<Sensing, Driving>,
-    /// Infrared sensors in recordings, with their first channel.
-    pub(crate) drawn: Vec<(usize, InfraredDrawing)>,
+    /// Infrared sensors in recordings, with their number among the sensors and their first channel.
+    pub(crate) drawn: Vec<([usize; 2], InfraredDrawing)>,
 }
 
 impl Member {
@@ -59,6 +59,9 @@ impl Setup {
     /// Builds the parts of a document.
     pub(crate) fn new(document: Document, source: &Source) -> Result<(Self, Agents), Error> {
         let scene = Scene::new(&document, source)?;
+        if document.robot.is_none() && document.protocols.contains(&TestProtocol::TeamSize) {
+            return Err(source.wrong("/protocols", "has `team-size`, which is for one group of robots"));
+        }
         let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
         check_parts(&document, scene.robots.len(), infrared, source)?;
         let (mut files, mut budget) = (Files::new(&document.files), MemoryBudget::new(source.limits));
@@ -134,21 +137,20 @@ fn foraging(
     }
 }
 
-/// Returns the infrared sensors of a robot for recordings, with the first channel of each.
-fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Part<Sensing>]) -> Vec<(usize, InfraredDrawing)> {
+/// Returns the infrared sensors of a robot for recordings, with the number and the first channel of each.
+fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Part<Sensing>]) -> Vec<([usize; 2], InfraredDrawing)> {
     let mut first = 0;
     let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(sensors);
-    let kinds = enabled.map(|(sensor, made)| {
+    let kinds = enabled.enumerate().map(|(number, (sensor, made))| {
         first += made.channels();
-        (first - made.channels(), &sensor.kind)
+        ([number, first - made.channels()], &sensor.kind)
     });
-    let infrared = kinds.filter_map(|(first, kind)| match kind {
-        SensorKind::Infrared { first: count, groups, .. } => {
+    let infrared = kinds.filter_map(|(place, kind)| match kind {
+        SensorKind::Infrared { first: count, .. } => {
             let mut robot = robot.clone();
             let sensors = robot.infrared.angles.len();
             robot.infrared.angles.truncate(if *count == 0 { sensors } else { *count as usize });
-            let groups = if *groups == 0 { robot.infrared.angles.len() } else { *groups as usize };
-            Some((first, InfraredDrawing::for_robot(&robot, groups)))
+            Some((place, InfraredDrawing::for_robot(&robot, robot.infrared.angles.len())))
         }
         _ => None,
     });

@@ -11,7 +11,7 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::arena::scene::{ROBOT, Scene, Thing, flat, within_walls};
 use crate::check::source::Source;
-use crate::document::{Document, Placing};
+use crate::document::{Document, Placing, Start};
 use crate::parts::choice::Choice;
 
 /// A placement with its bodies.
@@ -20,6 +20,8 @@ struct Rule {
     bodies: Vec<BodyId>,
     /// Radius of the obstacle [m].
     radius: f64,
+    /// Distance from the center from which distances are measured [m].
+    edge: f64,
     solid: bool,
     /// True if a heading is drawn.
     turned: bool,
@@ -28,11 +30,26 @@ struct Rule {
 
 #[derive(Clone, Debug)]
 enum How {
-    Anywhere { walls: f64, apart: f64 },
-    Near { of: BodyId, within: f64, walls: f64, apart: f64 },
-    Around { of: BodyId, distance: [f64; 2] },
+    Anywhere {
+        walls: f64,
+        apart: f64,
+    },
+    Near {
+        of: BodyId,
+        within: f64,
+        walls: f64,
+        apart: f64,
+    },
+    Around {
+        of: BodyId,
+        distance: [f64; 2],
+    },
     OneOf(Choice<2>),
-    Fixed { point: [f64; 2], heading: f64 },
+    /// Without a heading it is drawn.
+    Fixed {
+        point: [f64; 2],
+        heading: Option<f64>,
+    },
 }
 
 impl How {
@@ -51,6 +68,8 @@ impl How {
 pub(crate) struct Starting {
     rules: Vec<Rule>,
     size: [f64; 2],
+    /// Places outside the arena for robots that do not take part.
+    outside: Vec<(BodyId, [f32; 2])>,
     /// Things with a fixed initial place.
     standing: Vec<BodyId>,
     before: Before,
@@ -83,7 +102,7 @@ impl Starting {
         let of_robots = |bodies: Vec<BodyId>, how| {
             let radii = bodies.iter().map(|body| scene.robots[usize::from(body.0)].radius);
             let radius = radii.fold(0.0_f64, f64::max);
-            Rule { bodies, radius, solid: true, turned: true, how }
+            Rule { bodies, radius, edge: radius, solid: true, turned: true, how }
         };
         // A placement relative to a thing needs the thing placed earlier.
         let before = |name: &str, path: &str, rules: &[Rule]| {
@@ -98,7 +117,7 @@ impl Starting {
             let path = format!("/start/{index}");
             let at_point = |point: &[f64], path: &str| point_of(document, &start.place, point, path, source);
             let how = match &start.how {
-                Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
+                Placing::Anywhere { walls, apart, .. } => How::Anywhere { walls: *walls, apart: *apart },
                 Placing::Near { of, within, walls, apart } => {
                     let thing = before(of, &format!("{path}/of"), &rules)?;
                     How::Near { of: thing, within: *within, walls: *walls, apart: *apart }
@@ -120,9 +139,9 @@ impl Starting {
                 Placing::InBox { .. } | Placing::Turned { .. } => {
                     return Err(source.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
                 }
-                Placing::Fixed { point, heading } => {
+                Placing::Fixed { point, heading, drawn_heading } => {
                     let point = at_point(point, &format!("{path}/point"))?;
-                    How::Fixed { point, heading: heading.to_radians() }
+                    How::Fixed { point, heading: (!drawn_heading).then(|| heading.to_radians()) }
                 }
             };
             let rule = if start.place == ROBOT {
@@ -140,16 +159,7 @@ impl Starting {
                 let why = || source.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
                 of_robots(vec![*body.ok_or_else(why)?], how)
             } else {
-                let path = format!("{path}/place");
-                let thing = scene.thing(&start.place, &path, source)?;
-                let body = scene.body(&start.place, &path, source)?;
-                Rule {
-                    bodies: vec![body],
-                    radius: thing.reach(),
-                    solid: thing.is_solid(),
-                    turned: matches!(thing, Thing::Block { .. }),
-                    how,
-                }
+                of_thing(start, how, &format!("{path}/place"), scene, source)?
             };
             if rules.iter().any(|other| other.bodies.iter().any(|body| rule.bodies.contains(body))) {
                 return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
@@ -158,7 +168,8 @@ impl Starting {
         }
         for (index, object) in document.objects.iter().enumerate() {
             let path = format!("/objects/{index}");
-            let body = scene.body(&object.name, &path, source).ok().filter(|_| object.at.is_none());
+            let things = scene.things(&object.name, &path, source)?;
+            let body = things[0].body().filter(|_| object.at.is_none());
             if body.is_some_and(|body| !rules.iter().any(|rule| rule.bodies.contains(&body))) {
                 return Err(source.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
             }
@@ -174,18 +185,28 @@ impl Starting {
         let most = standing.len() + rules.iter().map(|rule| rule.bodies.len()).sum::<usize>();
         let before = Before { others: Vec::with_capacity(most), areas: Vec::with_capacity(most) };
         let chosen = vec![0; rules.len()];
-        Ok(Self { rules, size: scene.size, standing, before, chosen })
+        Ok(Self { rules, size: scene.size, outside: outside(scene, &robots), standing, before, chosen })
     }
 
-    /// Places all bodies, by draws in the order of the rules.
-    pub(crate) fn arrange<W: PlanarWorld>(&mut self, world: &mut W, stream: &mut Stream) -> Result<(), ArenaError> {
+    /// Places all bodies, by draws in the order of the rules. Only the first `present` robots take part.
+    pub(crate) fn arrange<W: PlanarWorld>(
+        &mut self,
+        world: &mut W,
+        stream: &mut Stream,
+        present: usize,
+    ) -> Result<(), ArenaError> {
         world.clear();
-        let Self { rules, size, standing, before, chosen } = self;
+        let Self { rules, size, outside, standing, before, chosen } = self;
+        let absent = &outside[present..];
+        for (body, at) in absent {
+            world.place_body(*body, Pose::planar(*at, 0.0), Twist::default());
+            world.finish_placement();
+        }
         before.others.clear();
         before.areas.clear();
         before.others.extend(standing.iter().map(|body| (*body, 0.0)));
         for (number, rule) in rules.iter().enumerate() {
-            for &body in &rule.bodies {
+            for &body in rule.bodies.iter().filter(|body| !absent.iter().any(|(other, _)| other == *body)) {
                 let apart = match rule.how {
                     How::Anywhere { apart, .. } | How::Near { apart, .. } => apart,
                     _ => 0.0,
@@ -195,7 +216,7 @@ impl Starting {
                 }
                 let at = place(rule, number, chosen, *size, world, before, stream)?;
                 let heading = match (rule.turned, &rule.how) {
-                    (_, How::Fixed { heading, .. }) => *heading as f32,
+                    (_, How::Fixed { heading: Some(heading), .. }) => *heading as f32,
                     (true, _) => stream.range(-PI, PI),
                     (false, _) => 0.0,
                 };
@@ -204,12 +225,43 @@ impl Starting {
                 if rule.solid {
                     before.others.push((body, 0.0));
                 } else {
-                    before.areas.push((body, rule.radius));
+                    before.areas.push((body, rule.edge));
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Returns places outside the arena for all robots, beyond the range of sensors.
+fn outside(scene: &Scene, robots: &[BodyId]) -> Vec<(BodyId, [f32; 2])> {
+    let size = scene.size[0].max(scene.size[1]) as f32;
+    let place = |robot: usize| [-5.0 * size - 4.0 * scene.robots[robot].radius as f32 * robot as f32; 2];
+    robots.iter().enumerate().map(|(robot, body)| (*body, place(robot))).collect()
+}
+
+/// Builds the rule of things of one name.
+///
+/// # Errors
+/// [`Error::Setting`] for an unknown thing, a wall, and several things on one point.
+fn of_thing(start: &Start, how: How, path: &str, scene: &Scene, source: &Source) -> Result<Rule, Error> {
+    let things = scene.things(&start.place, path, source)?;
+    let thing = things[0];
+    let bodies: Vec<BodyId> = things.iter().filter_map(|thing| thing.body()).collect();
+    if bodies.len() < 2 {
+        scene.body(&start.place, path, source)?;
+    } else if how.is_one_point() {
+        return Err(source.wrong(path, format!("puts {} things on one point", bodies.len())));
+    }
+    let from_center = !thing.is_solid() && matches!(start.how, Placing::Anywhere { centers: true, .. });
+    Ok(Rule {
+        bodies,
+        radius: thing.reach(),
+        edge: if from_center { 0.0 } else { thing.reach() },
+        solid: thing.is_solid(),
+        turned: matches!(thing, Thing::Block { .. }),
+        how,
+    })
 }
 
 /// Reads the point of a thing or robot. Only lamps may be beyond the walls.
@@ -258,7 +310,7 @@ fn place<W: PlanarWorld>(
         }
     };
     // Centers are at least radius + walls from each wall. A margin of more than half the width leaves the middle.
-    let margin = rule.radius + walls;
+    let margin = rule.edge + walls;
     let low = size.map(|x| margin.min(0.5 * x) as f32);
     let high = size.map(|x| (x - margin).max(0.5 * x) as f32);
     let region = near.map_or([low, high], |(at, far)| {
@@ -277,7 +329,7 @@ fn place<W: PlanarWorld>(
         // The largest overlap: r_i + r_j + apart - |p_i - p_j|.
         let lacks = before.areas.iter().fold(f32::NEG_INFINITY, |most, (other, reach)| {
             let [x, y, _] = world.pose(*other).position;
-            Scalar::max(most, (rule.radius + reach + apart) as f32 - length([at[0] - x, at[1] - y]))
+            Scalar::max(most, (rule.edge + reach + apart) as f32 - length([at[0] - x, at[1] - y]))
         });
         if near.is_none_or(|(centre, far)| length([at[0] - centre[0], at[1] - centre[1]]) <= far) {
             // Areas may overlap unless a distance is given.

@@ -8,7 +8,8 @@ use farsa_lab::advanced::PlanarWorld;
 use farsa_num::{Scalar, atan2};
 
 use crate::arena::field::Field;
-use crate::arena::measure::Measure;
+use crate::arena::gathering::{Gathering, distance};
+use crate::arena::measure::{Measure, MeasuredArea};
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
 use crate::document::Reward;
@@ -35,6 +36,8 @@ pub(crate) struct Rows<'r> {
     pub(crate) before: &'r [[f64; 2]],
     pub(crate) poses: &'r [Pose],
     pub(crate) field: Option<&'r Field>,
+    /// Steps so far, and of the longest trial.
+    pub(crate) steps: [u32; 2],
 }
 
 impl Rows<'_> {
@@ -77,7 +80,17 @@ impl Term {
 
     /// Returns true if the measure needs food or energy.
     pub(crate) fn of_foraging(&self) -> bool {
-        matches!(self.measure, Measure::Food | Measure::Energy | Measure::Alive)
+        use Measure::{Alive, CarriedFood, Deaths, Energy, Food, LostFood};
+        matches!(self.measure, Food | CarriedFood | LostFood | Deaths | Energy | Alive)
+    }
+
+    /// Returns true if the measure has one value for the whole team.
+    pub(crate) fn is_of_team(&self) -> bool {
+        use Measure::{CarriedFood, Clusters, Deaths, Dispersion, Food, FullestArea, LargestCluster, LostFood};
+        matches!(
+            self.measure,
+            Food | CarriedFood | LostFood | Deaths | FullestArea(_) | Dispersion | Clusters | LargestCluster
+        )
     }
 
     /// Stores the pose of the thing at the start of a trial.
@@ -119,6 +132,11 @@ impl Term {
     /// Returns the vector from a robot to the thing [m].
     fn way(&self, pose: &Pose) -> [f64; 2] {
         [0, 1].map(|k| f64::from(self.place.position[k] - pose.position[k]))
+    }
+
+    /// Returns the distance between the hulls of a robot and the thing, whose radii have this sum [m].
+    fn gap(&self, pose: &Pose, radii: f64) -> f64 {
+        f64::from(distance(pose, &self.place)) - radii
     }
 
     /// Returns the distance from a robot to the thing [m], with the difference formed in double precision.
@@ -183,25 +201,13 @@ impl Term {
                 let channels = Rows::of(rows.x, rows.inputs, robot).get(*first..*end).unwrap_or_default();
                 channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
             }
-            Measure::InArea { areas } => yes(areas.iter().any(|(area, half, disc)| {
-                let area = world.pose(*area);
-                let [u, v] = [0, 1].map(|k| pose.position[k] - area.position[k]);
-                if *disc {
-                    return Scalar::sqrt(u * u + v * v) <= half[0] as f32;
-                }
-                let [u, v] = turned(&area, [u, v].map(f64::from));
-                u.abs() <= half[0] && v.abs() <= half[1]
-            })),
+            Measure::InArea(areas) => yes(areas.iter().any(|area| is_in(area, pose, world))),
             // 1 - mean |p - p_j| / diagonal. The sum contains the robot itself at distance 0, the mean does not count it.
             Measure::NearOthers { diagonal } => {
-                let way = |other: &Pose| {
-                    let [u, v] = [0, 1].map(|k| pose.position[k] - other.position[k]);
-                    f64::from(Scalar::sqrt(u * u + v * v))
-                };
+                let way = |other: &Pose| f64::from(distance(pose, other));
                 let others = rows.poses.len().saturating_sub(1).max(1) as f64;
                 1.0 - rows.poses.iter().map(way).sum::<f64>() / others / diagonal
             }
-            Measure::Food => rows.field.map_or(0.0, |field| f64::from(field.collected())),
             Measure::Energy => forager().map_or(0.0, |forager| forager.energy),
             Measure::Alive => yes(forager().is_some_and(|forager| forager.alive)),
             Measure::Held => yes(world.attached(parts.body).is_some()),
@@ -216,9 +222,62 @@ impl Term {
                 let squares = y.iter().map(|y| 2.0 * f64::from(*y) - 1.0).map(|u| u * u);
                 squares.sum::<f64>() / y.len().max(1) as f64
             }
+            Measure::Time => f64::from(rows.steps[0]) * numbers.time_step,
+            Measure::Gap { radius } => self.gap(pose, numbers.radius + radius),
+            Measure::Contact { radius, within } => {
+                let gap = self.gap(pose, numbers.radius + radius);
+                let meets = |body: BodyId, other: Option<BodyId>| {
+                    let pair = PairId(body.0);
+                    world.touches(pair) && world.pair_bodies(pair)[1] == other
+                };
+                // A robot that also collides with a wall may report the wall only.
+                let met =
+                    meets(parts.body, self.thing) || self.thing.is_some_and(|thing| meets(thing, Some(parts.body)));
+                if gap.is_finite() { yes(met || gap <= *within) } else { f64::NAN }
+            }
+            // 1 - t / T, and its rest of 1.
+            Measure::TimeLeft { rest: [first, end] } => {
+                let left = 1.0 - f64::from(rows.steps[0]) / f64::from(rows.steps[1]);
+                if (*first..*end).contains(&robot) { 1.0 - left } else { left }
+            }
             Measure::Near { .. } | Measure::Touch | Measure::Steps => {
                 self.quick(world, parts, pose, numbers).unwrap_or(0.0)
             }
+            Measure::Food
+            | Measure::CarriedFood
+            | Measure::LostFood
+            | Measure::Deaths
+            | Measure::FullestArea(_)
+            | Measure::Dispersion
+            | Measure::Clusters
+            | Measure::LargestCluster => self.team_value(world, rows, numbers.radius),
+        }
+    }
+
+    /// Returns a measure of the whole team, whose robots have this radius [m].
+    fn team_value<W: PlanarWorld>(&self, world: &W, rows: &Rows<'_>, radius: f64) -> f64 {
+        let food = |count: fn(&Field) -> f64| rows.field.map_or(0.0, count);
+        let gathering = || Gathering::new(rows.poses, radius);
+        let share = |robots: f64| robots / rows.poses.len().max(1) as f64;
+        match &self.measure {
+            Measure::Food => food(|field| f64::from(field.collected())),
+            Measure::CarriedFood => food(|field| f64::from(field.carried())),
+            Measure::LostFood => food(|field| f64::from(field.lost())),
+            Measure::Deaths => food(|field| field.deaths() as f64),
+            Measure::FullestArea(areas) => {
+                let mut robots = vec![0_u32; areas.len()];
+                for pose in rows.poses {
+                    if let Some(area) = areas.iter().position(|area| is_in(area, pose, world)) {
+                        robots[area] += 1;
+                    }
+                }
+                share(f64::from(robots.into_iter().max().unwrap_or(0)))
+            }
+            Measure::Dispersion => gathering().dispersion,
+            Measure::Clusters => gathering().clusters as f64,
+            Measure::LargestCluster => share(gathering().largest as f64),
+            // The others are measures of a robot.
+            _ => f64::NAN,
         }
     }
 }
@@ -227,6 +286,17 @@ impl Term {
 fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
     let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
     [ahead, left]
+}
+
+/// Returns true if the center of a robot is in an area.
+fn is_in<W: PlanarWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
+    let MeasuredArea { body, half, disc } = area;
+    let area = world.pose(*body);
+    if *disc {
+        return distance(robot, &area) <= half[0] as f32;
+    }
+    let [u, v] = turned(&area, [0, 1].map(|k| f64::from(robot.position[k] - area.position[k])));
+    u.abs() <= half[0] && v.abs() <= half[1]
 }
 
 fn yes(flag: bool) -> f64 {

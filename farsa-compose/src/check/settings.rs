@@ -9,7 +9,8 @@ use serde_json::{Map, Value};
 use crate::check::schema::{Kind, Part};
 
 /// Tables without settings of their values.
-const ELSEWHERE: [&str; 7] = ["conditions", "evolution", "files", "genome", "lesions", "strategy", "summary"];
+const ELSEWHERE: [&str; 8] =
+    ["conditions", "evolution", "files", "genome", "lesions", "protocols", "strategy", "summary"];
 
 /// A setting and the path of its value.
 #[derive(Clone, Debug)]

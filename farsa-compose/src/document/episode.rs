@@ -60,6 +60,9 @@ pub enum Placing {
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
         apart: f64,
+        /// Measures both distances from the centers of areas instead of their edges.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        centers: bool,
     },
     /// Uniformly in free space near a thing.
     Near {
@@ -125,5 +128,8 @@ pub enum Placing {
         #[serde(default)]
         #[schemars(range(min = -360.0, max = 360.0))]
         heading: f64,
+        /// Draws the heading instead.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        drawn_heading: bool,
     },
 }

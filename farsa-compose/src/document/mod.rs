@@ -42,7 +42,7 @@ pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{Robot, RobotGroup, RobotKind, Team};
 pub use sensor::{AxesName, Camera, ColorRange, Eye, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
-pub use world::{Engine, Object, ObjectKind, World};
+pub use world::{Collisions, Engine, Object, ObjectKind, World};
 pub use wrapper::Wrapper;
 
 /// An experiment: robots in a world, their sensors, motors and network, the course of a trial and its reward.
@@ -87,6 +87,9 @@ pub struct Document {
     /// Conditions of success. A trial succeeds if all of them hold at its end. Without conditions it never does.
     #[serde(default)]
     pub success: Vec<Condition>,
+    /// Conditions that end a trial. It ends if any of them holds after a step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<Condition>,
     /// Conditions of failure. A trial fails and ends if any of them holds after a step.
     #[serde(default)]
     pub failure: Vec<Condition>,
@@ -95,6 +98,9 @@ pub struct Document {
     pub behaviour: BehaviourOfTerms,
     /// Parts that the test protocol `lesions` cuts, by default `parts`.
     pub lesions: Option<Lesions>,
+    /// Test protocols in addition to `lesions` and `noise`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub protocols: Vec<TestProtocol>,
     /// Contents of the files that other keys name, by name. The text of a run contains them.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
@@ -139,6 +145,16 @@ pub enum Lesions {
     Channels,
     /// Each sensor with all its inputs, and each neuron.
     Parts,
+}
+
+/// Test protocols that a file adds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestProtocol {
+    /// Fewer robots than evolved together.
+    TeamSize,
+    /// Each sensor cut in turn.
+    Senses,
 }
 
 /// Encoding of parameters in bits.

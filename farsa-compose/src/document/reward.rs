@@ -167,10 +167,27 @@ pub enum RewardKind {
         #[serde(default)]
         or: Vec<String>,
     },
+    /// Share of the robots whose centers are in the same area, for the area with the most of them.
+    FullestArea {
+        /// Name of a disc or rectangle, or of several.
+        area: String,
+    },
+    /// Sum of the robots' squared distances from their centroid, in squared diameters of a robot.
+    Dispersion {},
+    /// Number of groups of robots without gaps that another robot fits into.
+    Clusters {},
+    /// Share of the robots in the largest of these groups.
+    LargestCluster {},
     /// Proximity of the other robots: 1 at one place .. 0 at a mean distance of the arena's diagonal.
     NearOthers {},
     /// Pieces of food that the team has delivered to its nest, according to `foraging`.
     Food {},
+    /// Pieces of food that the team carries, according to `foraging`.
+    CarriedFood {},
+    /// Pieces of food that the team lost with dead robots, according to `foraging`.
+    LostFood {},
+    /// Number of dead robots, according to `foraging`.
+    Deaths {},
     /// Energy of the robot, 0 dead .. 1, according to `foraging`.
     Energy {},
     /// 1 while the robot is alive, according to `foraging`.
@@ -183,6 +200,27 @@ pub enum RewardKind {
     Control {},
     /// 1 in every step.
     Steps {},
+    /// Time since the start [s].
+    Time {},
+    /// Distance between the hulls of robot and thing [m].
+    Gap {
+        /// Name of the thing.
+        object: String,
+    },
+    /// 1 while robot and thing collide, or their hulls are at most this far apart.
+    Contact {
+        /// Name of the thing.
+        object: String,
+        /// Greatest distance [m].
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        within: f64,
+    },
+    /// Share of the longest trial that is left.
+    TimeLeft {
+        /// Name of a group of robots for which it is the rest of 1 instead.
+        rest: String,
+    },
 }
 
 /// Aggregations over the steps of a trial.
@@ -228,6 +266,9 @@ pub enum Trials {
 pub struct Condition {
     /// Name of a term.
     pub term: String,
+    /// Name of a group of robots. The condition is for trials in which it evolves, by default for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
     /// Lower limit. The value must be greater.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub above: Option<f64>,

@@ -54,6 +54,9 @@ pub struct RobotGroup {
 pub struct Team {
     /// Evolves each group of `robots` as a separate population. Otherwise all robots have one genome.
     pub coevolution: bool,
+    /// Gives the individuals of the same number in each population the same starts.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub common_starts: bool,
 }
 
 fn one() -> u32 {

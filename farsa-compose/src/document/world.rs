@@ -18,6 +18,9 @@ pub struct World {
     pub scene: Option<String>,
     /// Surrounds the arena with walls, for robots on wheels.
     pub walls: bool,
+    /// Rule for robots on wheels that collide in the engine `arena`, by default `undone`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub collisions: Option<Collisions>,
     /// Control step [s].
     #[schemars(range(min = 0.001, max = 0.2))]
     pub time_step: f64,
@@ -50,6 +53,7 @@ impl Default for World {
             size: [1.0, 1.0],
             scene: None,
             walls: true,
+            collisions: None,
             time_step: 0.05,
             ground: [1.0; 3],
             floor: true,
@@ -60,6 +64,16 @@ impl Default for World {
             friction: 1.0,
         }
     }
+}
+
+/// Rules for robots that collide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Collisions {
+    /// Robots slide along obstacles.
+    Circles,
+    /// Robots stay in place.
+    Undone,
 }
 
 /// Engines that move robots.
@@ -84,6 +98,10 @@ pub struct Object {
     /// Initial center: x and y, and z for experiments with joints [m], by default a trial has to place it.
     #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
     pub at: Option<Vec<f64>>,
+    /// Number of equal things of this name, each placed in turn, for robots on wheels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 100))]
+    pub count: Option<u32>,
     /// Direction of the length, counter-clockwise from the x axis [deg].
     #[serde(default)]
     #[schemars(range(min = -360.0, max = 360.0))]

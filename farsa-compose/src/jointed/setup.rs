@@ -96,6 +96,9 @@ fn refuse(document: &Document, source: &Source) -> Result<(), Error> {
     if !document.robots.is_empty() || document.team.coevolution {
         return Err(source.wrong("/robots", "are for robots on wheels; of those with joints there is one"));
     }
+    if let Some(index) = document.objects.iter().position(|object| object.count.is_some()) {
+        return Err(source.wrong(&format!("/objects/{index}/count"), why));
+    }
     if document.foraging.is_some() {
         return Err(source.wrong("/foraging", why));
     }

@@ -198,7 +198,10 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Sour
             let points = points.iter().enumerate().map(point).collect::<Result<_, _>>()?;
             Ok(How::OneOf(Choice::new(points, like.as_ref(), document, rule, source)?))
         }
-        Placing::Fixed { point, heading } => {
+        Placing::Fixed { drawn_heading: true, .. } => {
+            Err(source.wrong(&format!("{path}/drawn_heading"), "is for robots on wheels"))
+        }
+        Placing::Fixed { point, heading, .. } => {
             let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {
                 return Err(source.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
             };

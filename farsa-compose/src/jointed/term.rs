@@ -196,10 +196,21 @@ fn measure(
         | RewardKind::StraightOn {}
         | RewardKind::WheelDifference {}
         | RewardKind::InArea { .. }
+        | RewardKind::FullestArea { .. }
+        | RewardKind::Dispersion {}
+        | RewardKind::Clusters {}
+        | RewardKind::LargestCluster {}
         | RewardKind::NearOthers {}
         | RewardKind::Food {}
+        | RewardKind::CarriedFood {}
+        | RewardKind::LostFood {}
+        | RewardKind::Deaths {}
         | RewardKind::Energy {}
         | RewardKind::Alive {}
+        | RewardKind::Time {}
+        | RewardKind::Gap { .. }
+        | RewardKind::Contact { .. }
+        | RewardKind::TimeLeft { .. }
         | RewardKind::Held {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }

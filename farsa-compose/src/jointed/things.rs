@@ -64,7 +64,7 @@ impl Thing {
         drawn: &mut Vec<SceneObject>,
         (path, source): (&str, &Source),
     ) -> Result<Self, Error> {
-        let Object { name, at, heading, kind } = object;
+        let Object { name, at, heading, kind, .. } = object;
         let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
         let pose = |height| Pose { position: in_space(at.as_deref(), height), rotation: [0.0, 0.0, sine, cosine] };
         let mut moving = |shape: Shape, geometry: Geometry, inertia: MassProperties, pose, color| {

@@ -9,10 +9,11 @@ use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 use crate::document::Document;
 use crate::parts::groups::Groups;
-use crate::parts::interventions::{first_output, interventions};
+use crate::parts::interventions::{TEAM_SIZE, first_output, interventions, team_sizes};
 use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
+use crate::parts::tally::Tally;
 
 /// The robots of a document in any world. Copies share the document and the test protocols.
 #[derive(Clone, Debug)]
@@ -27,6 +28,10 @@ pub(crate) struct Agents {
     pub(crate) size: usize,
     /// Evolving robots of this trial, from the first up to the one after the last.
     pub(crate) evolving: [usize; 2],
+    /// Robots of this trial: all, or the first ones.
+    pub(crate) present: usize,
+    /// The recorded robot.
+    pub(crate) watched: usize,
     pub(crate) networks: Vec<NormalizedController<AnyNetwork>>,
     /// Last sensor and motor values of all robots.
     pub(crate) x: Vec<f32>,
@@ -39,9 +44,10 @@ impl Agents {
         let robots = groups.robots();
         let networks = vec![NormalizedController::new(spec.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * spec.inputs.len()], vec![0.0; robots * spec.outputs.len()]);
-        let interventions = Arc::new(interventions(&document, &spec));
+        let interventions = Arc::new(interventions(&document, &spec, robots));
         let document = Arc::new(document);
-        Self { document, spec, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
+        let (evolving, present, watched, size) = ([0, robots], robots, 0, 1);
+        Self { document, spec, ledger, groups, interventions, size, evolving, present, watched, networks, x, y }
     }
 
     /// Begins a trial. `arranged` is false if something had no place.
@@ -53,10 +59,15 @@ impl Agents {
     /// Loads the network of each population, and applies the test case to the evolving robots. Returns false for
     /// another number of parameters.
     pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
+        let Evaluation { parameters, opponents, normalisation, id, case, watched, .. } = *evaluation;
         let ranges = self.groups.ranges();
         let tested = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
-        self.evolving = ranges[tested];
+        let robots = self.groups.robots();
+        let case = self.interventions.named(case).filter(|(name, _)| *name == TEAM_SIZE);
+        let size = case.and_then(|(_, case)| team_sizes(robots).get(case).copied());
+        self.present = size.unwrap_or(robots);
+        self.evolving = [ranges[tested][0], ranges[tested][1].min(self.present)];
+        self.watched = watched.map_or(self.evolving[0], |robot| (robot as usize).min(robots - 1));
         self.ledger.evolve(self.evolving);
         let mut others = opponents.iter().copied();
         let mut loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
@@ -107,7 +118,9 @@ impl Agents {
                 Schema { neurons: neurons.collect(), ..schema }
             }
         };
-        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(tally.label()).group("term"));
+        // A recording has its own column of this name.
+        let name = |tally: &Tally| if tally.label() == "time [s]" { tally.name.clone() } else { tally.label().into() };
+        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&name(tally)).group("term"));
         let fitness = Channel::new("fitness so far").group("fitness");
         Schema { scalars: scalars.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
     }

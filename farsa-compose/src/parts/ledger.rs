@@ -20,6 +20,9 @@ pub(crate) struct Ledger {
     pub(crate) tallies: Vec<Tally>,
     success: Vec<Wanted>,
     failure: Vec<Wanted>,
+    end: Vec<Wanted>,
+    /// Evolving robots of this trial, from the first up to the one after the last.
+    evolving: [usize; 2],
     pub(crate) behaviour: Option<TermBehaviour>,
     /// Terms of the fitness: those with a weight, or all if none has one.
     paid: Vec<usize>,
@@ -47,12 +50,14 @@ impl Ledger {
             return Err(source.wrong("/reward", "has no term: nothing is earned"));
         }
         let conditions = |list: &str, all: &[Condition]| {
-            let condition = |(index, text)| Wanted::new(text, &format!("/{list}/{index}"), rewards, source);
+            let condition = |(index, text)| Wanted::new(text, &format!("/{list}/{index}"), rewards, groups, source);
             all.iter().enumerate().map(condition).collect::<Result<Vec<_>, Error>>()
         };
         let (success, failure) = (conditions("success", &document.success)?, conditions("failure", &document.failure)?);
+        let end = conditions("end", &document.end)?;
         let ends_with_success = document.episode.ends.contains(&Ending::Success);
-        let watched = success.iter().filter(|_| ends_with_success).chain(&failure).map(|wanted| wanted.term);
+        let watched =
+            success.iter().filter(|_| ends_with_success).chain(&failure).chain(&end).map(|wanted| wanted.term);
         let watched: Vec<usize> = watched.chain(tallies.iter().filter_map(|tally| tally.during)).collect();
         for (number, tally) in tallies.iter_mut().enumerate() {
             tally.late = tally.may_be_late() && !of_steps[number] && !watched.contains(&number);
@@ -68,6 +73,8 @@ impl Ledger {
             tallies,
             success,
             failure,
+            end,
+            evolving: [0, groups.robots()],
             behaviour,
             paid,
             notes,
@@ -88,6 +95,7 @@ impl Ledger {
 
     /// Sets the evolving robots of the next trial, from the first up to the one after the last.
     pub(crate) fn evolve(&mut self, robots: [usize; 2]) {
+        self.evolving = robots;
         self.tallies.iter_mut().for_each(|tally| tally.evolve(robots));
     }
 
@@ -102,17 +110,22 @@ impl Ledger {
     /// Returns true after the last step, a failure or NaN.
     #[inline]
     pub(crate) fn is_over(&self) -> bool {
-        self.failed || self.steps >= self.most_steps || self.has_failed()
+        self.failed || self.steps >= self.most_steps || self.has_failed() || self.one_holds(&self.end)
     }
 
     /// Returns true if a condition of failure holds.
     fn has_failed(&self) -> bool {
-        self.failure.iter().any(|wanted| wanted.holds(&self.tallies))
+        self.one_holds(&self.failure)
+    }
+
+    fn one_holds(&self, conditions: &[Wanted]) -> bool {
+        conditions.iter().any(|wanted| wanted.is_for(self.evolving) && wanted.holds(&self.tallies))
     }
 
     /// Returns true if all conditions of success hold.
     pub(crate) fn would_succeed(&self) -> bool {
-        !self.success.is_empty() && self.success.iter().all(|wanted| wanted.holds(&self.tallies))
+        let mut wanted = self.success.iter().filter(|wanted| wanted.is_for(self.evolving)).peekable();
+        wanted.peek().is_some() && wanted.all(|wanted| wanted.holds(&self.tallies))
     }
 
     /// Ends the trial and returns its reward, NaN after a failure of the dynamics.

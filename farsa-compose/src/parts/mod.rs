@@ -34,6 +34,8 @@ pub(crate) mod network;
 pub(crate) mod network_spec;
 /// A sensor or motor with its wrappers.
 pub(crate) mod part;
+/// Functions that drive robots instead of networks.
+pub(crate) mod reflex;
 /// The parameters of a search, and those of the network.
 pub(crate) mod searched;
 /// Checks of sizes by the limits of a reader.

@@ -16,6 +16,7 @@ use crate::parts::blocks;
 use crate::parts::ends::Ends;
 use crate::parts::evonet::EvonetNetwork;
 use crate::parts::hand_wired::HandWired;
+use crate::parts::reflex::ReflexController;
 use crate::parts::static_layout::static_layout;
 
 /// A network, with the order in which a search has its parameters.
@@ -27,6 +28,7 @@ pub(crate) enum AnyNetwork {
     Block(BlockNetwork<'static, Vec<f32>, Vec<f32>>),
     HandWired(HandWired),
     Evonet(EvonetNetwork),
+    Reflex(ReflexController),
 }
 
 impl AnyNetwork {
@@ -132,6 +134,7 @@ impl AnyNetwork {
                 })),
             },
             Self::Evonet(evonet) => numbered(evonet.kinds().map(|kind| (kind, weights))),
+            Self::Reflex(_) => Vec::new(),
         }
     }
 
@@ -192,6 +195,7 @@ impl AnyNetwork {
                 block.copy_parameters(parameters).is_ok()
             }
             Self::HandWired(wired) => wired.copy_parameters(parameters),
+            Self::Reflex(_) => true,
         }
     }
 
@@ -203,13 +207,14 @@ impl AnyNetwork {
             Self::Ctrnn(ctrnn) => ctrnn.parameters(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.parameters(),
             Self::HandWired(wired) => wired.parameters(),
+            Self::Reflex(_) => &[],
         }
     }
 
     /// Returns the number of values that the network keeps: parameters and state.
     pub(crate) fn values(&self) -> usize {
         let state = match self {
-            Self::Perceptron(..) | Self::HandWired(_) => 0,
+            Self::Perceptron(..) | Self::HandWired(_) | Self::Reflex(_) => 0,
             Self::Leaky(leaky) => leaky.layout().state_len(),
             Self::Ctrnn(ctrnn) => ctrnn.layout().state_len(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.layout().state_len(),
@@ -220,7 +225,7 @@ impl AnyNetwork {
     /// Returns the activations of the hidden neurons of a leaky network, and of all neurons of the others.
     pub(crate) fn activations(&self) -> &[f32] {
         match self {
-            Self::Perceptron(..) | Self::HandWired(_) => &[],
+            Self::Perceptron(..) | Self::HandWired(_) | Self::Reflex(_) => &[],
             Self::Leaky(leaky) => leaky.hidden(),
             Self::Ctrnn(ctrnn) => ctrnn.neuron_outputs(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.activations(),
@@ -239,7 +244,7 @@ impl AnyNetwork {
             Self::Ctrnn(ctrnn) => {
                 format!("{shape}, {} neurons in continuous time, all linked to all", ctrnn.layout().neurons())
             }
-            Self::HandWired(_) => format!("{shape}, wired by hand"),
+            Self::HandWired(_) | Self::Reflex(_) => format!("{shape}, wired by hand"),
             Self::Block(_) | Self::Evonet(_) => {
                 format!("{shape}, {} neurons in blocks", self.activations().len().saturating_sub(self.inputs()))
             }
@@ -254,6 +259,7 @@ impl AnyNetwork {
             Self::Ctrnn(ctrnn) => ctrnn,
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
             Self::HandWired(wired) => wired,
+            Self::Reflex(reflex) => reflex,
         }
     }
 
@@ -264,6 +270,7 @@ impl AnyNetwork {
             Self::Ctrnn(ctrnn) => ctrnn,
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
             Self::HandWired(wired) => wired,
+            Self::Reflex(reflex) => reflex,
         }
     }
 }

@@ -7,6 +7,7 @@ mod damaged;
 mod groups;
 mod networks;
 mod parts;
+mod placements;
 mod protocols;
 mod rules;
 mod steps;

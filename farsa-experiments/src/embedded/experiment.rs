@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use farsa_compose::ComposedExperiment;
+use farsa_compose::{ComposedExperiment, Reflex};
 #[cfg(not(feature = "rapier"))]
 use farsa_lab::advanced::ENGINE;
 use farsa_lab::strategy::{StrategyDefinition, strategies};
@@ -56,9 +56,44 @@ impl EmbeddedExperiment {
         (&self.parts().settings, self.parts().composed.settings(condition))
     }
 
+    /// The condition of a name, or the default one.
+    fn named<'c>(&self, condition: &'c str) -> &'c str {
+        let default = self.conditions().first().copied().unwrap_or_default();
+        if condition.is_empty() { default } else { condition }
+    }
+
+    /// Prepares the experiment with functions that drive some robots, by their numbers from 0, instead of networks.
+    ///
+    /// # Errors
+    /// As [`Experiment::prepare`], and [`Error::Usage`] for a robot that does not exist.
+    pub fn prepare_with(
+        &self,
+        condition: &str,
+        settings: &Settings,
+        reflexes: Vec<(usize, Reflex)>,
+    ) -> Result<Box<dyn Evaluator>, Error> {
+        #[cfg(not(feature = "rapier"))]
+        if settings.has(ENGINE) && settings.word(ENGINE)? == "rapier" {
+            return Err(crate::worlds::missing("rapier"));
+        }
+        (self.check)(settings)?;
+        let condition = self.named(condition);
+        let parts = self.parts();
+        let measured = infrared::with_tables(self.text, settings)?;
+        let measured = measured.map(|text| self.read(&text)).transpose().map_err(infrared::blame)?;
+        let composed = measured.as_ref().unwrap_or(&parts.composed);
+        let mut values = Settings::new(composed.settings(condition))?;
+        parts.settings.apply(condition, settings, &mut values)?;
+        if measured.is_none() {
+            infrared::choose(settings, &mut values)?;
+        }
+        composed.prepare_with(&values, reflexes).map_err(|error| self.blame(error))
+    }
+
     /// An error of the file as one of the setting that causes it.
     fn blame(&self, error: Error) -> Error {
         match error {
+            Error::Setting { key, why, .. } if key == "world" => Error::Other(why),
             Error::Setting { why, .. } => Error::setting(&self.parts().settings.refused, why),
             error => error,
         }
@@ -83,7 +118,7 @@ impl Experiment for EmbeddedExperiment {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        let condition = if condition.is_empty() { self.conditions()[0] } else { condition };
+        let condition = self.named(condition);
         let Parts { composed, settings } = self.parts();
         settings.table(condition, &composed.settings(condition))
     }
@@ -97,21 +132,6 @@ impl Experiment for EmbeddedExperiment {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        #[cfg(not(feature = "rapier"))]
-        if settings.has(ENGINE) && settings.word(ENGINE)? == "rapier" {
-            return Err(crate::worlds::missing("rapier"));
-        }
-        (self.check)(settings)?;
-        let condition = if condition.is_empty() { self.conditions()[0] } else { condition };
-        let parts = self.parts();
-        let measured = infrared::with_tables(self.text, settings)?;
-        let measured = measured.map(|text| self.read(&text)).transpose().map_err(infrared::blame)?;
-        let composed = measured.as_ref().unwrap_or(&parts.composed);
-        let mut values = Settings::new(composed.settings(condition))?;
-        parts.settings.apply(condition, settings, &mut values)?;
-        if measured.is_none() {
-            infrared::choose(settings, &mut values)?;
-        }
-        composed.prepare(condition, &values).map_err(|error| self.blame(error))
+        self.prepare_with(condition, settings, Vec::new())
     }
 }

@@ -55,6 +55,75 @@ pub static BRAITENBERG: EmbeddedExperiment = EmbeddedExperiment::new(
     starts_between_lamp_and_walls,
 );
 
+/// Can robots that see little and die soon feed a nest together? \[FARSA2\]
+///
+/// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is used up. The
+/// condition is the robot. Arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's.
+///
+/// Chosen: the number of robots, the time step, the camera's view and the network's other traits. The load of a robot is not
+/// limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors. The source's bias neuron is the
+/// network's biases, which only its hidden neurons have.
+pub static FORAGING: EmbeddedExperiment = EmbeddedExperiment::new(
+    "foraging",
+    include_str!("../../experiments/foraging.toml"),
+    include_str!("../../experiments/foraging.settings.toml"),
+    nests_fit,
+);
+
+/// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
+///
+/// A team with one genome starts anywhere in an arena. When the time is up, every robot earns 100 on a nest, and up to 1 for being
+/// near the others. The condition is the robot. Arena, steps and rewards of the `MarXbot`s are the source's. Sensors and motors are
+/// those of `foraging` without energy. Spread and clusters are measured \[Gauci2014\].
+///
+/// Chosen: the nests, and all values that the settings call chosen.
+pub static AGGREGATION: EmbeddedExperiment = EmbeddedExperiment::new(
+    "aggregation",
+    include_str!("../../experiments/aggregation.toml"),
+    include_str!("../../experiments/aggregation.settings.toml"),
+    nests_fit,
+);
+
+/// Refuses nests of no size, and nests that cannot be as far from all walls.
+fn nests_fit(settings: &Settings) -> Result<(), Error> {
+    if settings.number("nest.radius")? <= 0.0 {
+        return Err(Error::setting("nest.radius", "must be more than 0"));
+    }
+    let (to_wall, size) = (settings.number("nest.to_wall")?, settings.number("world.size")?);
+    let room = 0.5 * size;
+    if to_wall > room {
+        let why = format!("{to_wall} m from all walls of an arena of {size} m: at most {room} m");
+        return Err(Error::setting("nest.to_wall", why));
+    }
+    Ok(())
+}
+
+/// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
+///
+/// Two `MarXbots` of the same abilities in a walled arena. The predators, the first population, earn 1 - t/T for touching the prey
+/// at step t of T, else nothing. The prey, the second, earn the rest of 1. Arena, starts, T and rewards are the source's.
+///
+/// Chosen: headings, sensors, network and evolution, as the settings show.
+pub static PREDATOR_PREY: EmbeddedExperiment = EmbeddedExperiment::new(
+    "predator-prey",
+    include_str!("../../experiments/predator-prey.toml"),
+    include_str!("../../experiments/predator-prey.settings.toml"),
+    starts_apart,
+);
+
+/// Refuses an arena in which both robots touch at the start.
+fn starts_apart(settings: &Settings) -> Result<(), Error> {
+    let (size, touch) = (settings.number("world.size")?, settings.number("capture.touch")?);
+    let radius = MobileRobot::marxbot().radius;
+    let least = 3.0 * (2.0 * radius + touch);
+    if size <= least {
+        let why =
+            format!("no free place: two robots of {radius} m a third of {size} m apart touch; more than {least} m");
+        return Err(Error::setting("world.size", why));
+    }
+    Ok(())
+}
+
 /// Refuses starts within the lamp or beyond the walls.
 fn starts_between_lamp_and_walls(settings: &Settings) -> Result<(), Error> {
     let radius = MobileRobot::khepera().radius;

@@ -119,6 +119,10 @@ impl NamedSetting {
     /// Sets the keys of the file. A number sets each number of the file in proportion to the defaults of both: a key
     /// whose default is twice the setting's becomes twice its value.
     fn apply(&self, settings: &Settings, file: &mut Settings) -> Result<(), Error> {
+        // Other strategies have other settings.
+        if !settings.has(&self.key) {
+            return Ok(());
+        }
         let value = settings.get(&self.key)?;
         let default = number(settings.find("", &self.key)?.default_value());
         for (place, key) in self.sets.iter().enumerate() {
@@ -149,7 +153,7 @@ fn is_in(names: &[String], condition: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS};
+    use crate::{AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, PREDATOR_PREY};
     use farsa_lab::Experiment;
 
     const FILE: &str = r#"
@@ -188,8 +192,10 @@ mod tests {
     /// A run with the defaults is the file's.
     #[test]
     fn defaults_leave_the_file_as_it_is() {
-        for experiment in [&DISCRIMINATION, &DISCRIMINATION_CYLINDERS, &BRAITENBERG] {
-            for condition in experiment.conditions() {
+        let wheeled = [&DISCRIMINATION, &DISCRIMINATION_CYLINDERS, &BRAITENBERG];
+        for experiment in wheeled.into_iter().chain([&FORAGING, &AGGREGATION, &PREDATOR_PREY]) {
+            let conditions = experiment.conditions();
+            for condition in conditions.iter().chain(conditions.is_empty().then_some(&"")) {
                 let (named, file) = experiment.halves(condition);
                 let settings = Settings::new(experiment.settings(condition)).unwrap();
                 let (mut values, plain) = (Settings::new(file.clone()).unwrap(), Settings::new(file).unwrap());

@@ -257,7 +257,7 @@ fn imported_populations_meet_in_replays() {
         let head: Vec<&str> = csv.lines().next().expect("a head").split(',').collect();
         let at = |name: &str| head.iter().position(|c| *c == name).unwrap_or_else(|| panic!("{name} in {head:?}"));
         let last: Vec<&str> = csv.lines().last().expect("a line").split(',').collect();
-        ["time [s]", "gap [m]", "predator's reward", "prey's reward"].map(|name| last[at(name)].to_owned())
+        ["time [s]", "gap at the end [m]", "captures"].map(|name| last[at(name)].to_owned())
     };
     // In trial 0 the first of each play against each other: it is one episode, whichever side records it.
     assert_eq!(rewards(0, 0), rewards(2, 0));

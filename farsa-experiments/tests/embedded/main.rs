@@ -21,7 +21,7 @@ fn runs_of_embedded_experiments_keep_their_logs() {
         runs += 1;
     }
     assert_eq!(logs, expected);
-    assert_eq!(runs, 20);
+    assert_eq!(runs, 33);
 }
 
 /// The lines of a run's log, without the head.

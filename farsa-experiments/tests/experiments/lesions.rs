@@ -209,7 +209,7 @@ fn lists_do_what_cases_of_protocols_do() {
         ("double-pole", "no hidden 1", "neuron:hidden 1"),
         ("push-box", "0.1", "noise:0.1"),
         ("discrimination", "0.2", "noise:0.2"),
-        ("foraging", "no hidden neuron 2", "neuron:2"),
+        ("foraging", "no neuron 2", "neuron:2"),
     ] {
         let mut subject = subjects().into_iter().find(|subject| subject.name == experiment).unwrap();
         let by_name = subject.with(list);

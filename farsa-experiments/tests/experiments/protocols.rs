@@ -2,7 +2,7 @@
 
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
-use farsa_experiments::{Foraging, MinimalCognition, ReachGraspLift};
+use farsa_experiments::{FORAGING, MinimalCognition, ReachGraspLift};
 use farsa_lab::advanced::{CaseId, Genotype, Lanes, Protocol, Value};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
@@ -107,8 +107,8 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>, most: usize) {
 #[test]
 fn cases_in_lanes_are_those_alone_and_leave_nothing_behind() {
     in_lanes_as_alone(evaluator(&MinimalCognition, "", &[]), 99);
-    let condition = Foraging.conditions()[0];
-    in_lanes_as_alone(evaluator(&Foraging, condition, &[("trial.steps", Value::Whole(60))]), 99);
+    let condition = FORAGING.conditions()[0];
+    in_lanes_as_alone(evaluator(&FORAGING, condition, &[("trial.steps", Value::Whole(60))]), 99);
     let condition = ReachGraspLift.conditions()[0];
     in_lanes_as_alone(evaluator(&ReachGraspLift, condition, &[]), 3);
 }
@@ -141,7 +141,7 @@ fn objects_of_psychophysics_fall_from_their_part_of_the_line() {
 
 #[test]
 fn a_team_of_one_has_one_robot() {
-    let mut evaluator = evaluator(&Foraging, Foraging.conditions()[0], &[("trial.steps", Value::Whole(40))]);
+    let mut evaluator = evaluator(&FORAGING, FORAGING.conditions()[0], &[("trial.steps", Value::Whole(40))]);
     let cases = evaluator.info().protocols.remove(0).cases;
     let all: u16 = cases.last().unwrap().row.parse().unwrap();
     assert!(cases.iter().all(|case| case.held_out == (case.row != all.to_string())));

@@ -1,0 +1,46 @@
+//! Functions that drive robots instead of networks.
+
+use std::fmt;
+use std::sync::Arc;
+
+use farsa_nn::{Ablatable, Controller, Lesion};
+
+/// A function that fills the motor values of a robot from its sensor values. It replaces the robot's network, for
+/// comparisons with controllers without evolution.
+pub type Reflex = Arc<dyn Fn(&[f32], &mut [f32]) + Send + Sync>;
+
+/// A function as the controller of a robot.
+#[derive(Clone)]
+pub(crate) struct ReflexController {
+    /// Numbers of inputs and outputs.
+    pub(crate) shape: [usize; 2],
+    pub(crate) reflex: Reflex,
+}
+
+impl fmt::Debug for ReflexController {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("ReflexController").field("shape", &self.shape).finish_non_exhaustive()
+    }
+}
+
+impl Controller for ReflexController {
+    fn inputs(&self) -> usize {
+        self.shape[0]
+    }
+    fn outputs(&self) -> usize {
+        self.shape[1]
+    }
+    fn reset(&mut self) {}
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        (self.reflex)(x, y);
+    }
+}
+
+impl Ablatable for ReflexController {
+    fn neurons(&self) -> usize {
+        0
+    }
+    fn step_ablated(&mut self, _: &[Lesion], x: &[f32], y: &mut [f32]) {
+        self.step(x, y);
+    }
+}
