@@ -130,7 +130,7 @@ fn parameters_are_fixed_and_shared() {
         rays += found.rays;
     }
     assert!(sensed > 1.0, "{sensed}");
-    assert_eq!(rays, 8 * 40 * 8, "a ray for each channel of the only robot in every step");
+    assert_eq!(rays, 8 * 40 * 24, "a ray for each sensor of the only robot in every step");
     let text = |network: &str| refused(&format!("{WORLD}{rest}{network}"));
     let found = text("[network]\nkind = \"perceptron\"\nfixed = { \"bias of wheel left\" = 1.5 }\n");
     assert!(found.contains("unknown parameter `bias of wheel left`; the nearest is `bias of wheels left`"), "{found}");
