@@ -65,7 +65,7 @@ pub trait Kinematics: Handles {
     fn pose(&self, body: Self::Body) -> Pose;
     /// Returns the velocity of a body's origin and its angular velocity. Both are given in the axes of the world.
     fn velocity(&self, body: Self::Body) -> Twist;
-    /// Returns the origin of a body's frame, in meters. This can be faster than [`pose`](Self::pose), because no
+    /// Returns the origin of a body's frame in meters. This can be faster than [`pose`](Self::pose), because no
     /// quaternion is needed.
     fn origin(&self, body: Self::Body) -> [f32; 3] {
         self.pose(body).position
@@ -115,7 +115,7 @@ pub trait ExternalForces: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
-    /// The distance along the ray, in meters.
+    /// The distance along the ray in meters.
     pub distance: f32,
     /// The outward unit normal of the surface, in the axes of the world.
     pub normal: [f32; 3],
@@ -127,7 +127,7 @@ pub struct Hit<B> {
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot cast rays (port `Rays`)")]
 pub trait Rays: Handles {
     /// Returns the first surface on a ray from `origin` (in meters) in the direction of the unit vector `direction`.
-    /// The ray ends after `range`, in meters. All vectors are given in the axes of the world.
+    /// The ray ends after `range` in meters. All vectors are given in the axes of the world.
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
@@ -135,7 +135,7 @@ pub trait Rays: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seen<B> {
-    /// The distance along the ray, in meters.
+    /// The distance along the ray in meters.
     pub distance: f32,
     /// The body that is visible, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
@@ -167,10 +167,10 @@ pub trait Vision: Handles {
 pub struct PairContact {
     /// The number of contact points with a normal force > 0.
     pub points: u32,
-    /// The force on the first body of the pair, in the axes of the world, in newtons. The opposite force acts on the
+    /// The force on the first body of the pair, in the axes of the world (in newtons). The opposite force acts on the
     /// second body.
     pub force: [f32; 3],
-    /// The sum of the normal forces at all points, in newtons.
+    /// The sum of the normal forces at all points (in newtons).
     pub normal_force: f32,
     /// The mean position of the contact points in the world, weighted by normal force (in meters). It is zero if there
     /// is no contact.
@@ -183,11 +183,11 @@ pub struct PairContact {
 /// Access to the contacts between the pairs of colliders in the description of the robot.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not report its contacts (port `Contacts`)")]
 pub trait Contacts: Handles {
-    /// Returns the number of pairs. They are numbered in the order of the robot's list, starting at 0.
+    /// Returns the number of pairs. These are numbered in the order of the robot's list, starting at 0.
     fn pairs(&self) -> usize;
     /// Returns the two bodies of a pair. `None` represents the static environment.
     fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
-    /// Returns the contact of a pair at the end of the last step. It is all zero for a pair that does not exist.
+    /// Returns the contact of a pair at the end of the last step. This is all zero for a pair that does not exist.
     fn pair_contact(&self, pair: PairId) -> PairContact;
     /// Returns true if there is a contact point with a normal force > 0. This can be faster than
     /// [`pair_contact`](Self::pair_contact).
@@ -204,9 +204,9 @@ pub struct NearbySurface<B> {
     pub body: Option<B>,
     /// The nearest point of the surface (in meters).
     pub point: [f32; 2],
-    /// The distance to this point, in meters. Inside a round body it is negative, and inside any other body it is 0.
+    /// The distance to this point in meters. Inside a round body it is negative, and inside any other body it is 0.
     pub distance: f32,
-    /// The radius of a round body, in meters. It is 0 for walls and for other shapes.
+    /// The radius of a round body in meters. It is 0 for walls and for other shapes.
     pub radius: f32,
     /// The red, green and blue components of its color (between 0 and 1). For a robot with LEDs this is the color of
     /// the LEDs.
@@ -219,7 +219,7 @@ pub struct NearbySurface<B> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanarHit<B> {
-    /// The distance along the line, in meters.
+    /// The distance along the line in meters.
     pub distance: f32,
     /// The body that is visible, or `None` for a wall.
     pub body: Option<B>,
@@ -233,7 +233,7 @@ pub struct PlanarHit<B> {
 pub struct Lamp<B> {
     /// The body that emits the light.
     pub body: B,
-    /// The center of the lamp, in meters.
+    /// The center of the lamp in meters.
     pub position: [f32; 2],
     /// The intensity of the lamp. You can choose any unit.
     pub intensity: f32,

@@ -41,7 +41,7 @@ impl<R: Real> Pose<R> {
         Self { position: [o, o, o], rotation: [o, o, o, l] }
     }
 
-    /// Creates a pose without rotation at the given `position`, in meters.
+    /// Creates a pose without rotation at the given `position` (in meters).
     pub fn at(position: [R; 3]) -> Self {
         Self { position, ..Self::identity() }
     }
@@ -54,7 +54,7 @@ impl<R: Real> Pose<R> {
         Self { position: [x, y, o], rotation: [o, o, sine, cosine] }
     }
 
-    /// Returns the direction of the frame's x axis as seen from above, in radians. The angle is measured
+    /// Returns the direction of the frame's x axis as seen from above (in radians). The angle is measured
     /// counter-clockwise from the x axis of the reference frame.
     pub fn heading(&self) -> R {
         let [x, y, z, w] = self.rotation;

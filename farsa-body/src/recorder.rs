@@ -43,8 +43,8 @@ pub trait Recorder {
     fn contact(&mut self, pair: PairId, contact: &PairContact) {
         let _ = (pair, contact);
     }
-    /// Records a ray of a sensor from its origin to its end, in meters. The argument `met` is true if it hit something.
-    /// It is called once per ray.
+    /// Records a ray of a sensor from its origin to its end (in meters). The argument `met` is true if it hit
+    /// something. It is called once per ray.
     fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
         let _ = (from, to, met);
     }

@@ -32,7 +32,7 @@ impl Activation {
     /// All functions in the order of their declaration.
     pub const ALL: [Self; 5] = [Self::Logistic, Self::Tanh, Self::Linear, Self::Step, Self::Rectified];
 
-    /// Returns the name used in configurations and logs. It is `logistic`, `tanh`, `linear`, `step` or `rectified`.
+    /// Returns the name used in configurations and logs. This is `logistic`, `tanh`, `linear`, `step` or `rectified`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Logistic => "logistic",

@@ -34,7 +34,7 @@ impl Leak {
     /// All interpretations in the order of their declaration.
     pub const ALL: [Self; 3] = [Self::Filter, Self::TwoTap, Self::Evonet];
 
-    /// Returns the name used in configurations and logs. It is `filter`, `two-tap` or `evonet`.
+    /// Returns the name used in configurations and logs. This is `filter`, `two-tap` or `evonet`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Filter => "filter",
@@ -43,8 +43,8 @@ impl Leak {
         }
     }
 
-    /// Returns the time constant (in seconds) of a neuron with leak `d` (between 0 and 1) that is updated every `time_step` (in
-    /// seconds).
+    /// Returns the time constant (in seconds) of a neuron with leak `d` (between 0 and 1) that is updated every
+    /// `time_step` (in seconds).
     ///
     /// In each step, the fraction `1-d` or `d` of the previous activation is kept, which corresponds to `exp(-dt/tau)`.
     /// If the response is constant, the neuron follows `tau da/dt = -a + y`. The result is 0 if nothing is kept and

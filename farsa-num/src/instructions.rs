@@ -57,7 +57,7 @@ impl Instructions {
         Self::ALL.into_iter().filter(move |one| one.within(best).is_some())
     }
 
-    /// Returns the name used in configurations and logs. It is `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon`
+    /// Returns the name used in configurations and logs. This is `fallback`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon`
     /// or `wasm-simd128`.
     pub const fn name(self) -> &'static str {
         match self {

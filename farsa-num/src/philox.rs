@@ -159,13 +159,13 @@ impl Stream {
         u64::from(self.next_u32()) << 32 | low
     }
 
-    /// Draws a uniformly distributed number in [0, 1). It is a multiple of 2^-24 and uses one word.
+    /// Draws a uniformly distributed number in [0, 1). This is a multiple of 2^-24 and uses one word.
     #[inline]
     pub fn uniform(&mut self) -> f32 {
         (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Draws a uniformly distributed number in [0, 1). It is a multiple of 2^-53 and uses two words.
+    /// Draws a uniformly distributed number in [0, 1). This is a multiple of 2^-53 and uses two words.
     #[inline]
     pub fn uniform_f64(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)

@@ -34,7 +34,7 @@ pub struct MusclePair<R> {
     pub moment_arm: R,
     /// The joint position at which the agonist is shortest (in radians).
     pub lower: R,
-    /// The joint position at which the agonist is longest, in radians.
+    /// The joint position at which the agonist is longest (in radians).
     pub upper: R,
     /// The shortest length of a muscle.
     pub shortest: R,
@@ -112,7 +112,7 @@ impl<R: Real> MusclePair<R> {
         (self.longest - self.shortest) / (self.upper - self.lower)
     }
 
-    /// Returns the lengths of the agonist and the antagonist at joint position `q`, in radians.
+    /// Returns the lengths of the agonist and the antagonist at joint position `q` (in radians).
     #[inline(always)]
     pub fn lengths<S: Scalar<Real = R>>(&self, q: S) -> [S; 2] {
         let stroke = q.like(self.gear()) * (q - q.like(self.lower));

@@ -32,7 +32,7 @@ pub struct Goal {
     pub body: BodyId,
     /// The point in the frame of the body (in meters).
     pub point: [f64; 3],
-    /// The desired position of the point in the world, in meters.
+    /// The desired position of the point in the world (in meters).
     pub position: [f64; 3],
     /// The desired orientation of the body.
     pub orientation: Orientation,

@@ -73,7 +73,7 @@ impl core::error::Error for InverseKinematicsError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct InverseKinematics {
-    /// The largest position error of a solution, in meters.
+    /// The largest position error of a solution in meters.
     pub position_tolerance: f64,
     /// The largest angle error of a solution (in radians).
     pub angle_tolerance: f64,
@@ -164,7 +164,7 @@ fn check(tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<(), Inverse
 
 impl InverseKinematics {
     /// Searches joint positions for `goal`. The search begins at `start`, which contains one value per joint of the
-    /// tree, in radians or meters.
+    /// tree (in radians or meters).
     ///
     /// The start is clamped to the joint limits. Since the first attempt moves continuously from there, the previous
     /// solution is a good start when you follow a path of goals. Joints that do not move the body keep their clamped

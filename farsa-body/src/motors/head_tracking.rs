@@ -32,8 +32,8 @@ impl<B, A: Copy> HeadTracking<B, A> {
     ///
     /// The target is a point of a body in meters. The first servo turns to the left. Its range contains the rightmost
     /// and the leftmost position. The second servo turns upwards, and its range contains the lowest and the highest
-    /// position. The servos start at `start`, in radians. In each step they correct the fraction `gain` of the angles,
-    /// but not more than `most`, in radians.
+    /// position. The servos start at `start` (in radians). In each step they correct the fraction `gain` of the angles,
+    /// but not more than `most` (in radians).
     ///
     /// # Errors
     /// Returns [`ChannelError::Range`] if the range of a servo is empty or not finite. Returns [`ChannelError::Value`]
@@ -62,7 +62,7 @@ impl<B, A: Copy> HeadTracking<B, A> {
         Ok(Self { eye, target, servos, start, gain, most: positive("most", most)?, desired: start })
     }
 
-    /// Returns the desired positions of the two servos, in radians.
+    /// Returns the desired positions of the two servos in radians.
     pub fn desired(&self) -> [f32; 2] {
         self.desired
     }

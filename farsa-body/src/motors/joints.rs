@@ -45,7 +45,7 @@ pub struct ServoRange<A = ActuatorId> {
     pub servo: A,
     /// The desired position at a channel value of 0 (in radians or meters).
     pub from: f32,
-    /// The desired position at a channel value of 1, in radians or meters.
+    /// The desired position at a channel value of 1 (in radians or meters).
     pub to: f32,
 }
 

@@ -37,7 +37,7 @@ pub struct Joint {
     pub axis: [f64; 3],
     /// The frame of the joint at position 0, relative to the parent or the world.
     pub placement: Pose<f64>,
-    /// The lowest and the highest position, in radians or meters. They may be infinite.
+    /// The lowest and the highest position in radians or meters. They may be infinite.
     pub range: [f64; 2],
     /// The inertia of the drive (in kg m2 or kg), which is added to that of the segment.
     pub armature: f64,
@@ -55,9 +55,9 @@ pub struct Segment {
     pub parent: Option<BodyId>,
     /// The joint that connects the segment to its parent.
     pub joint: Joint,
-    /// The mass of the segment, in kilograms.
+    /// The mass of the segment in kilograms.
     pub mass: f64,
-    /// The center of mass in the frame of the segment, in meters.
+    /// The center of mass in the frame of the segment (in meters).
     pub centre: [f64; 3],
     /// The inertia about the center of mass in the axes of the segment [xx, yy, zz, xy, xz, yz, kg m2].
     pub inertia: [f64; 6],
@@ -132,7 +132,7 @@ pub struct Ground {
     pub friction: f64,
     /// The force that presses the body on the ground (in newtons), for example its weight.
     pub load: f64,
-    /// The effective radius for the friction of a rotating body, in meters. For a disc with uniform pressure it is two
+    /// The effective radius for the friction of a rotating body (in meters). For a disc with uniform pressure it is two
     /// thirds of its radius.
     pub radius: f64,
 }
@@ -212,12 +212,12 @@ impl Joint {
         Self { name: name.into(), kind, axis, placement, range, armature: 0.0, damping: 0.0 }
     }
 
-    /// Creates a joint that turns about `axis` within `range`, in radians. It has no armature and no damping.
+    /// Creates a joint that turns about `axis` within `range` (in radians). It has no armature and no damping.
     pub fn revolute(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
         Self::new(name, JointKind::Revolute, axis, placement, range)
     }
 
-    /// Creates a joint that slides along `axis` within `range`, in meters. It has no armature and no damping.
+    /// Creates a joint that slides along `axis` within `range` (in meters). It has no armature and no damping.
     pub fn prismatic(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
         Self::new(name, JointKind::Prismatic, axis, placement, range)
     }

@@ -9,9 +9,9 @@ use crate::robot::shape::Shape;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
-    /// The mass of the body, in kilograms.
+    /// The mass of the body in kilograms.
     pub mass: f64,
-    /// The center of mass, in meters.
+    /// The center of mass in meters.
     pub centre: [f64; 3],
     /// The elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass (in kg m2).
     pub inertia: [f64; 6],
@@ -54,7 +54,7 @@ impl MassProperties {
         Self::diagonal(mass, [across, across, tube * r2 / 2.0 + caps * 0.4 * r2])
     }
 
-    /// Creates a solid with the given shape and mass, in kilograms. Since a plane has no volume, its inertia is zero.
+    /// Creates a solid with the given shape and mass (in kilograms). Since a plane has no volume, its inertia is zero.
     pub fn from_shape(shape: &Shape, mass: f64) -> Self {
         match *shape {
             Shape::Sphere { radius } => Self::sphere(mass, radius),

@@ -69,9 +69,9 @@ const MUSCLE_LABELS: [[&str; 2]; 7] = [
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArmAndHand {
-    /// The position in the world at which the axes of J1 to J3 intersect, in meters.
+    /// The position in the world at which the axes of J1 to J3 intersect (in meters).
     pub shoulder: [f64; 3],
-    /// The distance from the shoulder to the elbow, in meters.
+    /// The distance from the shoulder to the elbow in meters.
     pub upper_arm_length: f64,
     /// The distance from the elbow to the wrist (in meters).
     pub forearm_length: f64,
@@ -79,7 +79,7 @@ pub struct ArmAndHand {
     pub arm_ranges: [[f64; 2]; 7],
     /// The largest active tension Tmax of the muscles of J1 to J7 (in newtons).
     pub tensions: [f64; 7],
-    /// The moment arm of all muscles, in meters.
+    /// The moment arm of all muscles in meters.
     pub moment_arm: f64,
     /// The variant of the muscle model.
     pub muscle_variant: MuscleVariant,
@@ -99,13 +99,13 @@ pub struct ArmAndHand {
     /// The masses of the segments of J1 to J7 (in kilograms). These are two shoulder segments, the upper arm, the
     /// elbow, the forearm, the wrist and the palm.
     pub arm_masses: [f64; 7],
-    /// The mass of the first segment of each finger, in kilograms.
+    /// The mass of the first segment of each finger (in kilograms).
     pub knuckle_mass: f64,
     /// The masses of the phalanges, starting at the palm (in kilograms).
     pub phalange_masses: [f64; 3],
     /// The radius of the upper arm's capsule (in meters). The capsule is as long as the upper arm.
     pub upper_arm_radius: f64,
-    /// The radius of the forearm's capsule, in meters.
+    /// The radius of the forearm's capsule in meters.
     pub forearm_radius: f64,
     /// The length of the axis of the forearm's capsule, which starts at the elbow (in meters).
     pub forearm_axis: f64,
@@ -118,16 +118,16 @@ pub struct ArmAndHand {
     /// The radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
     /// joint or to the tip.
     pub phalange_radii: [f64; 3],
-    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger, in
-    /// meters.
+    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
+    /// meters).
     pub phalange_lengths: [[f64; 3]; 5],
-    /// The positions of the index, middle, ring and little finger in the frame of the palm, in meters.
+    /// The positions of the index, middle, ring and little finger in the frame of the palm (in meters).
     pub finger_bases: [[f64; 3]; 4],
     /// The ranges of the abduction joints J12, J16, J20 and J24 (in radians).
     pub abduction_ranges: [[f64; 2]; 4],
-    /// The position of the thumb in the frame of the palm, in meters.
+    /// The position of the thumb in the frame of the palm (in meters).
     pub thumb_base: [f64; 3],
-    /// The distance from the base of the thumb to its first flexion joint, in meters.
+    /// The distance from the base of the thumb to its first flexion joint (in meters).
     pub thumb_link: f64,
     /// The range of the opposition J8 of the thumb (in radians).
     pub opposition_range: [f64; 2],

@@ -83,7 +83,7 @@ impl Wrist<'_> {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Hand {
-    /// The mass of the palm, in kilograms.
+    /// The mass of the palm in kilograms.
     pub palm_mass: f64,
     /// Half the edge lengths of the palm (in meters).
     pub palm_half: [f64; 3],
@@ -97,23 +97,23 @@ pub struct Hand {
     pub damping: f64,
     /// The servo of each joint.
     pub servo: Servo<f64>,
-    /// The mass of the first segment of each finger, in kilograms.
+    /// The mass of the first segment of each finger (in kilograms).
     pub knuckle_mass: f64,
     /// The masses of the phalanges, starting at the palm (in kilograms).
     pub phalange_masses: [f64; 3],
     /// The radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
     /// joint or to the tip.
     pub phalange_radii: [f64; 3],
-    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger, in
-    /// meters.
+    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
+    /// meters).
     pub phalange_lengths: [[f64; 3]; 5],
-    /// The positions of the index, middle, ring and little finger in the frame of the palm, in meters.
+    /// The positions of the index, middle, ring and little finger in the frame of the palm (in meters).
     pub finger_bases: [[f64; 3]; 4],
     /// The ranges of the abduction joints J12, J16, J20 and J24 (in radians).
     pub abduction_ranges: [[f64; 2]; 4],
-    /// The position of the thumb in the frame of the palm, in meters.
+    /// The position of the thumb in the frame of the palm (in meters).
     pub thumb_base: [f64; 3],
-    /// The distance from the base of the thumb to its first flexion joint, in meters.
+    /// The distance from the base of the thumb to its first flexion joint (in meters).
     pub thumb_link: f64,
     /// The range of the opposition J8 of the thumb (in radians).
     pub opposition_range: [f64; 2],
@@ -173,8 +173,8 @@ impl Hand {
         })
     }
 
-    /// Returns the tip of a finger of the right hand in the frame of its distal phalange, in meters. The tip is the end
-    /// of the capsule's axis, which is one radius below its surface. For the left hand, y has the opposite sign.
+    /// Returns the tip of a finger of the right hand in the frame of its distal phalange (in meters). The tip is the
+    /// end of the capsule's axis, which is one radius below its surface. For the left hand, y has the opposite sign.
     pub fn fingertip(&self, finger: Finger) -> [f64; 3] {
         let tip = self.phalange_lengths[finger as usize][2];
         if finger == Finger::Thumb { [0.0, tip, 0.0] } else { [tip, 0.0, 0.0] }

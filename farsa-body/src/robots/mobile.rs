@@ -10,12 +10,12 @@ use crate::ports::{ActuatorId, BodyId, JointId};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InfraredRing {
-    /// The directions of the sensors, counter-clockwise from straight ahead, in radians. They also determine the
+    /// The directions of the sensors, counter-clockwise from straight ahead (in radians). They also determine the
     /// positions of the sensors on the hull.
     pub angles: Vec<f64>,
     /// The range of the sensors, measured from the hull (in meters).
     pub range: f64,
-    /// Half the opening angle of the cone in which a sensor detects objects, in radians.
+    /// Half the opening angle of the cone in which a sensor detects objects (in radians).
     pub aperture: f64,
     /// The number of rays that sample the cone of each sensor.
     pub rays: usize,
@@ -30,7 +30,7 @@ pub struct MobileRobot {
     pub name: String,
     /// The radius of the hull (in meters).
     pub radius: f64,
-    /// The height of the robot, in meters.
+    /// The height of the robot in meters.
     pub height: f64,
     /// The radius of the wheels (in meters).
     pub wheel_radius: f64,
@@ -40,7 +40,7 @@ pub struct MobileRobot {
     pub max_wheel_speed: f64,
     /// The ring of infrared sensors.
     pub infrared: InfraredRing,
-    /// The positions of the ground color sensors in the frame of the robot, in meters.
+    /// The positions of the ground color sensors in the frame of the robot (in meters).
     pub ground: Vec<[f64; 2]>,
     /// The red, green and blue components of the hull's color (between 0 and 1), which is visible when no LED is on.
     pub color: [f64; 3],
@@ -146,7 +146,7 @@ impl MobileRobot {
         }
     }
 
-    /// Returns the number of actuators. They are the two wheels, followed by the three LEDs, the signal and the
+    /// Returns the number of actuators. These are the two wheels, followed by the three LEDs, the signal and the
     /// attachment device if the robot has them.
     pub fn actuators(&self) -> usize {
         2 + 3 * usize::from(self.leds) + usize::from(self.signal) + usize::from(self.attachment.is_some())

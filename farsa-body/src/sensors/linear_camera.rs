@@ -79,7 +79,7 @@ pub struct LinearCamera<R, C, B = BodyId> {
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
-    /// Creates a camera on `body` with `per_sector` rays in each sector and a range of `range`, in meters. Use
+    /// Creates a camera on `body` with `per_sector` rays in each sector and a range of `range` (in meters). Use
     /// [`Beam::in_view`] to create the rays.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 pub struct Point<B = BodyId> {
     /// The body to which the point is fixed.
     pub body: B,
-    /// The position of the point in the frame of the body, in meters.
+    /// The position of the point in the frame of the body (in meters).
     pub at: [f32; 3],
 }
 

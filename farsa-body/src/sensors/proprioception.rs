@@ -17,7 +17,7 @@ pub struct JointPosition<J = JointId> {
 }
 
 impl<J> JointPosition<J> {
-    /// Creates a sensor that reads 0 at the joint position `from` and 1 at `to`, in radians or meters.
+    /// Creates a sensor that reads 0 at the joint position `from` and 1 at `to` (in radians or meters).
     ///
     /// # Errors
     /// Returns [`ChannelError::Range`] if the two positions are equal or not finite.

@@ -44,7 +44,7 @@ impl<L: AsRef<[PairId]>, W: Contacts + ?Sized> Sensor<W> for Touch<L> {
     }
 }
 
-/// A sensor with one channel that measures the sum of the normal forces of several pairs, in newtons. Wrap it in
+/// A sensor with one channel that measures the sum of the normal forces of several pairs (in newtons). Wrap it in
 /// [`crate::wrappers::Scaled`] to use other units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce<L> {

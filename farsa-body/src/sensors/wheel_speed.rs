@@ -63,7 +63,7 @@ pub struct Traction<B = BodyId, J = JointId> {
 }
 
 impl<B, J> Traction<B, J> {
-    /// Creates a sensor for a robot with a left and a right wheel of the given radius, in meters. A difference of
+    /// Creates a sensor for a robot with a left and a right wheel of the given radius (in meters). A difference of
     /// `largest` (in m/s) results in a reading of 1.
     ///
     /// # Errors

@@ -42,7 +42,7 @@ impl PointWorld {
     pub const TURN: f32 = 10.0;
     /// The distance between two screws, in meters.
     const SPACING: f32 = 0.1;
-    /// The radius of the spheres hit by rays, in meters.
+    /// The radius of the spheres hit by rays in meters.
     pub const RADIUS: f32 = 0.02;
     /// The color of the spheres. The floor has no color.
     pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];

@@ -48,7 +48,7 @@ impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
 }
 
 impl<T: Channels, F, M: AsRef<[f32]>> Wrapped<T, F, M> {
-    /// Returns the values that were passed on in the last tick, one per channel. They are 0 before the first tick.
+    /// Returns the values that were passed on in the last tick, one per channel. These are 0 before the first tick.
     pub fn values(&self) -> &[f32] {
         let memory = self.memory.as_ref();
         memory.get(..self.inner.channels()).unwrap_or(memory)

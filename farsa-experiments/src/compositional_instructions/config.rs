@@ -8,9 +8,9 @@ use crate::compositional_instructions::instruction::{Action, Color, Condition, I
 /// The arm, which consists of two segments and is seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// The lengths of the segments, in meters.
+    /// The lengths of the segments in meters.
     pub lengths: [f64; 2],
-    /// The masses of the segments, in kilograms.
+    /// The masses of the segments in kilograms.
     pub masses: [f64; 2],
     /// The radius of both segments (in meters).
     pub radius: f64,
@@ -20,14 +20,14 @@ pub struct Arm {
     pub speeds: [f64; 2],
     /// The torque per unit of difference between the commanded and the actual speed (in N m s/rad).
     pub gains: [f64; 2],
-    /// The largest torque of each motor, in newton meters.
+    /// The largest torque of each motor in newton meters.
     pub torques: [f64; 2],
 }
 
 /// The three objects and the places where a trial puts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objects {
-    /// The radius of an object, in meters.
+    /// The radius of an object in meters.
     pub radius: f64,
     /// The mass of an object (in kilograms).
     pub mass: f64,
@@ -52,7 +52,7 @@ pub struct Camera {
     pub view: f64,
     /// The number of rays that are cast in each sector.
     pub rays: u32,
-    /// The largest distance at which an object is visible, in meters.
+    /// The largest distance at which an object is visible (in meters).
     pub range: f64,
 }
 
@@ -61,7 +61,7 @@ pub struct Camera {
 pub struct Start {
     /// The largest deviation of the first joint from the direction between two neighboring objects (in degrees).
     pub first_spread: f64,
-    /// The angle of the second joint, in degrees.
+    /// The angle of the second joint in degrees.
     pub second: f64,
     /// The largest deviation from that angle (in degrees).
     pub second_spread: f64,
@@ -76,11 +76,11 @@ pub struct Judging {
     pub window: f64,
     /// The displacement of an object that has no effect on the reward (in meters).
     pub still: f64,
-    /// The additional displacement at which the reward falls to zero, in meters.
+    /// The additional displacement at which the reward falls to zero (in meters).
     pub span: f64,
     /// Like `span`, but for the target of TOUCH (in meters).
     pub span_touched: f64,
-    /// The displacement that earns the maximum reward for MOVE, in meters.
+    /// The displacement that earns the maximum reward for MOVE (in meters).
     pub far: f64,
     /// The distance from the surface of the centered target below which the tip earns a reward for reaching (in
     /// meters).
@@ -94,11 +94,11 @@ pub struct Judging {
     pub least_shares: [f64; 2],
     /// The largest displacement of the target allowed in a successful trial of INDICATE or IGNORE (in meters).
     pub most_still: f64,
-    /// The largest displacement of the target allowed in a successful trial of TOUCH, in meters.
+    /// The largest displacement of the target allowed in a successful trial of TOUCH (in meters).
     pub most_touched: f64,
-    /// The smallest displacement of the target required in a successful trial of MOVE, in meters.
+    /// The smallest displacement of the target required in a successful trial of MOVE (in meters).
     pub least_moved: f64,
-    /// The largest displacement of any other object allowed in a successful trial, in meters.
+    /// The largest displacement of any other object allowed in a successful trial (in meters).
     pub most_other: f64,
 }
 

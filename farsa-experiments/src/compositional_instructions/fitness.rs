@@ -14,9 +14,9 @@ pub struct Observation {
     pub seen: [[bool; 3]; 3],
     /// True for each object touched by the second segment, in the order of the colors.
     pub touched: [bool; 3],
-    /// The distance between each object and its initial place, in meters.
+    /// The distance between each object and its initial place (in meters).
     pub displaced: [f64; 3],
-    /// The distance between the tip of the second segment and the surface of each object, in meters.
+    /// The distance between the tip of the second segment and the surface of each object (in meters).
     pub tip: [f64; 3],
     /// The position of each object in the frame of the camera, as the coordinates ahead and to the left (in meters).
     pub ahead: [[f64; 2]; 3],

@@ -30,7 +30,7 @@ const GRAVITY: f64 = 9.81;
 pub struct StartPose {
     /// The angles of the two joints (in radians).
     pub joints: [f64; 2],
-    /// The positions of the objects in the order of their colors, in meters.
+    /// The positions of the objects in the order of their colors (in meters).
     pub objects: [[f64; 2]; 3],
 }
 

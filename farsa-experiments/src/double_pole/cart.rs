@@ -18,7 +18,7 @@ pub struct Pole {
 pub struct Cart {
     /// The mass of the cart, M (in kilograms).
     pub mass: f64,
-    /// The friction between the cart and the track, in newtons. It does not depend on the speed.
+    /// The friction between the cart and the track in newtons. It does not depend on the speed.
     pub friction: f64,
     /// The acceleration of gravity (in m/s^2).
     pub gravity: f64,

@@ -23,13 +23,13 @@ pub struct Config {
     pub substeps: u32,
     /// The largest number of network steps in a trial.
     pub steps: u32,
-    /// The initial angle of the long pole, in degrees.
+    /// The initial angle of the long pole in degrees.
     pub angle: f64,
-    /// The angle at which a pole counts as fallen, in degrees.
+    /// The angle at which a pole counts as fallen (in degrees).
     pub most_angle: f64,
-    /// The largest distance of the cart from the middle of the track, in meters.
+    /// The largest distance of the cart from the middle of the track (in meters).
     pub most_position: f64,
-    /// The largest force that the network can apply, in newtons.
+    /// The largest force that the network can apply (in newtons).
     pub force: f64,
     /// The smallest force that the network can apply (in newtons).
     pub least_force: f64,

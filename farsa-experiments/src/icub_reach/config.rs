@@ -32,7 +32,7 @@ impl Condition {
 /// A volume in the shape of half an ellipsoid. Only the part in front of its center belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// The center of the ellipsoid, relative to the center of the robot's body, in meters.
+    /// The center of the ellipsoid, relative to the center of the robot's body (in meters).
     pub centre: [f64; 3],
     /// The semi-axes of the ellipsoid along x, y and z (in meters).
     pub semi_axes: [f64; 3],
@@ -68,11 +68,11 @@ pub struct Config {
     pub substeps: u32,
     /// The volume in which the targets are placed.
     pub volume: Volume,
-    /// The initial pitch, roll and yaw of the trunk, in degrees.
+    /// The initial pitch, roll and yaw of the trunk (in degrees).
     pub torso: [f64; 3],
     /// The initial angles of the seven joints of the left arm (in degrees).
     pub arm: [f64; 7],
-    /// The position error at which a servo reaches the maximum effort of its joint, in radians.
+    /// The position error at which a servo reaches the maximum effort of its joint (in radians).
     pub saturation_angle: f64,
     /// The difference between the commanded and the actual speed at which a motor reaches its maximum effort (in
     /// radians per second).
@@ -82,14 +82,14 @@ pub struct Config {
     /// The rate at which a joint that should not move returns to its angle, in 1/s. The commanded speed is proportional
     /// to the deviation.
     pub hold_rate: f64,
-    /// The distance between hand and target that is sensed as 1 along an axis, in meters. In the opposite direction it is
-    /// sensed as -1.
+    /// The distance between hand and target that is sensed as 1 along an axis (in meters). In the opposite direction it
+    /// is sensed as -1.
     pub offset: f64,
-    /// The length of the period at the end of a trial over which the distance is averaged, in seconds.
+    /// The length of the period at the end of a trial over which the distance is averaged (in seconds).
     pub window: f64,
-    /// A lower bound of the start distance in the fitness, in meters.
+    /// A lower bound of the start distance in the fitness (in meters).
     pub least_start: f64,
-    /// The mean distance below which a trial is successful, in meters.
+    /// The mean distance below which a trial is successful (in meters).
     pub success: f64,
     /// The largest absolute value of a weight or bias.
     pub weight_range: f64,

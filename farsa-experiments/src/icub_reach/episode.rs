@@ -28,13 +28,13 @@ impl<W> ReachingWorld for W where W: Kinematics + Joints + Handles<Body = BodyId
 /// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Reaching {
-    /// The position of the target, in meters. By default each trial draws a random target.
+    /// The position of the target in meters. By default each trial draws a random target.
     pub target: Option<[f64; 3]>,
     /// The step at which the target moves to a different position, if it moves at all.
     pub jump: Option<u32>,
     /// If true, the trunk keeps its initial posture.
     pub locked_torso: bool,
-    /// An additional mass attached to the hand, in kilograms.
+    /// An additional mass attached to the hand (in kilograms).
     pub load: f64,
 }
 

@@ -28,7 +28,7 @@ fn on_ball(cube: [f64; 3]) -> [f64; 3] {
     if length > 0.0 { cube.map(|x| x * (most / length)) } else { cube }
 }
 
-/// Returns the 125 points of the grid, in meters. The points form five layers from the center to the front, and each
+/// Returns the 125 points of the grid in meters. The points form five layers from the center to the front, and each
 /// layer has five by five points. The last axis varies fastest.
 pub fn grid(volume: &Volume) -> Vec<[f64; 3]> {
     let part = |place: usize| place as f64 / (GRID - 1) as f64;

@@ -140,7 +140,7 @@ impl Scene {
         self.controlled.map(|driven| driven.range)
     }
 
-    /// Returns the initial angles of the six joints, in radians.
+    /// Returns the initial angles of the six joints in radians.
     pub fn start(&self) -> [f64; 6] {
         self.controlled.map(|driven| driven.start)
     }
@@ -159,13 +159,13 @@ impl Scene {
         KinematicTree::new(&robot)
     }
 
-    /// Draws the position of the target (in meters) from the stream of [`Domain::Start`]. It is uniformly distributed in the
-    /// volume and the same for all individuals of a generation.
+    /// Draws the position of the target (in meters) from the stream of [`Domain::Start`]. The position is uniformly
+    /// distributed in the volume and the same for all individuals of a generation.
     pub fn target(&self, id: EpisodeId) -> [f64; 3] {
         self.draw(&mut self.stream(id))
     }
 
-    /// Draws two independent targets for a trial, in meters. Both are uniformly distributed in the volume.
+    /// Draws two independent targets for a trial (in meters). Both are uniformly distributed in the volume.
     pub fn two_targets(&self, id: EpisodeId) -> [[f64; 3]; 2] {
         let mut stream = self.stream(id);
         [self.draw(&mut stream), self.draw(&mut stream)]

@@ -50,7 +50,7 @@ impl Script {
         Ok(Self { config: scene.config, tree, palm_centre, start, ranges, stiffness, poses, found: None })
     }
 
-    /// Computes joint angles that move the hand to the given position, in meters. Among all solutions, angles close to
+    /// Computes joint angles that move the hand to the given position (in meters). Among all solutions, angles close to
     /// the initial posture are preferred.
     ///
     /// # Errors

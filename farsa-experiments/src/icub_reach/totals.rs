@@ -10,12 +10,12 @@ pub struct RewardTotals {
 }
 
 impl RewardTotals {
-    /// Starts with the given distance between the hand and the target, in meters.
+    /// Starts with the given distance between the hand and the target (in meters).
     pub fn new(start: f64) -> Self {
         Self { start, last: start, sum: 0.0, count: 0 }
     }
 
-    /// Adds the distance after a step, in meters. Set `counts` to true if the step belongs to the final period.
+    /// Adds the distance after a step (in meters). Set `counts` to true if the step belongs to the final period.
     pub fn add(&mut self, distance: f64, counts: bool) {
         self.last = distance;
         if counts {
@@ -34,7 +34,7 @@ impl RewardTotals {
         self.last
     }
 
-    /// Returns the mean distance in the final period, in meters. If there was no such step yet, it is the last
+    /// Returns the mean distance in the final period (in meters). If there was no such step yet, it is the last
     /// distance.
     pub fn mean(&self) -> f64 {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }

@@ -59,29 +59,29 @@ pub struct Config {
     pub substeps: u32,
     /// The x and y coordinates of the middle of the area in which the ball is placed (in meters).
     pub area_centre: [f64; 2],
-    /// The size of that area along x and y, in meters.
+    /// The size of that area along x and y (in meters).
     pub area_size: [f64; 2],
     /// The size of the area used for the tests (in meters). It has the same middle and is divided into cells.
     pub tested_size: [f64; 2],
-    /// The radius of the ball, in meters.
+    /// The radius of the ball in meters.
     pub ball_radius: f64,
     /// The mass of the ball (in kilograms).
     pub ball_mass: f64,
-    /// The height of the table top, in meters.
+    /// The height of the table top in meters.
     pub table_top: f64,
-    /// The initial pitch, roll and yaw of the trunk, in degrees.
+    /// The initial pitch, roll and yaw of the trunk (in degrees).
     pub torso: [f64; 3],
-    /// The initial pitch, roll and yaw of the head, in degrees.
+    /// The initial pitch, roll and yaw of the head (in degrees).
     pub neck: [f64; 3],
     /// The initial angles of the seven joints of the right arm (in degrees).
     pub right_arm: [f64; 7],
-    /// The angles of the left arm, which does not move, in degrees.
+    /// The angles of the left arm, which does not move (in degrees).
     pub left_arm: [f64; 7],
     /// The opposition of the thumb when the hand is open and when it is closed (in degrees).
     pub opposition: [f64; 2],
     /// The flexion of the joints of the thumb and of the fingers when the hand is closed (in degrees).
     pub flexion: [f64; 2],
-    /// The horizontal field of view of the left eye, in degrees.
+    /// The horizontal field of view of the left eye (in degrees).
     pub field_of_view: f64,
     /// If true, the head follows the ball.
     pub tracking: bool,
@@ -95,7 +95,7 @@ pub struct Config {
     pub weight_range: f64,
     /// The length of the period at the end of a trial in which touch and height are rewarded (in seconds).
     pub window: f64,
-    /// The height above the table at which the ball counts as lifted and the reward for height is largest, in meters.
+    /// The height above the table at which the ball counts as lifted and the reward for height is largest (in meters).
     pub height: f64,
     /// The time for which the ball must be held up at the end of a successful trial (in seconds).
     pub hold: f64,

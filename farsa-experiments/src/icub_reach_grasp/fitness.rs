@@ -12,9 +12,9 @@ const ONE_TOUCH: f64 = 0.25;
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The center of the palm, in meters.
+    /// The center of the palm in meters.
     pub palm: [f64; 3],
-    /// The center of the ball, in meters.
+    /// The center of the ball in meters.
     pub ball: [f64; 3],
     /// The distance from the center of the palm to the surface of the ball (in meters). It is zero inside the ball.
     pub distance: f64,
@@ -35,8 +35,8 @@ impl Observation {
         palm.iter().chain(ball).chain([opposition]).all(|x| x.is_finite())
     }
 
-    /// Returns the share of the touch reward. It is zero without contact, a quarter if the ball is touched on one side,
-    /// and one if it is touched on opposite sides.
+    /// Returns the share of the touch reward. This is zero without contact, a quarter if the ball is touched on one
+    /// side, and one if it is touched on opposite sides.
     pub fn touch(&self) -> f64 {
         if self.touching == 0 { 0.0 } else { ONE_TOUCH + (1.0 - ONE_TOUCH) * self.opposition }
     }
@@ -72,7 +72,7 @@ pub struct Score {
     pub steps: u32,
     /// The number of consecutive steps up to the last one in which the ball was lifted and held.
     pub held: u32,
-    /// The largest height at which the ball was held, in meters.
+    /// The largest height at which the ball was held (in meters).
     pub highest: f64,
     /// True if the ball has fallen off the table.
     pub fallen: bool,

@@ -114,7 +114,7 @@ impl Scene {
         self.icub.joint(joint).map_err(|error: IcubError| wrong(&error))
     }
 
-    /// Returns the limits of the joint with the given name, in radians.
+    /// Returns the limits of the joint with the given name (in radians).
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::actuator`].
@@ -128,7 +128,7 @@ impl Scene {
         self.parts.iter().map(|part| part.on_ball)
     }
 
-    /// Draws the x and y coordinates of the ball for a trial, in meters. The area is divided into twelve parts, and
+    /// Draws the x and y coordinates of the ball for a trial (in meters). The area is divided into twelve parts, and
     /// twelve consecutive trials use each part once.
     ///
     /// The coordinates are drawn from the stream of [`Domain::Start`], so all individuals of a generation have the same

@@ -18,7 +18,7 @@ pub struct Config {
     pub trials: u32,
     /// The diameter of the agent.
     pub body: f64,
-    /// The angle between the two outermost rays, in radians.
+    /// The angle between the two outermost rays in radians.
     pub fan: f64,
     /// The length of the rays, measured from the outline of the agent.
     pub ray_length: f64,

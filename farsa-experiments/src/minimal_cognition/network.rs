@@ -87,7 +87,7 @@ impl Wiring {
         self.parameters.len()
     }
 
-    /// Returns the encoded parameters and their ranges. They are ordered by the first parameter of the network that
+    /// Returns the encoded parameters and their ranges. These are ordered by the first parameter of the network that
     /// they determine.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters

@@ -20,7 +20,7 @@ pub struct PushConfig {
     pub steps: u32,
     /// The length, width and height of the box.
     pub size: [f64; 3],
-    /// The mass of the box, in kilograms.
+    /// The mass of the box in kilograms.
     pub mass: f64,
     /// The coefficient of friction between the box and the ground.
     pub friction: f64,

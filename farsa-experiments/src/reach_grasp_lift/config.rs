@@ -64,7 +64,7 @@ pub struct Config {
     pub sphere_positions: [f64; 2 * TRIALS],
     /// The mapping of these positions to the world.
     pub sphere_frame: SphereFrame,
-    /// The largest random displacement of a joint at the start, in degrees.
+    /// The largest random displacement of a joint at the start (in degrees).
     pub joint_displacement: f64,
     /// The largest random displacement of the sphere along x and y at the start (in centimeters).
     pub sphere_displacement: f64,
@@ -100,7 +100,7 @@ pub struct Config {
     pub sphere_mass: f64,
     /// The lower and the upper end of the table top along x (in meters).
     pub table_x: [f64; 2],
-    /// The lower and the upper end of the table top along y, in meters.
+    /// The lower and the upper end of the table top along y (in meters).
     pub table_y: [f64; 2],
     /// The depth of the table, which is a solid block below z = 0 (in meters).
     pub table_depth: f64,

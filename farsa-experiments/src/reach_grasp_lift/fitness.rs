@@ -58,7 +58,7 @@ impl ContactTerm {
 pub struct Judgement {
     /// The interpretation of the contact term.
     pub contact_term: ContactTerm,
-    /// The height above the table that the center of the sphere must reach in a successful lift, in centimeters. The
+    /// The height above the table that the center of the sphere must reach in a successful lift (in centimeters). The
     /// default is 5. Without this limit, a sphere on a hand that rests on the table would also count as lifted.
     pub success_height: f64,
 }
@@ -130,7 +130,7 @@ pub struct Trial {
     /// The number of consecutive lifted steps in which the center of the sphere was at least
     /// [`Judgement::success_height`] above the table.
     pub held: u32,
-    /// The largest height of the sphere's center above the table so far, in centimeters.
+    /// The largest height of the sphere's center above the table so far (in centimeters).
     pub highest: f64,
     /// True if the trial ended because the sphere fell off the table.
     pub fallen: bool,

@@ -21,8 +21,8 @@ pub enum Phase {
 pub struct Observation {
     /// The distance ds between the center of the palm and a point 5 cm above the center of the sphere (in centimeters).
     pub reach_distance: f64,
-    /// The distance graspQ between the centroid of the fingertips and the palm and the center of the sphere, in
-    /// centimeters.
+    /// The distance graspQ between the centroid of the fingertips and the palm and the center of the sphere (in
+    /// centimeters).
     pub grasp_distance: f64,
     /// The number of phalanges that touch the sphere. The palm is not counted.
     pub contacts: u32,
@@ -52,18 +52,18 @@ impl Observation {
         self.on_fingers() && !self.on_table
     }
 
-    /// Returns r = 1 - exp(-0.1 ds). It is 0 at the target of the reach phase and approaches 1 far away from it.
+    /// Returns r = 1 - exp(-0.1 ds). This is 0 at the target of the reach phase and approaches 1 far away from it.
     pub fn r(&self) -> f64 {
         1.0 - exp(-0.1 * self.reach_distance)
     }
 
-    /// Returns g = exp(-0.2 graspQ). It is 1 if the sphere is in the middle of the hand and approaches 0 far away from
-    /// it.
+    /// Returns g = exp(-0.2 graspQ). This is 1 if the sphere is in the middle of the hand and approaches 0 far away
+    /// from it.
     pub fn g(&self) -> f64 {
         exp(-0.2 * self.grasp_distance)
     }
 
-    /// Returns l = 1 - exp(-0.3 contacts). It is 0 without contacts and approaches 1 if many phalanges touch the
+    /// Returns l = 1 - exp(-0.3 contacts). This is 0 without contacts and approaches 1 if many phalanges touch the
     /// sphere.
     pub fn l(&self) -> f64 {
         1.0 - exp(-0.3 * f64::from(self.contacts))

@@ -235,12 +235,12 @@ impl Scene {
         world.finish_placement();
     }
 
-    /// Returns the position of the palm's center in the world, in meters.
+    /// Returns the position of the palm's center in the world (in meters).
     pub fn palm_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(ArmAndHand::PALM).cast::<f64>().transform(self.arm.palm_centre)
     }
 
-    /// Returns the position of the sphere's center in the world, in meters.
+    /// Returns the position of the sphere's center in the world (in meters).
     pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(Tabletop::SPHERE).position.map(f64::from)
     }

@@ -27,8 +27,8 @@ const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.1
 /// The timing and the gains of the script, which were tuned by hand in two simulators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
-    /// The durations of reaching the way-point, descending, closing and lifting, in seconds. The lifted posture is held
-    /// for the rest of the trial.
+    /// The durations of reaching the way-point, descending, closing and lifting (in seconds). The lifted posture is
+    /// held for the rest of the trial.
     pub durations: [f64; 4],
     /// The height of the palm's center above the table at the way-point (in meters).
     pub way_point: f64,
@@ -37,7 +37,7 @@ pub struct Timetable {
     pub palm: f64,
     /// The distance from the palm's center to the sphere in the direction of the fingertips (in meters).
     pub ahead: f64,
-    /// The height by which the hand is lifted, in meters.
+    /// The height by which the hand is lifted (in meters).
     pub lift: f64,
     /// The positions of the nine servo groups when the hand is closed around the sphere.
     pub closed: [f64; 9],

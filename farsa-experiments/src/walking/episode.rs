@@ -54,15 +54,15 @@ pub struct Walk {
 /// Mean values over the last steps of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pace {
-    /// The backward lean of the leading leg at footfalls, in radians.
+    /// The backward lean of the leading leg at footfalls (in radians).
     pub angle: f64,
     /// The angular velocity of that leg after the footfalls (in radians per second).
     pub rate: f64,
     /// The angular velocity of the leg that starts to swing (in radians per second).
     pub swing_rate: f64,
-    /// The duration of a step, in seconds.
+    /// The duration of a step in seconds.
     pub period: f64,
-    /// The length of a step, in meters.
+    /// The length of a step in meters.
     pub length: f64,
 }
 
@@ -177,7 +177,7 @@ impl Brain {
         self.network.observed()
     }
 
-    /// Returns the torque that was commanded in the last step, in newton meters.
+    /// Returns the torque that was commanded in the last step (in newton meters).
     pub fn torque(&self) -> f64 {
         self.torque
     }
@@ -204,7 +204,7 @@ impl WalkerEpisode {
         Self { walk, launch, gait, brain, noted: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
-    /// Returns the distance between the first stance and the last footfall, in meters. It is NaN after a numerical
+    /// Returns the distance between the first stance and the last footfall (in meters). This is NaN after a numerical
     /// failure, and 0 if the walker gained energy from errors of the simulation.
     pub fn distance(&self) -> f64 {
         match self.gait.end() {

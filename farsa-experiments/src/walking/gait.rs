@@ -41,7 +41,7 @@ pub struct Rules {
     pub lowest_hip: f64,
     /// The longest permitted slide of the stance foot during a step.
     pub longest_slide: f64,
-    /// The longest permitted time during which both feet are off the ground, in seconds.
+    /// The longest permitted time during which both feet are off the ground (in seconds).
     pub longest_flight: f64,
     /// The largest permitted gain of energy that is not explained by the motor, in units of weight times leg length.
     pub largest_gain: f64,
@@ -69,7 +69,7 @@ pub struct Footfall {
     pub time: f64,
     /// The index of the foot, which is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
-    /// The position at which the sole touched the ground, in meters.
+    /// The position at which the sole touched the ground (in meters).
     pub place: f64,
     /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model (in
     /// radians).

@@ -12,7 +12,7 @@ const LONGEST: f64 = 20.0;
 /// By how much a state is moved for the derivatives of the return map.
 const PROBE: f64 = 1e-5;
 
-/// The smallest and the largest slope for which a long-period gait was found, in radians.
+/// The smallest and the largest slope for which a long-period gait was found (in radians).
 pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 
 /// The simplest walking model on a given slope \[Garcia1998\].
@@ -174,8 +174,8 @@ impl WalkingModel {
         Some([[a, b], [c, d]])
     }
 
-    /// Computes the long-period gait with Newton's method. This gait is a fixed point of the return map. Returns `None` if
-    /// the iteration does not converge.
+    /// Computes the long-period gait with Newton's method. This gait is a fixed point of the return map. Returns `None`
+    /// if the iteration does not converge.
     ///
     /// The iteration starts with `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` where `s =
     /// slope^(1/3)`, which approximates the gaits on small slopes. Note that there is a second gait with a shorter

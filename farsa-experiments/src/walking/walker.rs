@@ -20,7 +20,7 @@ const RAIL: f64 = 1e-9;
 /// A pair of legs that are rigidly connected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legs {
-    /// The distance from the hip to the sole, in meters.
+    /// The distance from the hip to the sole in meters.
     pub length: f64,
     /// The mass of the shanks, which is uniformly distributed between hip and sole (in kilograms).
     pub mass: f64,
@@ -186,7 +186,7 @@ impl Walker {
         (robot, parts)
     }
 
-    /// Computes the sum of the kinetic and the potential energy of a [`Posture`] under the given gravity, in joules.
+    /// Computes the sum of the kinetic and the potential energy of a [`Posture`] under the given gravity (in joules).
     pub fn energy(&self, posture: &Posture, gravity: [f64; 3]) -> f64 {
         let mut energy = 0.0;
         let mut add = |mass: f64, [x, z]: [f64; 2], [u, w]: [f64; 2]| {
@@ -216,7 +216,7 @@ pub struct Posture {
     pub hip: [f64; 2],
     /// The velocity of the hip (in meters per second).
     pub velocity: [f64; 2],
-    /// The backward rotation of the outer and the inner legs from the normal of the ground, in radians.
+    /// The backward rotation of the outer and the inner legs from the normal of the ground (in radians).
     pub angles: [f64; 2],
     /// The angular velocities of the legs, in radians per second.
     pub rates: [f64; 2],

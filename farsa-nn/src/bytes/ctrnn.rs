@@ -57,7 +57,7 @@ impl NetworkBytes<'_, CtrnnModel> {
         self.shape.layout
     }
 
-    /// Returns the time step, in seconds.
+    /// Returns the time step in seconds.
     pub const fn time_step(&self) -> f32 {
         self.shape.time_step
     }

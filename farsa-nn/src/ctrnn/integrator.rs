@@ -29,7 +29,7 @@ impl Integrator {
     /// All integrators in the order of their declaration.
     pub const ALL: [Self; 3] = [Self::Euler, Self::ExponentialEuler, Self::RungeKutta4];
 
-    /// Returns the name used in configurations and logs. It is `euler`, `exponential-euler` or `runge-kutta-4`.
+    /// Returns the name used in configurations and logs. This is `euler`, `exponential-euler` or `runge-kutta-4`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Euler => "euler",
@@ -39,7 +39,7 @@ impl Integrator {
     }
 
     /// Returns the smallest time constant (in seconds) for which a single neuron does not diverge with the given time
-    /// step (in seconds). It is 0 if the method is always stable.
+    /// step (in seconds). This is 0 if the method is always stable.
     ///
     /// ```
     /// use farsa_nn::Integrator;

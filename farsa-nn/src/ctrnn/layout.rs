@@ -80,7 +80,7 @@ pub struct CtrnnParts<'a> {
     pub biases: &'a [f32],
     /// The gains of all neurons.
     pub gains: &'a [f32],
-    /// The time constants of all neurons, in seconds.
+    /// The time constants of all neurons in seconds.
     pub time_constants: &'a [f32],
 }
 
@@ -166,7 +166,7 @@ impl CtrnnLayout {
         self.range(CtrnnParameter::TimeConstant).end
     }
 
-    /// Returns the length of the state. It is `5*n` for direct inputs and `4*n + m` for weighted ones. With
+    /// Returns the length of the state. This is `5*n` for direct inputs and `4*n + m` for weighted ones. With
     /// [`Integrator::RungeKutta4`] it is larger by `2*n`.
     ///
     /// The state contains the states `y` `[neurons]`, the outputs `o` `[neurons]`, the coefficients of the time

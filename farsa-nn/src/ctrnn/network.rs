@@ -68,7 +68,7 @@ impl Ctrnn<(), ()> {
 impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<CtrnnModel, P, S> {
     /// Creates a network with the given parameters and resets its state to `y = 0`. The slices must have the lengths
     /// [`parameter_count`](CtrnnLayout::parameter_count) and [`state_len`](CtrnnLayout::state_len). The time step has
-    /// the same unit as the time constants, in seconds.
+    /// the same unit as the time constants (in seconds).
     ///
     /// # Errors
     /// Returns [`Error::Layout`] if the time step or the neurons are invalid, [`Error::Length`] or
@@ -98,7 +98,7 @@ impl<P, S> Network<CtrnnModel, P, S> {
         self.model.layout
     }
 
-    /// Returns the time step, in seconds.
+    /// Returns the time step in seconds.
     pub const fn time_step(&self) -> f32 {
         self.model.time_step
     }

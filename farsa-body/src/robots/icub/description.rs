@@ -61,7 +61,7 @@ pub enum JointControl {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Icub {
-    /// The position of the root link in the world, in meters.
+    /// The position of the root link in the world (in meters).
     pub root: [f64; 3],
     /// The chains actuated, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
@@ -69,7 +69,7 @@ pub struct Icub {
     pub posture: IcubPosture,
     /// The interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
     pub control: JointControl,
-    /// The position error at which a servo reaches the maximum effort of its joint, in radians.
+    /// The position error at which a servo reaches the maximum effort of its joint (in radians).
     pub saturation_angle: f64,
     /// The ratio of the damping and the stiffness of a servo (in seconds).
     pub servo_time: f64,
@@ -129,7 +129,7 @@ impl Icub {
         BodyId(side.arm().bodies().end as u16 - 1)
     }
 
-    /// Returns the point on the inner side of a palm used as its center, in the frame of the palm, in meters.
+    /// Returns the point on the inner side of a palm used as its center, in the frame of the palm (in meters).
     pub fn palm_centre(&self, side: Side) -> [f64; 3] {
         on_side(side, self.hand.palm_centre)
     }
@@ -165,7 +165,7 @@ impl Icub {
         Ok(ActuatorId(first + i as u16))
     }
 
-    /// Returns the limits of the joint with the given name, in radians. Rigid joints are supported as well.
+    /// Returns the limits of the joint with the given name (in radians). Rigid joints are supported as well.
     ///
     /// # Errors
     /// Returns [`IcubError::Joint`] if there is no such joint.
@@ -182,7 +182,7 @@ impl Icub {
         }
     }
 
-    /// Returns the initial angles of the actuated joints in the order of [`Robot::joints`], in radians.
+    /// Returns the initial angles of the actuated joints in the order of [`Robot::joints`] (in radians).
     pub fn start(&self) -> Vec<f64> {
         let actuated = Chain::ALL.into_iter().filter(|chain| self.actuated.contains(chain));
         actuated.flat_map(|chain| self.posture.chain(chain)).copied().collect()

@@ -22,7 +22,7 @@ pub struct IcubPosture {
 }
 
 impl IcubPosture {
-    /// Returns the joint angles of a chain, in radians.
+    /// Returns the joint angles of a chain in radians.
     pub fn chain(&self, chain: Chain) -> &[f64] {
         match chain {
             Chain::Torso => &self.torso,

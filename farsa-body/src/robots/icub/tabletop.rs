@@ -20,19 +20,19 @@ pub struct IcubTabletop {
     pub table_x: [f64; 2],
     /// The lower and upper ends of the table along Y (in meters).
     pub table_y: [f64; 2],
-    /// The height of the table top, in meters.
+    /// The height of the table top in meters.
     pub table_top: f64,
     /// The thickness of the table, which is solid (in meters).
     pub table_depth: f64,
     /// The red, green and blue components of the color of the table (between 0 and 1).
     pub table_color: [f64; 3],
-    /// The radius of the ball, in meters.
+    /// The radius of the ball in meters.
     pub ball_radius: f64,
     /// The mass of the ball, which is solid (in kilograms).
     pub ball_mass: f64,
     /// The red, green and blue components of the color of the ball (between 0 and 1).
     pub ball_color: [f64; 3],
-    /// The initial X and Y coordinates of the ball on the table, in meters.
+    /// The initial X and Y coordinates of the ball on the table (in meters).
     pub ball_start: [f64; 2],
     /// The properties of contacts between the robot and the ball.
     pub robot_on_ball: Surface,

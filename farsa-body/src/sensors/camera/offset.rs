@@ -18,7 +18,7 @@ pub struct VisualOffset<B = BodyId> {
 
 impl<B: Copy> VisualOffset<B> {
     /// Creates a sensor for the offset of the point `of` from the point `from`. Each point is given in the frame of its
-    /// body, in meters.
+    /// body (in meters).
     pub fn new(camera: Camera<B>, of: (B, [f32; 3]), from: (B, [f32; 3])) -> Self {
         Self { camera, of, from }
     }

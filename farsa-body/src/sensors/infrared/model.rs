@@ -7,7 +7,7 @@ use farsa_num::Scalar;
 ///
 /// The reading of a sensor is the sum of `distance_term * angle_term` over all surfaces, clamped to [0, 1].
 /// - `distance_term = clamp((far - d) / (far - near), 0, 1)`, where `d` is the distance between the hull of the robot
-///   and the nearest point of the surface, in meters.
+///   and the nearest point of the surface (in meters).
 /// - `angle_term = s^2` with `s = max((cos(a) - cos(width)) / (1 - cos(width)), 0)`, where `a` is the angle between the
 ///   axis of the sensor and the bearing of that point from the center of the robot. It is 1 straight ahead, 1/2 at
 ///   about half the width, and decreases smoothly to 0 at the width.
@@ -63,13 +63,13 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
 }
 
 impl InfraredModel {
-    /// The distances from the hull at which a sensor in front of a wall reads 0 and 1, in meters.
+    /// The distances from the hull at which a sensor in front of a wall reads 0 and 1 (in meters).
     ///
     /// These values are useful for tables of channels. Between them the reading decreases linearly with the distance.
     /// It also decreases with the angle.
     pub const WALL_ENDS: [f64; 2] = [WALL[1], WALL[0]];
 
-    /// Returns the model for a surface with the given radius, in meters. The values 0, NaN and negative numbers
+    /// Returns the model for a surface with the given radius (in meters). The values 0, NaN and negative numbers
     /// represent a wall.
     pub fn for_radius(radius: f32) -> Self {
         let curvature = if radius > 0.0 { 1.0 / f64::from(radius) } else { 0.0 };
@@ -84,7 +84,7 @@ impl InfraredModel {
         }
     }
 
-    /// Returns the distance from the hull at which the response ends, in meters.
+    /// Returns the distance from the hull at which the response ends (in meters).
     pub fn range(&self) -> f32 {
         self.far
     }

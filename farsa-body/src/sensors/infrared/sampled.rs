@@ -43,12 +43,12 @@ impl InfraredTables {
         self.walls.sensors()
     }
 
-    /// Returns the distance from the hull at which all responses end, in meters.
+    /// Returns the distance from the hull at which all responses end (in meters).
     pub fn range(&self) -> f32 {
         self.bodies.iter().map(|(_, table)| table.range()).fold(self.walls.range(), farsa_num::Scalar::max)
     }
 
-    /// Returns the table for a round body with the given radius, in meters. A radius of 0 selects the table for walls.
+    /// Returns the table for a round body with the given radius (in meters). A radius of 0 selects the table for walls.
     pub fn table(&self, radius: f32) -> &InfraredTable {
         let mut nearest = (f32::INFINITY, &self.walls);
         if radius > 0.0 {

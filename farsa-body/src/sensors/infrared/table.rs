@@ -108,7 +108,7 @@ impl InfraredTable {
         self.sensors
     }
 
-    /// Returns the distance from the hull at which the response ends, in meters.
+    /// Returns the distance from the hull at which the response ends (in meters).
     pub fn range(&self) -> f32 {
         (self.first + self.step * self.distances as f32) / 1000.0
     }
