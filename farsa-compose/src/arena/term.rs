@@ -134,6 +134,17 @@ impl Term {
         [0, 1].map(|k| f64::from(self.place.position[k] - pose.position[k]))
     }
 
+    /// Returns 1 if a robot collides with the thing, or if the gap between their hulls is at most `within` [m].
+    fn contact<W: PlanarWorld>(&self, world: &W, parts: &MobileParts, gap: f64, within: f64) -> f64 {
+        let meets = |body: BodyId, other: Option<BodyId>| {
+            let pair = PairId(body.0);
+            world.touches(pair) && world.pair_bodies(pair)[1] == other
+        };
+        // A robot that also collides with a wall may report the wall only.
+        let met = meets(parts.body, self.thing) || self.thing.is_some_and(|thing| meets(thing, Some(parts.body)));
+        if gap.is_finite() { yes(met || gap <= within) } else { f64::NAN }
+    }
+
     /// Returns the distance between the hulls of a robot and the thing, whose radii have this sum [m].
     fn gap(&self, pose: &Pose, radii: f64) -> f64 {
         f64::from(distance(pose, &self.place)) - radii
@@ -225,15 +236,7 @@ impl Term {
             Measure::Time => f64::from(rows.steps[0]) * numbers.time_step,
             Measure::Gap { radius } => self.gap(pose, numbers.radius + radius),
             Measure::Contact { radius, within } => {
-                let gap = self.gap(pose, numbers.radius + radius);
-                let meets = |body: BodyId, other: Option<BodyId>| {
-                    let pair = PairId(body.0);
-                    world.touches(pair) && world.pair_bodies(pair)[1] == other
-                };
-                // A robot that also collides with a wall may report the wall only.
-                let met =
-                    meets(parts.body, self.thing) || self.thing.is_some_and(|thing| meets(thing, Some(parts.body)));
-                if gap.is_finite() { yes(met || gap <= *within) } else { f64::NAN }
+                self.contact(world, parts, self.gap(pose, numbers.radius + radius), *within)
             }
             // 1 - t / T, and its rest of 1.
             Measure::TimeLeft { rest: [first, end] } => {
