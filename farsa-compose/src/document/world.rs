@@ -15,6 +15,8 @@ pub struct World {
     #[schemars(inner(range(min = 0.05, max = 1000.0)))]
     pub size: [f64; 2],
     /// A file with more `objects`, in the folder of the experiment's file or below it.
+    // Without this the schema has a default of null, because the table has a default as a whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
     /// Surrounds the arena with walls, for robots on wheels.
     pub walls: bool,
