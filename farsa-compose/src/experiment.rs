@@ -330,9 +330,8 @@ fn strategy(
     let Some(name) = document.strategy.get("name") else { return Ok(&Truncation) };
     let path = "/strategy/name";
     let name = name.as_str().ok_or_else(|| source.wrong(path, "is not a text in quotes"))?;
-    let named = strategies.iter().copied().find(|strategy| strategy.name() == name);
     let names = strategies.iter().map(|strategy| strategy.name());
-    named.ok_or_else(|| Error::unknown(&source.of(path), "strategy", name, names))
+    Ok(strategies[source.position(names, ("strategy", name), path)?])
 }
 
 /// Returns the settings of a strategy that a document changes, with its values as defaults.

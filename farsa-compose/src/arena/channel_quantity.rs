@@ -128,9 +128,7 @@ pub(crate) fn driven(kind: &MotorKind, channel: usize, robot: &MobileRobot) -> C
         }
         MotorKind::Signal {} => ChannelQuantity::new("what is signalled", "1", [0.0, 1.0]),
         MotorKind::Attachment {} => ChannelQuantity::new("the attachment device: more than 1/2 holds", "1", [0.0, 1.0]),
-        MotorKind::JointVelocity { .. }
-        | MotorKind::JointTorque { .. }
-        | MotorKind::Servo { .. }
-        | MotorKind::Muscles { .. } => ChannelQuantity::new("nothing", "1", [0.0, 1.0]),
+        // Motors of robots with joints.
+        _ => ChannelQuantity::new("nothing", "1", [0.0, 1.0]),
     }
 }

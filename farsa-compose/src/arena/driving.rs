@@ -141,9 +141,6 @@ fn bare(
         MotorKind::Attachment {} => {
             parts.attachment.map(|it| Driving::Attachment(AttachmentMotor::new(it))).ok_or("an attachment device")
         }
-        MotorKind::JointVelocity { .. }
-        | MotorKind::JointTorque { .. }
-        | MotorKind::Servo { .. }
-        | MotorKind::Muscles { .. } => Err("joints"),
+        _ => Err("joints"),
     })
 }

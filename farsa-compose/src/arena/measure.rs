@@ -139,10 +139,9 @@ impl Measure {
             RewardKind::WheelDifference {} => Measure::WheelDifference,
             RewardKind::StraightOn {} => Measure::StraightOn,
             RewardKind::Sensor { sensor } => {
-                let channels = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
                 let names = sensors.iter().map(|(name, _)| name.as_str());
-                let place = source.of(&format!("{path}/sensor"));
-                Measure::Sensor(channels.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
+                let number = source.position(names, ("sensor", sensor), &format!("{path}/sensor"))?;
+                Measure::Sensor(sensors[number].1)
             }
             RewardKind::InArea { area, or } => {
                 let mut all = areas(area, &format!("{path}/area"), scene, source)?;
@@ -212,6 +211,17 @@ fn check(kind: &RewardKind, path: &str, source: &Source) -> Result<(), Error> {
         RewardKind::Touch { bodies, with } => (with, &bodies[..], &[0.0; 3]),
         _ => return Ok(()),
     };
+    one_body(body.as_ref(), bodies, point, path, source)
+}
+
+/// Rejects named bodies and points, because a robot on wheels is one body.
+pub(crate) fn one_body(
+    body: Option<&String>,
+    bodies: &[String],
+    point: &[f64; 3],
+    path: &str,
+    source: &Source,
+) -> Result<(), Error> {
     if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
         return Ok(());
     }

@@ -1,7 +1,5 @@
 //! Robots on wheels in an arena.
 
-/// Sensors of a robot's own state.
-pub(crate) mod body_state;
 /// The quantities of channels.
 mod channel_quantity;
 /// Motors, with their wrappers.

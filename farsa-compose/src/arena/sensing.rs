@@ -7,17 +7,17 @@ use farsa_body::ports::{Channels, JointId, PairId, Sensor};
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_body::sensors::infrared::{InfraredFormula, InfraredGroups, InfraredTables, SampledInfrared};
 use farsa_body::sensors::{
-    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ContactForce, GroundColor, Height, JointPosition, JointSpeed,
+    AttachmentSensor, Beam, BodyPose, BodyVelocity, ContactForce, GroundColor, Height, JointPosition, JointSpeed,
     LaserDistance, LightSensors, Point, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
 };
 use farsa_lab::Error;
 use farsa_lab::advanced::PlanarWorld;
 
-use crate::arena::body_state::{BodyState, BodyStateSensor};
 use crate::arena::field::Forager;
+use crate::arena::measure::one_body;
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
-use crate::document::{AxesName, InfraredModel, SensorKind};
+use crate::document::{InfraredModel, SensorKind};
 use crate::parts::eye::{Eye, eye};
 use crate::parts::files::{Files, measured};
 
@@ -47,7 +47,8 @@ pub(crate) enum Sensing {
     JointPosition(Vec<JointPosition>),
     JointSpeed(Vec<JointSpeed>),
     Constant(Signal<1>),
-    BodyState(BodyStateSensor),
+    Energy(Signal<1>),
+    Carried(Signal<1>),
 }
 
 /// Calls a method of the sensor of any kind.
@@ -77,7 +78,8 @@ macro_rules! sensor {
             Sensing::JointPosition($sensor) => $call,
             Sensing::JointSpeed($sensor) => $call,
             Sensing::Constant($sensor) => $call,
-            Sensing::BodyState($sensor) => $call,
+            Sensing::Energy($sensor) => $call,
+            Sensing::Carried($sensor) => $call,
         }
     };
 }
@@ -112,8 +114,10 @@ impl Sensing {
 
     /// Updates a sensor of the robot's own state.
     pub(crate) fn feel(&mut self, forager: &Forager) {
-        if let Self::BodyState(sensor) = self {
-            sensor.update(forager);
+        match self {
+            Self::Energy(signal) => signal.set([forager.energy as f32]),
+            Self::Carried(signal) => signal.set([f32::from(u8::from(forager.carried > 0))]),
+            _ => {}
         }
     }
 }
@@ -184,18 +188,13 @@ fn check(kind: &SensorKind, path: &str, source: &Source) -> Result<(), Error> {
         }
         _ => return Ok(()),
     };
-    if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
-        return Ok(());
-    }
-    Err(source
-        .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
+    one_body(body.as_ref(), bodies, point, path, source)
 }
 
 /// Returns a wheel by name.
 fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
     const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
-    let wheel = WHEELS.iter().position(|other| *other == name);
-    Ok(parts.wheels[wheel.ok_or_else(|| Error::unknown(&source.of(path), "joint", name, WHEELS))?])
+    Ok(parts.wheels[source.position(WHEELS.into_iter(), ("joint", name), path)?])
 }
 
 /// Returns the first items of a list, or all of them for 0.
@@ -261,10 +260,10 @@ fn bare(
         SensorKind::ContactForce { .. } => Sensing::ContactForce(ContactForce::new([PairId(body.0)])),
         SensorKind::TargetPosition { axes, scale, .. } => {
             let [target, from] = [target.unwrap_or(body), body].map(Point::origin);
-            Sensing::Target(TargetPosition::new(target, from, own_axes(*axes), *scale as f32)?)
+            Sensing::Target(TargetPosition::new(target, from, (*axes).into(), *scale as f32)?)
         }
         SensorKind::BodyPose { .. } => Sensing::Pose(BodyPose::new(body)),
-        SensorKind::BodyVelocity { axes, .. } => Sensing::Velocity(BodyVelocity::new(body, own_axes(*axes))),
+        SensorKind::BodyVelocity { axes, .. } => Sensing::Velocity(BodyVelocity::new(body, (*axes).into())),
         SensorKind::Height { .. } => Sensing::Height(Height::new(Point::origin(body))),
         SensorKind::JointPosition { from, to, .. } => {
             let [from, to] = [from, to].map(|end| end.unwrap_or(f64::INFINITY) as f32);
@@ -278,8 +277,8 @@ fn bare(
         SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
             return Err(ChannelError::Groups { field: "eyes", count: 0, size: 1 });
         }
-        SensorKind::Energy {} => Sensing::BodyState(BodyStateSensor::new(BodyState::Energy)),
-        SensorKind::Carried {} => Sensing::BodyState(BodyStateSensor::new(BodyState::Carried)),
+        SensorKind::Energy {} => Sensing::Energy(Signal::new([0.0])),
+        SensorKind::Carried {} => Sensing::Carried(Signal::new([0.0])),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
     })
 }
@@ -310,11 +309,4 @@ fn fan(radius: f64, angle: f64, beams: usize) -> Vec<Beam> {
             Beam::in_cone(radius, share * angle, 0.0, 0, 1)
         })
         .collect()
-}
-
-fn own_axes(axes: AxesName) -> Axes {
-    match axes {
-        AxesName::Body => Axes::Body,
-        AxesName::World => Axes::World,
-    }
 }

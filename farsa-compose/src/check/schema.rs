@@ -176,13 +176,13 @@ impl<'s> Part<'s> {
     }
 
     /// Returns the keys of a table. `tag` returns the value of the key that selects a branch.
-    pub(crate) fn keys(self, tag: &dyn Fn(&str) -> Option<&'s str>) -> Keys<'s> {
+    pub(crate) fn keys<'t>(self, tag: &dyn Fn(&str) -> Option<&'t str>) -> Keys<'s> {
         let mut keys = Keys::default();
         self.given().collect(tag, &mut keys);
         keys
     }
 
-    fn collect(self, tag: &dyn Fn(&str) -> Option<&'s str>, keys: &mut Keys<'s>) {
+    fn collect<'t>(self, tag: &dyn Fn(&str) -> Option<&'t str>, keys: &mut Keys<'s>) {
         if let Some(part) = self.referred() {
             part.collect(tag, keys);
         }
@@ -212,12 +212,7 @@ impl<'s> Part<'s> {
         let items = keys.named.iter().find(|(name, _)| *name == list).and_then(|(_, part)| part.items());
         let Some(items) = items else { return "" };
         let branch = items.branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word));
-        branch.map_or("", |branch| {
-            branch.own.get("description").map_or_else(
-                || branch.description(),
-                |text| text.as_str().and_then(|text| text.split("\n\n").next()).unwrap_or_default(),
-            )
-        })
+        branch.map_or("", Self::description)
     }
 
     /// Returns the key and the word that select a branch.

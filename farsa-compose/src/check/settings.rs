@@ -31,12 +31,7 @@ pub(crate) fn entries(document: &Value, schema: &Value) -> Vec<Entry> {
 }
 
 fn collect(part: Part<'_>, table: &Map<String, Value>, [key, path]: [&str; 2], found: &mut Vec<Entry>) {
-    let all = part.keys(&|_| None);
-    let word = all.tag.as_ref().and_then(|(name, words)| {
-        let own = table.get(*name)?.as_str()?;
-        words.iter().copied().find(|word| *word == own)
-    });
-    let keys = part.keys(&|_| word);
+    let keys = part.keys(&|name| table.get(name)?.as_str());
     for (name, value) in table {
         let (top, tag) = (key.is_empty(), keys.tag.as_ref().is_some_and(|(tag, _)| tag == name));
         if tag || top && ELSEWHERE.contains(&name.as_str()) {

@@ -86,6 +86,17 @@ impl Source {
         }
     }
 
+    /// Returns the number of a name among the valid ones. `what` describes an unknown one at a path.
+    pub(crate) fn position<'n>(
+        &self,
+        names: impl Iterator<Item = &'n str> + Clone,
+        (what, name): (&'static str, &str),
+        path: &str,
+    ) -> Result<usize, Error> {
+        let number = names.clone().position(|other| other == name);
+        number.ok_or_else(|| Error::unknown(&self.of(path), what, name, names))
+    }
+
     /// Returns the error of a value.
     pub(crate) fn wrong(&self, path: &str, why: impl std::fmt::Display) -> Error {
         Error::Setting { place: self.of(path), key: key(path), why: why.to_string() }

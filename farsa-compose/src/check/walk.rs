@@ -92,11 +92,7 @@ impl Walk<'_> {
             let (_, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
             value.get_ref().as_str()
         };
-        // Takes the word from the schema, whose lifetime is longer than the text's.
-        let chosen = |keys: &[&str], name: &str| tag(name).and_then(|word| keys.iter().position(|key| *key == word));
-        let all = part.keys(&|_| None);
-        let word = all.tag.as_ref().and_then(|(name, words)| Some(words[chosen(words, name)?]));
-        let keys = part.keys(&|_| word);
+        let keys = part.keys(&tag);
         if let Some((tag, words)) = keys.tag.as_ref().filter(|(name, _)| tag(name).is_none() && !has(table, name)) {
             // The tag may be misspelled.
             let mut valid = vec![*tag];
@@ -110,8 +106,9 @@ impl Walk<'_> {
             return Err(self.source.wrong(path, format!("lacks the key `{tag}`: one of {}", words.join(", "))));
         }
         // The tag comes first, because the other keys depend on it.
-        if let (Some((tag, words)), None) = (&keys.tag, word)
+        if let Some((tag, words)) = &keys.tag
             && let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == tag)
+            && value.get_ref().as_str().is_none_or(|word| !words.contains(&word))
         {
             let line = self.lines.of(name.span().start);
             let text = value.get_ref().as_str().ok_or_else(|| Error::Setting {

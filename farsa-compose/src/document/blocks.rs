@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::yes;
+use crate::document::{one, yes};
 use crate::name::NAME;
 
 /// Clusters of neurons, and links between sensors, clusters and motors.
@@ -43,7 +43,7 @@ pub struct Cluster {
     #[serde(default)]
     pub activation: ClusterActivation,
     /// Factor of the net input.
-    #[serde(default = "slope")]
+    #[serde(default = "one")]
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub slope: f64,
     /// Adds a bias to each neuron.
@@ -82,8 +82,4 @@ pub struct Link {
 
 pub(super) fn leaks() -> [f64; 2] {
     [0.0, 1.0]
-}
-
-pub(super) fn slope() -> f64 {
-    1.0
 }

@@ -44,11 +44,11 @@ pub struct Evonet {
     #[serde(default)]
     pub output_leaks: bool,
     /// Largest bias.
-    #[serde(default = "largest_bias")]
+    #[serde(default = "five")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub largest_bias: f64,
     /// Largest gain of neurons with gains in a file.
-    #[serde(default = "largest_gain")]
+    #[serde(default = "five")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub largest_gain: f64,
 }
@@ -66,10 +66,6 @@ pub enum EvonetNeurons {
     Binary,
 }
 
-fn largest_bias() -> f64 {
-    5.0
-}
-
-fn largest_gain() -> f64 {
+fn five() -> f64 {
     5.0
 }

@@ -174,3 +174,7 @@ impl Default for Genome {
 fn yes() -> bool {
     true
 }
+
+fn one() -> f64 {
+    1.0
+}

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::blocks::{Blocks, leaks, slope};
+use crate::document::blocks::{Blocks, leaks};
 use crate::document::evonet::Evonet;
+use crate::document::one;
 use crate::name::NAME;
 
 /// A network, whose numbers of inputs and outputs follow from sensors and motors.
@@ -47,7 +48,7 @@ pub enum NetworkKind {
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         leaks: [f64; 2],
         /// Slope of the logistic function.
-        #[serde(default = "slope")]
+        #[serde(default = "one")]
         #[schemars(range(min = 0.001, max = 1000.0))]
         slope: f64,
     },

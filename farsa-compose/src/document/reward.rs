@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::document::one;
 use crate::name::NAME;
 
 /// A term of the fitness.
@@ -275,8 +276,4 @@ pub struct Condition {
     /// Upper limit. The value must be less.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub below: Option<f64>,
-}
-
-fn one() -> f64 {
-    1.0
 }

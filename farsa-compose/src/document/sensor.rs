@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::wrapper::Wrapper;
-use crate::document::yes;
+use crate::document::{one, yes};
 use crate::name::NAME;
 
 /// A sensor of each robot.
@@ -167,7 +167,7 @@ pub enum SensorKind {
         #[serde(default)]
         axes: AxesName,
         /// Reading per meter.
-        #[serde(default = "unit")]
+        #[serde(default = "one")]
         #[schemars(range(min = -1000.0, max = 1000.0))]
         scale: f64,
     },
@@ -331,6 +331,15 @@ pub enum AxesName {
     World,
 }
 
+impl From<AxesName> for farsa_body::sensors::Axes {
+    fn from(name: AxesName) -> Self {
+        match name {
+            AxesName::Body => Self::Body,
+            AxesName::World => Self::World,
+        }
+    }
+}
+
 fn reference() -> f64 {
     0.25
 }
@@ -345,8 +354,4 @@ fn four() -> u32 {
 
 fn nine() -> u32 {
     9
-}
-
-fn unit() -> f64 {
-    1.0
 }

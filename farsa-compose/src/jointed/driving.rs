@@ -98,10 +98,6 @@ pub(crate) fn motor(kind: &MotorKind, scene: &mut Scene, path: &str, source: &So
                 |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, source)?));
             Driving::Muscles(joints.into_iter().map(build).collect::<Result<_, Error>>()?)
         }
-        MotorKind::Wheels {}
-        | MotorKind::SpeedAndTurn { .. }
-        | MotorKind::Leds { .. }
-        | MotorKind::Signal {}
-        | MotorKind::Attachment {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }

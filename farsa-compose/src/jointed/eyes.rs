@@ -2,7 +2,7 @@
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
-use farsa_body::sensors::{Camera, CameraImage, ColorBand, ColorBlobs, VisualOffset};
+use farsa_body::sensors::{Camera, CameraImage, ColorBlobs, VisualOffset};
 use farsa_lab::Error;
 use farsa_num::sin_cos;
 
@@ -11,6 +11,7 @@ use crate::document::{ColorRange, Eye};
 use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
 use crate::parts::channel_quantity::ChannelQuantity;
+use crate::parts::eye::band;
 
 /// Builds the camera of an eye with the given numbers of columns and rows.
 fn camera(eye: &Eye, size: [usize; 2], scene: &Scene, path: &str, source: &Source) -> Result<Camera, Error> {
@@ -44,9 +45,7 @@ pub(crate) fn blobs(
     path: &str,
     source: &Source,
 ) -> Result<ColorBlobs, Error> {
-    let narrow = |ends: [f64; 3]| ends.map(|x| x as f32);
-    let bands = colors.iter().map(|color| ColorBand { low: narrow(color.low), high: narrow(color.high) });
-    let made = ColorBlobs::new(camera(eye, size(eye), scene, path, source)?, bands.collect());
+    let made = ColorBlobs::new(camera(eye, size(eye), scene, path, source)?, colors.iter().map(band).collect());
     made.map_err(|error| source.wrong(path, error))
 }
 

@@ -2,14 +2,14 @@
 
 use farsa_body::ports::{Channels, PairId, Sensor};
 use farsa_body::sensors::{
-    Axes, BodyPose, BodyVelocity, CameraImage, ColorBlobs, ContactForce, Height, JointPosition, JointSpeed, Signal,
+    BodyPose, BodyVelocity, CameraImage, ColorBlobs, ContactForce, Height, JointPosition, JointSpeed, Signal,
     TargetPosition, Touch, VisualOffset,
 };
 use farsa_body::{ChannelError, Pose};
 use farsa_lab::Error;
 
 use crate::check::source::Source;
-use crate::document::{AxesName, SensorKind};
+use crate::document::SensorKind;
 use crate::jointed::SpatialWorld;
 use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::marker_position::MarkerPosition;
@@ -143,18 +143,18 @@ pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Sour
         }
         SensorKind::TargetPosition { target, body, point, axes, scale } => {
             let from = scene.point(body.as_ref(), *point, path, source)?;
-            let axes = if *axes == AxesName::Body { Axes::Body } else { Axes::World };
             match scene.point_named(target, &format!("{path}/target"), source)?.0 {
                 NamedPoint::Body(target) => {
-                    Sensing::Target(TargetPosition::new(target, from, axes, *scale as f32).map_err(wrong)?)
+                    Sensing::Target(TargetPosition::new(target, from, (*axes).into(), *scale as f32).map_err(wrong)?)
                 }
-                NamedPoint::Marker(marker) => Sensing::Marker(MarkerPosition::new(marker, from, axes, *scale as f32)),
+                NamedPoint::Marker(marker) => {
+                    Sensing::Marker(MarkerPosition::new(marker, from, (*axes).into(), *scale as f32))
+                }
             }
         }
         SensorKind::BodyPose { body: name } => Sensing::Pose(BodyPose::new(body(name)?)),
         SensorKind::BodyVelocity { body: name, axes } => {
-            let axes = if *axes == AxesName::Body { Axes::Body } else { Axes::World };
-            Sensing::Velocity(BodyVelocity::new(body(name)?, axes))
+            Sensing::Velocity(BodyVelocity::new(body(name)?, (*axes).into()))
         }
         SensorKind::Height { body, point } => {
             Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, source)?))
@@ -171,15 +171,6 @@ pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Sour
         SensorKind::ColorBlobs { eye, colors } => Sensing::Blobs(blobs(eye, colors, scene, path, source)?),
         SensorKind::VisualOffset { eye, of, from } => Sensing::Offset(offset(eye, [of, from], scene, path, source)?),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
-        SensorKind::Infrared { .. }
-        | SensorKind::Light { .. }
-        | SensorKind::GroundColor { .. }
-        | SensorKind::LaserDistance { .. }
-        | SensorKind::WheelSpeed { .. }
-        | SensorKind::Traction { .. }
-        | SensorKind::Signal { .. }
-        | SensorKind::Attachment {}
-        | SensorKind::Energy {}
-        | SensorKind::Carried {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }

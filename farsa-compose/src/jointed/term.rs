@@ -183,35 +183,14 @@ fn measure(
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
         RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, source)?),
         RewardKind::Sensor { sensor } => {
-            let channels = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
             let names = sensors.iter().map(|(name, _)| name.as_str());
-            let place = source.of(&format!("{path}/sensor"));
-            Measure::Sensor(channels.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
+            let number = source.position(names, ("sensor", sensor), &format!("{path}/sensor"))?;
+            Measure::Sensor(sensors[number].1)
         }
         RewardKind::Effort {} => Measure::Effort,
         RewardKind::Control {} => Measure::Control,
         RewardKind::Steps {} => Measure::Steps,
-        RewardKind::Angle { .. }
-        | RewardKind::WheelSpeed {}
-        | RewardKind::StraightOn {}
-        | RewardKind::WheelDifference {}
-        | RewardKind::InArea { .. }
-        | RewardKind::FullestArea { .. }
-        | RewardKind::Dispersion {}
-        | RewardKind::Clusters {}
-        | RewardKind::LargestCluster {}
-        | RewardKind::NearOthers {}
-        | RewardKind::Food {}
-        | RewardKind::CarriedFood {}
-        | RewardKind::LostFood {}
-        | RewardKind::Deaths {}
-        | RewardKind::Energy {}
-        | RewardKind::Alive {}
-        | RewardKind::Time {}
-        | RewardKind::Gap { .. }
-        | RewardKind::Contact { .. }
-        | RewardKind::TimeLeft { .. }
-        | RewardKind::Held {} => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
     })
 }
 

@@ -22,8 +22,7 @@ impl TermBehaviour {
         let mut terms = Vec::new();
         let mut term = |name: &String, path: String| {
             let names = tallies.iter().map(|tally| tally.name.as_str());
-            let number = tallies.iter().position(|tally| tally.name == *name);
-            let number = number.ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names))?;
+            let number = source.position(names, ("term", name), &path)?;
             terms.push((number, tallies[number].note()));
             Ok::<_, Error>(tallies[number].label().to_owned())
         };

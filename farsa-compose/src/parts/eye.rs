@@ -12,11 +12,15 @@ pub(crate) type Eye = LinearCamera<Vec<Beam>, Vec<ColorBand>>;
 
 /// Builds a camera on a body.
 pub(crate) fn eye(body: BodyId, camera: &Camera) -> Result<Eye, ChannelError> {
-    let narrow = |ends: [f64; 3]| ends.map(|x| x as f32);
-    let band = |color: &ColorRange| ColorBand { low: narrow(color.low), high: narrow(color.high) };
     let bands = camera.colors.iter().map(band).collect();
     let (view, [sectors, rays]) = (camera.field_of_view.to_radians(), [camera.sectors, camera.rays]);
     LinearCamera::for_view(body, view, sectors as usize, rays as usize, bands, camera.range as f32)
+}
+
+/// Rounds a range of colors to single precision.
+pub(crate) fn band(color: &ColorRange) -> ColorBand {
+    let [low, high] = [color.low, color.high].map(|ends| ends.map(|x| x as f32));
+    ColorBand { low, high }
 }
 
 /// Returns the quantity of a camera channel.

@@ -38,9 +38,7 @@ impl HandWired {
             return Err(source.wrong("/network/bias", why));
         }
         let end = |name: &str, list: &[String], what, path: String| {
-            let index = list.iter().position(|other| other == name);
-            let names = list.iter().map(String::as_str);
-            index.ok_or_else(|| Error::unknown(&source.of(&path), what, name, names))
+            source.position(list.iter().map(String::as_str), (what, name), &path)
         };
         let made = wires.iter().enumerate().map(|(number, wire)| {
             let path = format!("/network/wires/{number}");

@@ -11,7 +11,7 @@ use farsa_nn::{
 };
 
 use crate::check::source::Source;
-use crate::document::{Document, Network, NetworkKind, WeightOrder, Wire};
+use crate::document::{Document, NetworkKind, WeightOrder, Wire};
 use crate::parts::blocks;
 use crate::parts::ends::Ends;
 use crate::parts::evonet::EvonetNetwork;
@@ -19,51 +19,79 @@ use crate::parts::hand_wired::HandWired;
 use crate::parts::reflex::ReflexController;
 use crate::parts::static_layout::static_layout;
 
+type Blocks = BlockNetwork<'static, Vec<f32>, Vec<f32>>;
+
 /// A network, with the order in which a search has its parameters.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyNetwork {
     Perceptron(Perceptron<Vec<f32>>, WeightOrder),
     Leaky(OwnedNetwork),
     Ctrnn(Ctrnn<Vec<f32>, Vec<f32>>),
-    Block(BlockNetwork<'static, Vec<f32>, Vec<f32>>),
+    Block(Blocks),
     HandWired(HandWired),
     Evonet(EvonetNetwork),
     Reflex(ReflexController),
 }
 
+/// The parameters of a network in the order of a search.
+pub(crate) struct Named {
+    pub(crate) parameters: Vec<Parameter>,
+    /// Values that are fixed unless the document searches them.
+    pub(crate) given: BTreeMap<String, f64>,
+}
+
+impl From<Vec<Parameter>> for Named {
+    fn from(parameters: Vec<Parameter>) -> Self {
+        Self { parameters, given: BTreeMap::new() }
+    }
+}
+
 impl AnyNetwork {
-    /// Builds the network of a document at rest.
-    pub(crate) fn new(document: &Document, ends: Ends<'_>, source: &Source) -> Result<Self, Error> {
+    /// Builds the network of a document at rest, with its named parameters.
+    pub(crate) fn new(document: &Document, ends: Ends<'_>, source: &Source) -> Result<(Self, Named), Error> {
         let made = Self::between(document, ends, source);
         made.map_err(|error| if let Error::Other(why) = error { source.wrong("/network", why) } else { error })
     }
 
-    fn between(document: &Document, ends: Ends<'_>, source: &Source) -> Result<Self, Error> {
+    fn between(document: &Document, ends: Ends<'_>, source: &Source) -> Result<(Self, Named), Error> {
         let Document { network, files, .. } = document;
         let [inputs, outputs] = [ends.inputs.len(), ends.outputs.len()];
+        let weights = single(network.weights);
         let architecture = match &network.kind {
-            NetworkKind::Wired { bias, activation, wires, .. } => {
-                return Ok(Self::HandWired(HandWired::new(wires, bias, *activation, ends, source)?));
+            NetworkKind::Wired { bias, activation, wires, search_bias } => {
+                let names = wire_names(wires);
+                let parameters = HandWired::named(wires, &names, ends.outputs, weights);
+                let fixed = wires.iter().zip(names).filter(|(wire, _)| !wire.searched);
+                let fixed = fixed.map(|(wire, name)| (format!("weight of {name}"), wire.weight));
+                let biases = ends.outputs.iter().zip(bias).filter(|_| !search_bias);
+                let given = fixed.chain(biases.map(|(output, bias)| (format!("bias of {output}"), *bias))).collect();
+                let wired = HandWired::new(wires, bias, *activation, ends, source)?;
+                return Ok((Self::HandWired(wired), Named { parameters, given }));
             }
             NetworkKind::Evonet(evonet) => {
-                return Ok(Self::Evonet(EvonetNetwork::new(
-                    evonet,
-                    [inputs, outputs],
-                    network.weights,
-                    files,
-                    source,
-                )?));
+                let made = EvonetNetwork::new(evonet, [inputs, outputs], network.weights, files, source)?;
+                let parameters = numbered(made.kinds().map(|kind| (kind, weights)));
+                let given = parameters.iter().zip(made.given());
+                let given =
+                    given.filter_map(|(known, value)| Some((known.name.clone(), f64::from((*value)?)))).collect();
+                return Ok((Self::Evonet(made), Named { parameters, given }));
             }
-            NetworkKind::Blocks(own) => return Self::from_blocks(blocks::layout(own, ends, source)?, source),
+            NetworkKind::Blocks(blocks) => {
+                let block = from_blocks(blocks::layout(blocks, ends, source)?, source)?;
+                let parameters = blocks::parameters(blocks, block.layout(), ends, [weights, single(blocks.leaks)]);
+                return Ok((Self::Block(block), parameters.into()));
+            }
             &NetworkKind::Perceptron { order } => {
                 source.limits.check_network(Perceptron::parameter_count(inputs, outputs), 0)?;
                 let parameters = vec![0.0; Perceptron::parameter_count(inputs, outputs)];
-                return Ok(Self::Perceptron(Perceptron::new(inputs, outputs, 1.0, parameters)?, order));
+                let layer = Perceptron::new(inputs, outputs, 1.0, parameters)?;
+                return Ok((Self::Perceptron(layer, order), perceptron_parameters(ends, order, weights).into()));
             }
-            &NetworkKind::Leaky { hidden, slope, .. } => {
+            &NetworkKind::Leaky { hidden, slope, leaks } => {
                 let layout = LeakyLayout::new(inputs, hidden as usize, outputs).with_slope(slope as f32);
                 source.limits.check_network(layout.parameter_count(), layout.state_len())?;
-                return Ok(Self::Leaky(resting_network(&layout)?));
+                let parameters = leaky_parameters(layout, ends, weights, single(leaks));
+                return Ok((Self::Leaky(resting_network(&layout)?), parameters.into()));
             }
             &NetworkKind::Ctrnn { neurons, time_constants } => {
                 let neurons = neurons as usize;
@@ -72,88 +100,35 @@ impl AnyNetwork {
                 }
                 let layout = CtrnnLayout::new(inputs, neurons, outputs);
                 source.limits.check_network(layout.parameter_count(), layout.state_len())?;
-                let time_step = document.world.time_step;
-                let own = ctrnn_parameters(&layout, &vec![time_constants[0] as f32; searched(&layout)]);
-                let state = vec![0.0; layout.state_len()];
+                let with = |time_constant: f64| {
+                    let parameters = ctrnn_parameters(&layout, &vec![time_constant as f32; searched(&layout)]);
+                    let time_step = document.world.time_step as f32;
+                    Ctrnn::new(layout, time_step, parameters, vec![0.0; layout.state_len()])
+                };
                 // Both ends of the range must be valid.
-                let other = ctrnn_parameters(&layout, &vec![time_constants[1] as f32; searched(&layout)]);
-                Ctrnn::new(layout, time_step as f32, other, state.clone())?;
-                return Ok(Self::Ctrnn(Ctrnn::new(layout, time_step as f32, own, state)?));
+                with(time_constants[1])?;
+                let kinds = layout.kinds().filter(|kind| *kind != CtrnnParameter::Gain);
+                let parameters = numbered(kinds.map(|kind| match kind {
+                    CtrnnParameter::TimeConstant => ("time constant", single(time_constants)),
+                    CtrnnParameter::Bias => ("bias", weights),
+                    CtrnnParameter::InputWeight => ("weight of an input", weights),
+                    _ => ("weight", weights),
+                }));
+                return Ok((Self::Ctrnn(with(time_constants[0])?), parameters.into()));
             }
             &NetworkKind::FeedForward { hidden } => Architecture::feed_forward(inputs, hidden as usize, outputs),
             &NetworkKind::Elman { hidden } => Architecture::elman(inputs, hidden as usize, outputs),
             &NetworkKind::Jordan { hidden } => Architecture::jordan(inputs, hidden as usize, outputs),
             &NetworkKind::FullyRecurrent { hidden } => Architecture::fully_recurrent(inputs, hidden as usize, outputs),
         };
-        Self::from_blocks(architecture.plan().into(), source)
-    }
-
-    fn from_blocks(layout: BlockLayoutBuf, source: &Source) -> Result<Self, Error> {
-        source.limits.check_network(layout.layout().parameter_count(), layout.layout().state_len())?;
-        let layout = static_layout(layout).layout();
-        let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
-        Ok(Self::Block(BlockNetwork::new(layout, Leak::Filter, parameters, state)?))
-    }
-
-    /// Names all parameters, with ranges.
-    pub(crate) fn parameters(&self, network: &Network, ends: Ends<'_>) -> Vec<Parameter> {
-        // Networks compute in single precision.
-        let single = |ends: [f64; 2]| ends.map(|end| f64::from(end as f32));
-        let weights = single(network.weights);
-        match self {
-            Self::Perceptron(_, order) => perceptron_parameters(ends, *order, weights),
-            Self::Leaky(leaky) => {
-                let leaks = if let NetworkKind::Leaky { leaks, .. } = network.kind { leaks } else { [0.0, 1.0] };
-                leaky_parameters(leaky.layout(), ends, weights, single(leaks))
-            }
-            Self::Ctrnn(ctrnn) => {
-                let times = if let NetworkKind::Ctrnn { time_constants, .. } = network.kind {
-                    time_constants
-                } else {
-                    [1.0; 2]
-                };
-                let kinds = ctrnn.layout().kinds().filter(|kind| *kind != CtrnnParameter::Gain);
-                numbered(kinds.map(|kind| match kind {
-                    CtrnnParameter::TimeConstant => ("time constant", single(times)),
-                    CtrnnParameter::Bias => ("bias", weights),
-                    CtrnnParameter::InputWeight => ("weight of an input", weights),
-                    _ => ("weight", weights),
-                }))
-            }
-            Self::HandWired(_) => {
-                let NetworkKind::Wired { wires, .. } = &network.kind else { return Vec::new() };
-                HandWired::named(wires, &wire_names(wires), ends.outputs, weights)
-            }
-            Self::Block(block) => match &network.kind {
-                NetworkKind::Blocks(own) => blocks::parameters(own, block.layout(), ends, [weights, single(own.leaks)]),
-                _ => numbered(block.layout().kinds().map(|kind| match kind {
-                    BlockParameter::Leak => ("leak", [0.0, 1.0]),
-                    BlockParameter::Bias => ("bias", weights),
-                    BlockParameter::Gain => ("gain", weights),
-                    _ => ("weight", weights),
-                })),
-            },
-            Self::Evonet(evonet) => numbered(evonet.kinds().map(|kind| (kind, weights))),
-            Self::Reflex(_) => Vec::new(),
-        }
-    }
-
-    /// Returns the parameters that are fixed unless the document searches them.
-    pub(crate) fn given(&self, network: &Network, ends: Ends<'_>) -> BTreeMap<String, f64> {
-        match (self, &network.kind) {
-            (Self::Evonet(evonet), _) => {
-                let given = self.parameters(network, ends).into_iter().zip(evonet.given());
-                given.filter_map(|(parameter, value)| Some((parameter.name, f64::from((*value)?)))).collect()
-            }
-            (_, NetworkKind::Wired { bias, search_bias, wires, .. }) => {
-                let names = wire_names(wires);
-                let wires = wires.iter().zip(names).filter(|(wire, _)| !wire.searched);
-                let wires = wires.map(|(wire, name)| (format!("weight of {name}"), wire.weight));
-                let biases = ends.outputs.iter().zip(bias).filter(|_| !search_bias);
-                wires.chain(biases.map(|(output, bias)| (format!("bias of {output}"), *bias))).collect()
-            }
-            _ => BTreeMap::new(),
-        }
+        let block = from_blocks(architecture.plan().into(), source)?;
+        let parameters = numbered(block.layout().kinds().map(|kind| match kind {
+            BlockParameter::Leak => ("leak", [0.0, 1.0]),
+            BlockParameter::Bias => ("bias", weights),
+            BlockParameter::Gain => ("gain", weights),
+            _ => ("weight", weights),
+        }));
+        Ok((Self::Block(block), parameters.into()))
     }
 
     /// Loads the parameters of a search. Returns false for another number of them or for values out of range.
@@ -314,6 +289,18 @@ impl Ablatable for AnyNetwork {
     fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         self.kind_mut().step_ablated(lesions, x, y);
     }
+}
+
+/// Rounds a range to single precision, in which networks compute.
+fn single(ends: [f64; 2]) -> [f64; 2] {
+    ends.map(|end| f64::from(end as f32))
+}
+
+fn from_blocks(layout: BlockLayoutBuf, source: &Source) -> Result<Blocks, Error> {
+    source.limits.check_network(layout.layout().parameter_count(), layout.layout().state_len())?;
+    let layout = static_layout(layout).layout();
+    let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
+    Ok(BlockNetwork::new(layout, Leak::Filter, parameters, state)?)
 }
 
 /// Names the wires.

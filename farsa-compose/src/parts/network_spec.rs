@@ -6,7 +6,7 @@ use crate::check::source::Source;
 use crate::document::{Document, MotorKind};
 use crate::parts::channel_quantity::changes;
 use crate::parts::ends::Ends;
-use crate::parts::network::AnyNetwork;
+use crate::parts::network::{AnyNetwork, Named};
 use crate::parts::searched::Searched;
 
 /// Names of sensors or motors, with the first channel of each and the one after the last.
@@ -35,25 +35,22 @@ impl NetworkSpec {
     pub(crate) fn new(document: &Document, channels: [Vec<usize>; 2], source: &Source) -> Result<Self, Error> {
         let [mut absent, mut about] = [Vec::new(), Vec::new()];
         let [sensor_channels, motor_channels] = channels;
-        let mut named = Vec::new();
-        for (sensor, (name, text)) in document.sensors.iter().zip(&source.names.sensors) {
-            if sensor.enabled {
+        let mut spans = |changes: Vec<Option<String>>, names: &[(String, &str)], channels: Vec<usize>| {
+            let mut named = Vec::new();
+            for (changes, (name, text)) in changes.into_iter().zip(names) {
+                let Some(changes) = changes else {
+                    absent.push(name.clone());
+                    continue;
+                };
                 named.push(name.clone());
-                about.push(with_changes(text, &changes(sensor.wrappers.iter())));
-            } else {
-                absent.push(name.clone());
+                about.push(if changes.is_empty() { (*text).to_owned() } else { format!("{text} With {changes}.") });
             }
-        }
-        let sensors = spans(named.drain(..).zip(sensor_channels));
-        for (motor, (name, text)) in document.motors.iter().zip(&source.names.motors) {
-            if motor.enabled {
-                named.push(name.clone());
-                about.push(with_changes(text, &changes(motor.wrappers.iter().rev())));
-            } else {
-                absent.push(name.clone());
-            }
-        }
-        let motors = spans(named.into_iter().zip(motor_channels));
+            spans(named.into_iter().zip(channels))
+        };
+        let sensors = document.sensors.iter().map(|sensor| sensor.enabled.then(|| changes(sensor.wrappers.iter())));
+        let sensors = spans(sensors.collect(), &source.names.sensors, sensor_channels);
+        let motors = document.motors.iter().map(|motor| motor.enabled.then(|| changes(motor.wrappers.iter().rev())));
+        let motors = spans(motors.collect(), &source.names.motors, motor_channels);
         let [inputs, outputs] = [&sensors, &motors].map(|spans| spans.last().map_or(0, |(_, [_, end])| *end));
         for (list, channels) in [("sensors", inputs), ("motors", outputs)] {
             if !(1..=MAX_CHANNELS).contains(&channels) {
@@ -61,12 +58,13 @@ impl NetworkSpec {
                 return Err(source.wrong(&format!("/{list}"), why));
             }
         }
-        let inputs = input_names(document, &sensors, source)?;
-        let outputs = output_names(document, &motors, source)?;
+        let of_sensors = document.sensors.iter().map(|sensor| (sensor.enabled, sensor.channels.as_deref(), &[][..]));
+        let inputs = channel_names("sensors", of_sensors, &sensors, source)?;
+        let of_motors = document.motors.iter();
+        let of_motors = of_motors.map(|motor| (motor.enabled, motor.channels.as_deref(), words(&motor.kind)));
+        let outputs = channel_names("motors", of_motors, &motors, source)?;
         let ends = Ends { inputs: &inputs, outputs: &outputs, sensors: &sensors, motors: &motors, absent: &absent };
-        let network = AnyNetwork::new(document, ends, source)?;
-        let parameters = network.parameters(&document.network, ends);
-        let given = network.given(&document.network, ends);
+        let (network, Named { parameters, given }) = AnyNetwork::new(document, ends, source)?;
         let searched = Searched::new(parameters, &given, &document.network, source)?;
         searched.check(&network, source)?;
         Ok(Self { sensors, motors, about, inputs, outputs, network, searched })
@@ -76,11 +74,6 @@ impl NetworkSpec {
     pub(crate) fn values(&self) -> usize {
         self.inputs.len() + self.outputs.len() + self.network.values()
     }
-}
-
-/// Appends the wrappers of a part to its description.
-fn with_changes(about: &str, changes: &str) -> String {
-    if changes.is_empty() { about.to_owned() } else { format!("{about} With {changes}.") }
 }
 
 /// Numbers the channels of parts.
@@ -93,48 +86,35 @@ fn spans(named: impl Iterator<Item = (String, usize)>) -> Spans {
     named.map(span).collect()
 }
 
-fn channel_names((name, [first, end]): &(String, [usize; 2])) -> Vec<String> {
-    match end - first {
-        1 => vec![name.clone()],
-        count => (1..=count).map(|number| format!("{name} {number}")).collect(),
+/// Returns the words for the channels of a motor, empty for numbers.
+fn words(kind: &MotorKind) -> &'static [&'static str] {
+    match kind {
+        MotorKind::Wheels {} => &["left", "right"],
+        MotorKind::SpeedAndTurn { .. } => &["speed", "turn"],
+        _ => &[],
     }
 }
 
-/// Names the inputs, by default with numbers.
-fn input_names(document: &Document, spans: &Spans, source: &Source) -> Result<Vec<String>, Error> {
-    let sensors = document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled).zip(spans);
-    let names = sensors.map(|((index, sensor), span)| {
-        given_names(sensor.channels.as_ref(), channel_names(span), &format!("/sensors/{index}/channels"), source)
-    });
-    Ok(names.collect::<Result<Vec<_>, _>>()?.concat())
-}
-
-/// Names the outputs. By default wheels have words instead of numbers.
-fn output_names(document: &Document, spans: &Spans, source: &Source) -> Result<Vec<String>, Error> {
-    let motors = document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled).zip(spans);
-    let names = motors.map(|((index, motor), span)| {
-        let with = |words: &[&str]| words.iter().map(|word| format!("{} {word}", span.0)).collect::<Vec<_>>();
-        let names = match &motor.kind {
-            MotorKind::Wheels {} => with(&["left", "right"]),
-            MotorKind::SpeedAndTurn { .. } => with(&["speed", "turn"]),
-            _ => channel_names(span),
-        };
-        given_names(motor.channels.as_ref(), names, &format!("/motors/{index}/channels"), source)
-    });
-    Ok(names.collect::<Result<Vec<_>, _>>()?.concat())
-}
-
-/// Returns the names that a document gives to channels, or the default names.
-fn given_names(
-    given: Option<&Vec<String>>,
-    names: Vec<String>,
-    path: &str,
+/// Names all channels of a list of parts: as the document does, or by words or numbers.
+fn channel_names<'d>(
+    list: &str,
+    parts: impl Iterator<Item = (bool, Option<&'d [String]>, &'d [&'d str])>,
+    spans: &Spans,
     source: &Source,
 ) -> Result<Vec<String>, Error> {
-    match given {
-        Some(given) if given.len() != names.len() => {
-            Err(source.wrong(path, format!("has {} names for {} channels", given.len(), names.len())))
+    let mut names = Vec::new();
+    let enabled = parts.enumerate().filter(|(_, (enabled, ..))| *enabled);
+    for ((index, (_, given, words)), (name, [first, end])) in enabled.zip(spans) {
+        match (given, end - first) {
+            (Some(given), count) if given.len() != count => {
+                let why = format!("has {} names for {count} channels", given.len());
+                return Err(source.wrong(&format!("/{list}/{index}/channels"), why));
+            }
+            (Some(given), _) => names.extend_from_slice(given),
+            (None, _) if !words.is_empty() => names.extend(words.iter().map(|word| format!("{name} {word}"))),
+            (None, 1) => names.push(name.clone()),
+            (None, count) => names.extend((1..=count).map(|number| format!("{name} {number}"))),
         }
-        given => Ok(given.cloned().unwrap_or(names)),
     }
+    Ok(names)
 }

@@ -58,9 +58,7 @@ impl Tally {
         }
         let during = reward.during.as_ref().map(|name| {
             let path = format!("{path}/during");
-            let index = names.iter().position(|other| other == name);
-            let index = index
-                .ok_or_else(|| Error::unknown(&source.of(&path), "term", name, names.iter().map(String::as_str)))?;
+            let index = source.position(names.iter().map(String::as_str), ("term", name), &path)?;
             if index >= number {
                 return Err(source.wrong(&path, format!("`{name}` has to stand before this term")));
             }

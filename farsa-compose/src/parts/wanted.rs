@@ -27,10 +27,7 @@ impl Wanted {
         source: &Source,
     ) -> Result<Self, Error> {
         let Condition { term, of, above, below } = condition;
-        let names_of = names.iter().map(String::as_str);
-        let place = source.of(&format!("{path}/term"));
-        let number = names.iter().position(|name| name == term);
-        let term = number.ok_or_else(|| Error::unknown(&place, "term", term, names_of))?;
+        let term = source.position(names.iter().map(String::as_str), ("term", term), &format!("{path}/term"))?;
         if above.is_none() && below.is_none() {
             return Err(source.wrong(path, "lacks `above` and `below`: one of them at least"));
         }
