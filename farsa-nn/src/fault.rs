@@ -21,6 +21,8 @@ pub enum ParameterFault {
     NotFinite,
     /// The parameter is a leak with this value, which is outside [0, 1].
     Leak(f32),
+    /// The parameter is a leak of this number of units of 2^-14, which is outside [0, 1]. It needs no floats.
+    QuantizedLeak(i16),
     /// The parameter is a weight that is too large for an integer network, even without fraction bits. The value
     /// includes the slope.
     Weight(f64),
@@ -40,6 +42,7 @@ impl fmt::Display for ParameterFault {
         match *self {
             Self::NotFinite => f.write_str(" is not finite"),
             Self::Leak(value) => write!(f, ", a leak, is {value}: outside [0, 1]"),
+            Self::QuantizedLeak(units) => Self::Leak(f32::from(units) / 16384.0).fmt(f),
             Self::Weight(value) => write!(f, " times the slope is {value}: outside [-32767, 32767]"),
             Self::TimeConstant { value, least } if value > 0.0 => write!(
                 f,

@@ -54,11 +54,11 @@ pub struct Network<M, P, S> {
 impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
     /// Checks layout, parameters and the length of the state, and builds a network at rest.
     pub(crate) fn at_rest(model: M, parameters: P, mut state: S) -> Result<Self, Error> {
-        model.check_model(parameters.as_ref(), |p| p)?;
-        Slice::State.check(model.state_len(), state.as_mut().len())?;
-        let mut network = Self { model, parameters, state, level: level() };
-        network.reset();
-        Ok(network)
+        // The checks see no copy of the network, so it moves once. More copies would take stack on boards.
+        match rest(&model, parameters.as_ref(), state.as_mut()) {
+            Ok(()) => Ok(Self { model, parameters, state, level: level() }),
+            Err(error) => Err(error),
+        }
     }
 
     /// Replaces the parameters and returns the previous ones. The state is not changed.
@@ -144,6 +144,15 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for Network<M, P, S> 
         let data = Data { parameters: parameters.as_ref(), state: state.as_mut(), level: *level };
         model.step(data, lesions, x, y);
     }
+}
+
+/// Checks layout, parameters and the length of the state, and resets the state.
+fn rest<M: Model>(model: &M, parameters: &[f32], state: &mut [f32]) -> Result<(), Error> {
+    model.check_model(parameters, |p| p)?;
+    Slice::State.check(model.state_len(), state.len())?;
+    state.fill(0.0);
+    model.prepare(parameters, state);
+    Ok(())
 }
 
 /// Checks the number of parameters, their finiteness, and the leaks, which begin at an index and end with the

@@ -220,12 +220,12 @@ fn construction_names_the_mistake() {
     assert_eq!(build(&[0; 5], &mut state[..2]), Some(Error::Length { slice: Slice::State, expected: 3, found: 2 }));
     assert_eq!(
         build(&[0, 0, 0, 0, 16385], &mut state),
-        Some(Error::Parameter { index: 4, fault: ParameterFault::Leak(16385.0 / 16384.0) })
+        Some(Error::Parameter { index: 4, fault: ParameterFault::QuantizedLeak(16385) })
     );
-    assert!(matches!(
-        build(&[0, 0, 0, 0, -1], &mut state),
-        Some(Error::Parameter { index: 4, fault: ParameterFault::Leak(_) })
-    ));
+    assert_eq!(
+        build(&[0, 0, 0, 0, -1], &mut state).map(|error| error.to_string()),
+        Some("parameter 4, a leak, is -0.000061035156: outside [0, 1]".into())
+    );
 
     let bits = |of, found, least, most| Err(Error::Layout(LayoutFault::FractionBits { of, found, least, most }));
     assert_eq!(QuantizedScale::new(16, 14, 20), bits("inputs", 16, 0, 15));

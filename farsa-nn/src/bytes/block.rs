@@ -195,10 +195,10 @@ impl<'a> Shape<'a> for BlockShape<'a> {
 
     const KIND: Kind = Kind::BlockNetwork;
 
-    fn read(shape: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
-        let [inputs, outputs, groups, blocks, leak, low, high, _] = shape;
+    fn read(shape: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [inputs, outputs, groups, blocks, leak, low, high, _] = *shape;
         let leak = variant(&Leak::ALL, 4, leak)?;
-        check_unused(&shape, 7)?;
+        check_unused(shape, 7)?;
         let [groups, blocks] = [groups, blocks].map(|count| count as usize);
         let expected = frame_len(description_len(groups, blocks).saturating_mul(4));
         let short = BytesError::Length { expected, found: frame_len(content.len()) };
@@ -219,7 +219,7 @@ impl<'a> Shape<'a> for BlockShape<'a> {
                 return Err(BytesError::shape(5 + at, found));
             }
         }
-        let read = Self { words: shape, leak, groups, blocks };
+        let read = Self { words: *shape, leak, groups, blocks };
         check_description(inputs as usize, outputs as usize, read.groups(), read.blocks())?;
         Ok((read, parameters))
     }

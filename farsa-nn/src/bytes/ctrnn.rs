@@ -68,8 +68,8 @@ impl<'a> Shape<'a> for CtrnnModel {
 
     const KIND: Kind = Kind::Ctrnn;
 
-    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
-        let [inputs, neurons, outputs, direct, first_output, integrator, activation, time_step] = words;
+    fn read(words: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [inputs, neurons, outputs, direct, first_output, integrator, activation, time_step] = *words;
         let integrator = variant(&Integrator::ALL, 5, integrator)?;
         let activation = variant(&Activation::ALL, 6, activation)?;
         let mut layout = CtrnnLayout::new(inputs as usize, neurons as usize, outputs as usize)

@@ -88,10 +88,10 @@ impl<'a> Shape<'a> for LeakyModel {
 
     const KIND: Kind = Kind::LeakyNetwork;
 
-    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
-        let [sensors, hidden, outputs, slope, leak, ..] = words;
+    fn read(words: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [sensors, hidden, outputs, slope, leak, ..] = *words;
         let leak = variant(&Leak::ALL, 4, leak)?;
-        check_unused(&words, 5)?;
+        check_unused(words, 5)?;
         let slope = finite(3, slope)?;
         let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
         Ok((Self { layout, leak }, content))

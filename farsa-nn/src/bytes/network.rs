@@ -61,7 +61,7 @@ pub trait Shape<'a>: Sized {
     ///
     /// # Errors
     /// Returns the first error that is found.
-    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError>;
+    fn read(words: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError>;
     /// Returns the words that encode the shape.
     fn words(&self) -> [u32; SHAPE];
     /// Returns the number of bytes of a network with this shape.
@@ -109,7 +109,7 @@ impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
     /// [`BytesError::Word`] or [`BytesError::Parameters`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
         let Frame { shape, channels, content } = Frame::open(S::KIND, bytes)?;
-        let (shape, parameters) = S::read(shape, content)?;
+        let (shape, parameters) = S::read(&shape, content)?;
         let (expected, found) = (shape.byte_count(), bytes.len());
         if expected != found {
             return Err(BytesError::Length { expected, found });

@@ -70,9 +70,9 @@ impl<'a> Shape<'a> for PerceptronModel {
 
     const KIND: Kind = Kind::Perceptron;
 
-    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
-        let [inputs, outputs, slope, ..] = words;
-        check_unused(&words, 3)?;
+    fn read(words: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [inputs, outputs, slope, ..] = *words;
+        check_unused(words, 3)?;
         let (inputs, outputs, slope) = (inputs as usize, outputs as usize, finite(2, slope)?);
         Ok((Self { inputs, outputs, slope }, content))
     }

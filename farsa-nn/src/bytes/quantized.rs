@@ -110,8 +110,8 @@ impl<'a> Shape<'a> for QuantizedShape {
 
     const KIND: Kind = Kind::QuantizedNetwork;
 
-    fn read(words: [u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
-        let [sensors, hidden, outputs, slope, leak, inputs, weights, sums] = words;
+    fn read(words: &[u32; SHAPE], content: &'a [u8]) -> Result<(Self, &'a [u8]), BytesError> {
+        let [sensors, hidden, outputs, slope, leak, inputs, weights, sums] = *words;
         if slope != 0 {
             return Err(BytesError::shape(3, slope));
         }

@@ -256,7 +256,7 @@ pub(crate) fn check<T: Copy>(
     Slice::Parameters.check(layout.parameter_count(), fixed.len())?;
     let leaks = fixed.iter().enumerate().skip(layout.range(LeakyParameter::Leak).start).map(|(i, d)| (i, value(*d)));
     if let Some((index, d)) = leaks.into_iter().find(|(_, d)| !(0..=1 << LEAK_BITS).contains(d)) {
-        return Err(ParameterFault::Leak(f32::from(d) / f32::from(1_i16 << LEAK_BITS)).at(index));
+        return Err(ParameterFault::QuantizedLeak(d).at(index));
     }
     scale.check_sums(layout, fixed, value)
 }

@@ -99,7 +99,7 @@ fn a_network_over_bytes_is_the_network_and_takes_others_while_it_runs() {
     let count = Error::Length { slice: Slice::Parameters, expected: COUNT, found: 1 };
     assert_eq!(own.copy_parameters(scale, &[0]), Err(count));
     assert_eq!(own.set_parameters(scale, vec![0]), Err(count));
-    let wrong = Error::Parameter { index: COUNT - 1, fault: ParameterFault::Leak(-1.0 / 16384.0) };
+    let wrong = Error::Parameter { index: COUNT - 1, fault: ParameterFault::QuantizedLeak(-1) };
     others[COUNT - 1] = -1;
     assert_eq!(own.copy_parameters(scale, &others), Err(wrong));
     assert_eq!(own.set_parameters(scale, others), Err(wrong));
@@ -128,10 +128,7 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert_eq!(hashed(52, 9), bits("sums", 9, 10, 20));
     assert_eq!(refused(&with(20, &[0])), BytesError::Length { expected: HEAD + 4, found: LEN });
     let leak = refused(&with(LEN - 6, &(-1_i16).to_le_bytes()));
-    assert_eq!(
-        leak,
-        BytesError::Parameters(Error::Parameter { index: 84, fault: ParameterFault::Leak(-1.0 / 16384.0) })
-    );
+    assert_eq!(leak, BytesError::Parameters(Error::Parameter { index: 84, fault: ParameterFault::QuantizedLeak(-1) }));
 }
 
 /// Weights whose sums could overflow are refused, so that the board's step needs no check.
@@ -206,7 +203,7 @@ fn nothing_is_written_that_would_not_be_read() {
     assert_eq!(short, Err(BytesError::Buffer { expected: LEN, found: LEN - 1 }));
     wrong[84] = 16_385;
     let error = QuantizedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out);
-    let leak = Error::Parameter { index: 84, fault: ParameterFault::Leak(16_385.0 / 16_384.0) };
+    let leak = Error::Parameter { index: 84, fault: ParameterFault::QuantizedLeak(16_385) };
     assert_eq!(error, Err(BytesError::Parameters(leak)));
     assert_eq!(out, [3; LEN]);
 }
