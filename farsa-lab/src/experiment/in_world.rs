@@ -99,7 +99,7 @@ type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn LaneRunner<R>>, Error> + 
 pub struct InWorld<W, R> {
     world: W,
     rollout: R,
-    /// Most steps of an episode, once one was run.
+    /// Most steps of an episode. `None` after the episode was changed.
     budget: Option<u64>,
     make: Option<Make<R>>,
     lanes: Option<Box<dyn LaneRunner<R>>>,
@@ -109,12 +109,15 @@ pub struct InWorld<W, R> {
     apply: Option<Apply<W>>,
 }
 
-impl<W, R> InWorld<W, R> {
+impl<W, R: Rollout> InWorld<W, R> {
     /// Evaluates this episode in this world.
     pub fn new(world: W, rollout: R) -> Self {
-        Self { world, rollout, budget: None, make: None, lanes: None, place: None, apply: None }
+        let budget = Some(rollout.info().step_budget());
+        Self { world, rollout, budget, make: None, lanes: None, place: None, apply: None }
     }
+}
 
+impl<W, R> InWorld<W, R> {
     /// And side by side in batches that `batch` makes of the world's description.
     #[must_use]
     pub fn with_lanes<B>(mut self, batch: impl Fn(Lanes) -> Result<B, Error> + Send + 'static) -> Self
