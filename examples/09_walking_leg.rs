@@ -1,4 +1,4 @@
-//! A central pattern generator for a leg: three continuous-time neurons evolve to walk without any sensor.
+//! A central pattern generator for a leg: three continuous-time neurons evolve to walk without a sensor.
 //!
 //! `cargo run --example 09_walking_leg [generations]`
 
@@ -20,7 +20,7 @@ const STEPS: u32 = 2500;
 struct Walker {
     place: f64,
     velocity: f64,
-    /// Position of the foot, also relative to the hip.
+    /// Position of the foot: along the ground, and below the hip.
     foot: Option<[f64; 2]>,
     /// Angle of the leg, from straight down to the front \[rad\].
     angle: f64,
@@ -31,23 +31,22 @@ impl Walker {
     const LEG: f64 = 15.0;
     const FORCE: f64 = 0.05;
     const TORQUE: f64 = 0.5;
-    /// A body farther ahead of its foot than this is held fast.
+    /// The largest distance of the body ahead of its foot. Beyond it the body stops.
     const REACH: f64 = 20.0;
 
-    /// Steps with outputs from 0 to 1. The foot is down from 1/2 on. A backward push of the body turns a swinging leg back.
+    /// Advances by outputs in [0, 1]. The foot is down from 1/2 on. Else the body stops and a backward push swings the leg forward.
     fn step(&mut self, [foot, forwards, backwards]: [f64; 3]) {
         let force = Self::FORCE * (forwards - backwards);
         if foot > 0.5 {
             let (sine, cosine) = sin_cos(self.angle);
             let [foot, height] = *self.foot.get_or_insert([self.place + Self::LEG * sine, Self::LEG * cosine]);
-            // Out of its range the leg pushes only back into it.
+            // Outside its range the leg pushes only back into it.
             let pushes = self.angle.abs() <= FRAC_PI_6 || (self.angle < 0.0) == (force < 0.0);
             self.velocity = (self.velocity + if pushes { STEP * force } else { 0.0 }).clamp(-6.0, 6.0);
             self.place += STEP * self.velocity;
             (self.angle, self.turning) = (atan2(foot - self.place, height), 0.0);
             self.velocity = if self.place - foot > Self::REACH { 0.0 } else { self.velocity };
         } else {
-            // Without support the body stops.
             (self.foot, self.velocity) = (None, 0.0);
             self.turning = (self.turning - STEP * Self::TORQUE * force).clamp(-1.0, 1.0);
             let turned = self.angle + STEP * self.turning;
@@ -69,8 +68,8 @@ impl Walker {
     }
 }
 
-/// The best that this body can: push to the end of the leg's range, glide to the end of its reach, swing at full force.
-fn perfect(walker: &Walker) -> [f64; 3] {
+/// The optimal outputs: push to the end of the leg's range, glide to the end of its reach, swing at full force.
+fn optimal(walker: &Walker) -> [f64; 3] {
     match walker.foot {
         Some([foot, _]) if walker.place - foot <= Walker::REACH => [1.0, 1.0, 0.0],
         None if walker.angle >= FRAC_PI_6 => [1.0, 1.0, 0.0],
@@ -80,7 +79,7 @@ fn perfect(walker: &Walker) -> [f64; 3] {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let generations: u32 = std::env::args().nth(1).map_or(Ok(120), |text| text.parse())?;
-    // Weights, biases from the centre-crossing ones, time constants.
+    // Weights, offsets from the center-crossing biases, time constants.
     let ranges = [GeneRange::new(9, -16.0, 16.0)?, GeneRange::new(3, -4.0, 4.0)?, GeneRange::new(3, 0.5, 10.0)?];
     let mut network = Ctrnn::new(LAYOUT, STEP as f32, [1.0; LAYOUT.parameter_count()], [0.0; LAYOUT.state_len()])?;
     let mut walk = |genes: &[u16]| -> Result<(f64, u32), Box<dyn Error>> {
@@ -100,14 +99,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             y.map(f64::from)
         }))
     };
-    let best = Walker::walk(200_000, perfect).0;
+    let best = Walker::walk(200_000, optimal).0;
     println!("the best possible mean velocity of this body is {best:.3}");
-    // In closed form: 15 at an acceleration of 0.05, 12.5 at the velocity reached, and a turn of pi/3 at 0.025.
+    // Closed form: 15 at an acceleration of 0.05, then 12.5 at constant velocity, and a turn of pi/3 at 0.025.
     assert!((best - 27.5 / (24.495 + 10.206 + 9.153)).abs() < 5e-3);
     let mut evolution = TruncationGa::new(GaConfig::new(15), 1)?;
     for generation in 0..generations {
-        let walked: Result<Vec<_>, _> = evolution.ask().iter().map(&mut walk).collect();
-        let fitness: Vec<Fitness> = walked?.iter().map(|walked| Fitness::nan_as_failed(walked.0)).collect();
+        let walks: Result<Vec<_>, _> = evolution.ask().iter().map(&mut walk).collect();
+        let fitness: Vec<Fitness> = walks?.iter().map(|(velocity, _)| Fitness::nan_as_failed(*velocity)).collect();
         let summary = Statistics::from_fitness(&fitness).ok_or(EvoError::NoBest { generation: 0 })?;
         if generation % generations.div_ceil(8) == 0 || generation + 1 == generations {
             let (velocity, footfalls) = walk(evolution.ask().get(summary.best_index).unwrap_or_default())?;
