@@ -40,7 +40,7 @@ pub fn layout(velocities: bool, hidden: u32) -> BlockLayout<'static> {
 }
 
 /// Returns the order of the parameters by neuron, and the number of weights of a neuron. This is useful for strategies
-/// such as CoSyNE that keep the weights of a neuron together. Each element of the order is an index into the parameters
+/// such as `CoSyNE` that keep the weights of a neuron together. Each element of the order is an index into the parameters
 /// of the layout.
 pub fn neuron_order(velocities: bool, hidden: u32) -> (Vec<usize>, usize) {
     let layout = layout(velocities, hidden);
