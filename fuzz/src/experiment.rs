@@ -70,7 +70,7 @@ struct Trial {
 }
 
 static BEHAVIOUR: NotedBehavior =
-    NotedBehavior { objectives: &[("distance", -1.0)], descriptors: &[("first", [0.0, 1.0]), ("second", [0.0, 1.0])] };
+    NotedBehavior { objectives: &[("distance", -1.0)], measures: &[("first", [0.0, 1.0]), ("second", [0.0, 1.0])] };
 
 impl Task for Trial {
     fn info(&self) -> TaskInfo {

@@ -55,7 +55,7 @@ impl Behavior for TermBehaviour {
         self.objectives.iter().map(named).collect()
     }
 
-    fn descriptors(&self) -> Vec<Parameter> {
+    fn measures(&self) -> Vec<Parameter> {
         self.descriptors.clone()
     }
 

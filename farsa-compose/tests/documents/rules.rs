@@ -346,7 +346,7 @@ fn behaviours_are_measures_of_terms() {
     let mean = |name: &str| trials.iter().map(|trial| note(trial, name)).sum::<f64>() / 2.0;
     let behaviour = task.behavior().expect("a behaviour");
     assert_eq!(behaviour.objectives(), ["minus energy"]);
-    assert_eq!(behaviour.descriptors()[0].ends, [0.0, 60.0]);
+    assert_eq!(behaviour.measures()[0].ends, [0.0, 60.0]);
     assert_eq!(behaviour.describe(&trials), [-mean("energy"), mean("alive")]);
     assert!(mean("alive") > 1.0);
     let wrong = text.replace("range = [0, 60]", "range = [60, 0]");

@@ -116,7 +116,7 @@ impl Rollout for GraspTask {
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("highest [cm]", 1.0), ("distance [cm]", -1.0)],
-    descriptors: &[("highest [cm]", [0.0, 40.0]), ("distance [cm]", [0.0, 40.0])],
+    measures: &[("highest [cm]", [0.0, 40.0]), ("distance [cm]", [0.0, 40.0])],
 };
 
 impl GraspTask {

@@ -27,7 +27,7 @@ pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error>
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("way of the box [m]", -1.0)],
-    descriptors: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
+    measures: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
 };
 
 impl PushEpisode<Layer> {

@@ -152,7 +152,7 @@ impl Rollout for ReachTask {
 /// Objectives and measures of an individual, for strategies that use more than its fitness.
 static BEHAVIOUR: NotedBehavior = NotedBehavior {
     objectives: &[("held [s]", 1.0), ("highest [cm]", 1.0)],
-    descriptors: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
+    measures: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
 };
 
 impl ReachTask {

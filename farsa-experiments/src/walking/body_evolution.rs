@@ -371,7 +371,7 @@ impl Behavior for Walkers {
         vec![format!("minus {WORK}")]
     }
 
-    fn descriptors(&self) -> Vec<Parameter> {
+    fn measures(&self) -> Vec<Parameter> {
         let [legs, _, _, _, _, soles, ..] = self.config.ranges;
         vec![Parameter::new(LEGS, legs), Parameter::new(SOLES, soles)]
     }

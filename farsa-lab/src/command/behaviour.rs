@@ -13,12 +13,13 @@ pub(crate) struct BehaviourInfo {
     /// The objectives of multi-objective strategies, the fitness first.
     objectives: Vec<String>,
     /// The measures of behavior.
-    descriptors: Vec<DescriptorInfo>,
+    #[serde(rename = "descriptors")]
+    measures: Vec<MeasureInfo>,
 }
 
 /// A measure of behavior and its range.
 #[derive(Serialize)]
-struct DescriptorInfo {
+struct MeasureInfo {
     name: String,
     range: [f64; 2],
 }
@@ -27,11 +28,11 @@ impl BehaviourInfo {
     /// Returns the objectives and measures of an experiment, if any.
     pub(crate) fn new(behaviour: Option<&dyn Behavior>) -> Self {
         let others = behaviour.map(Behavior::objectives).unwrap_or_default();
-        let descriptors = behaviour.map(Behavior::descriptors).unwrap_or_default();
-        let descriptor = |Parameter { name, ends }| DescriptorInfo { name, range: ends };
+        let measures = behaviour.map(Behavior::measures).unwrap_or_default();
+        let measure = |Parameter { name, ends }| MeasureInfo { name, range: ends };
         Self {
             objectives: ["fitness".into()].into_iter().chain(others).collect(),
-            descriptors: descriptors.into_iter().map(descriptor).collect(),
+            measures: measures.into_iter().map(measure).collect(),
         }
     }
 
@@ -42,11 +43,11 @@ impl BehaviourInfo {
         if self.objectives.len() > 1 {
             let _ = writeln!(text, "objectives: {}", self.objectives.join(", "));
         }
-        if !self.descriptors.is_empty() {
+        if !self.measures.is_empty() {
             let named = self
-                .descriptors
+                .measures
                 .iter()
-                .map(|DescriptorInfo { name, range: [low, high] }| format!("{name} {low:?} to {high:?}"));
+                .map(|MeasureInfo { name, range: [low, high] }| format!("{name} {low:?} to {high:?}"));
             let _ = writeln!(text, "behaviour: {}", named.collect::<Vec<_>>().join(", "));
         }
         text

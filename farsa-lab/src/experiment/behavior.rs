@@ -16,7 +16,7 @@ pub trait Behavior {
 
     /// Returns the measures of a behavior, each with the range from low to high that an archive divides. A value beyond
     /// it counts as the nearest end. By default none.
-    fn descriptors(&self) -> Vec<Parameter> {
+    fn measures(&self) -> Vec<Parameter> {
         Vec::new()
     }
 
@@ -33,7 +33,7 @@ pub trait Behavior {
 ///
 /// static WALK: NotedBehavior = NotedBehavior {
 ///     objectives: &[("work [J]", -1.0)],
-///     descriptors: &[("left foot on the ground", [0.0, 1.0])],
+///     measures: &[("left foot on the ground", [0.0, 1.0])],
 /// };
 /// let trial = |work: f64, share: f64| Outcome {
 ///     notes: vec![("work [J]", work.into()), ("left foot on the ground", share.into())],
@@ -46,8 +46,8 @@ pub trait Behavior {
 pub struct NotedBehavior {
     /// The notes that are objectives, with 1 where more is better and -1 where less is.
     pub objectives: &'static [(&'static str, f64)],
-    /// The notes that describe a behaviour, with their ranges, low to high.
-    pub descriptors: &'static [(&'static str, [f64; 2])],
+    /// The notes that are measures, with their ranges, low to high.
+    pub measures: &'static [(&'static str, [f64; 2])],
 }
 
 impl Behavior for NotedBehavior {
@@ -56,13 +56,13 @@ impl Behavior for NotedBehavior {
         self.objectives.iter().map(named).collect()
     }
 
-    fn descriptors(&self) -> Vec<Parameter> {
-        self.descriptors.iter().map(|(note, ends)| Parameter::new(*note, *ends)).collect()
+    fn measures(&self) -> Vec<Parameter> {
+        self.measures.iter().map(|(note, ends)| Parameter::new(*note, *ends)).collect()
     }
 
     fn describe(&self, trials: &[Outcome]) -> Vec<f64> {
         let objectives = self.objectives.iter().map(|(note, sign)| sign * mean_of_note(trials, note));
-        objectives.chain(self.descriptors.iter().map(|(note, _)| mean_of_note(trials, note))).collect()
+        objectives.chain(self.measures.iter().map(|(note, _)| mean_of_note(trials, note))).collect()
     }
 }
 

@@ -15,20 +15,20 @@ use crate::strategy::any_strategy::AnyStrategy;
 pub(crate) struct CollectionTable {
     /// The objectives, the fitness first.
     objectives: Vec<String>,
-    descriptors: Vec<Parameter>,
+    measures: Vec<Parameter>,
 }
 
 impl CollectionTable {
     /// Creates the table of a strategy with an archive or front, and `None` for another.
     pub(crate) fn new(search: &AnyStrategy, evaluator: &dyn Evaluator) -> Option<Self> {
         search.collection()?;
-        let ScoreShape { objectives, measures: descriptors, .. } = search.score_shape();
+        let ScoreShape { objectives, measures, .. } = search.score_shape();
         let behaviour = evaluator.behavior();
         let others = behaviour.map(Behavior::objectives).unwrap_or_default();
-        let values = behaviour.map(Behavior::descriptors).unwrap_or_default();
+        let values = behaviour.map(Behavior::measures).unwrap_or_default();
         Some(Self {
             objectives: ["fitness".into()].into_iter().chain(others).take(objectives).collect(),
-            descriptors: values.into_iter().take(descriptors).collect(),
+            measures: values.into_iter().take(measures).collect(),
         })
     }
 
@@ -51,7 +51,7 @@ impl CollectionTable {
     /// Writes a line for each member, with the numbers for `farsa replay`.
     fn csv(&self, members: &[Member<'_>]) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let names = self.objectives.iter().chain(self.descriptors.iter().map(|value| &value.name));
+        let names = self.objectives.iter().chain(self.measures.iter().map(|value| &value.name));
         writer.write_record(["cell", "generation", "individual"].into_iter().chain(names.map(String::as_str)))?;
         for member in members {
             let cell = member.cell.map_or_else(String::new, |cell| cell.to_string());
@@ -66,7 +66,7 @@ impl CollectionTable {
     /// Draws the first two measures, or one and the fitness, or the first two objectives.
     fn picture(&self, members: &[Member<'_>], title: &str) -> String {
         let mut axes: Vec<(&str, Option<[f64; 2]>)> =
-            self.descriptors.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
+            self.measures.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
         axes.extend(self.objectives.iter().map(|name| (name.as_str(), None)));
         let place = |member: &Member<'_>| {
             let mut numbers = member.measures.iter().chain(member.objectives).copied();

@@ -169,7 +169,7 @@ fn row(
         let names: Vec<String> = behaviour
             .objectives()
             .into_iter()
-            .chain(behaviour.descriptors().into_iter().map(|measure| measure.name))
+            .chain(behaviour.measures().into_iter().map(|measure| measure.name))
             .collect();
         let described = behaviour.describe(trials);
         let (expected, found) = (names.len(), described.len());

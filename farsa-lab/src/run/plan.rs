@@ -159,7 +159,7 @@ impl<'e> Plan<'e> {
         let TaskInfo { populations, parameters, trials, .. } = task.info();
         let (populations, genes) = (populations.len(), parameters.len());
         let (objectives, ranges) = task.behavior().map_or((1, Vec::new()), |behaviour| {
-            let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
+            let ranges: Vec<[f64; 2]> = behaviour.measures().iter().map(|value| value.ends).collect();
             (1 + behaviour.objectives().len(), ranges)
         });
         drop(task);
@@ -173,7 +173,7 @@ impl<'e> Plan<'e> {
             genes,
             gene_bits: self.experiment.gene_bits(),
             objectives,
-            descriptors: &ranges,
+            measures: &ranges,
             settings: &self.settings,
             seed: self.seed,
             evaluator: &|| self.evaluator(),

@@ -94,8 +94,8 @@ pub struct StrategyStart<'s> {
     pub gene_bits: u32,
     /// Objectives that the experiment names, the fitness among them.
     pub objectives: usize,
-    /// The range, low to high, of each value that the experiment describes a behaviour by.
-    pub descriptors: &'s [[f64; 2]],
+    /// Ranges of the measures of behavior, low to high.
+    pub measures: &'s [[f64; 2]],
     /// The settings of the run.
     pub settings: &'s Settings,
     /// The seed of the run.
@@ -107,12 +107,12 @@ pub struct StrategyStart<'s> {
 }
 
 impl StrategyStart<'_> {
-    /// The ranges of the values that describe a behaviour, for a strategy of this name.
+    /// Returns the ranges of the measures, for a strategy of this name.
     ///
     /// # Errors
-    /// [`Error::Other`] for an experiment that describes none.
-    pub fn wanted_descriptors(&self, strategy: &str) -> Result<&[[f64; 2]], Error> {
-        match self.descriptors {
+    /// [`Error::Other`] for an experiment without measures.
+    pub fn wanted_measures(&self, strategy: &str) -> Result<&[[f64; 2]], Error> {
+        match self.measures {
             [] => Err(Error::Other(format!("says nothing of behaviour, which `{strategy}` wants"))),
             ranges => Ok(ranges),
         }

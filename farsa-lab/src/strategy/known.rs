@@ -86,7 +86,7 @@ mod tests {
                     genes: 5,
                     gene_bits: 16,
                     objectives: 2,
-                    descriptors: &[[0.0, 1.0], [-3.0, 5.0]],
+                    measures: &[[0.0, 1.0], [-3.0, 5.0]],
                     settings: &settings,
                     seed: 3,
                     limits: Limits::DEFAULT,

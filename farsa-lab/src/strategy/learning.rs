@@ -208,7 +208,7 @@ mod tests {
             genes,
             gene_bits,
             objectives: 1,
-            descriptors: &[],
+            measures: &[],
             settings: &settings,
             seed,
             evaluator: &evaluator,

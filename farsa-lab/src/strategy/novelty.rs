@@ -26,7 +26,7 @@ pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
         table
     },
     start: |start| {
-        let ranges = start.wanted_descriptors("novelty-search")?;
+        let ranges = start.wanted_measures("novelty-search")?;
         let units: Vec<f64> = ranges.iter().map(|[low, high]| high - low).collect();
         let novelty = NoveltyConfig {
             neighbors: start.settings.count(NEIGHBOURS)?,

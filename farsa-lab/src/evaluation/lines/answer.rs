@@ -63,7 +63,7 @@ impl<'d> Introduction<'d> {
             trials: evaluator.info().trials,
             terms: evaluator.info().terms,
             objectives: behaviour.map(Behavior::objectives).unwrap_or_default(),
-            behaviour: behaviour.map(Behavior::descriptors).unwrap_or_default().iter().map(Ranged::from).collect(),
+            behaviour: behaviour.map(Behavior::measures).unwrap_or_default().iter().map(Ranged::from).collect(),
             longest_line,
             parameters: wanted.parameters.iter().map(Ranged::from).collect(),
         }
@@ -147,8 +147,7 @@ impl IndividualResult {
         };
         let described = evaluator.behavior();
         let objectives = described.map(Behavior::objectives).unwrap_or_default();
-        let behaviour =
-            described.map(Behavior::descriptors).unwrap_or_default().into_iter().map(|measure| measure.name);
+        let behaviour = described.map(Behavior::measures).unwrap_or_default().into_iter().map(|measure| measure.name);
         let mut row = row.into_iter();
         let fitness = row.next();
         let objectives = Named(objectives.into_iter().zip(row.by_ref()).collect());

@@ -83,9 +83,9 @@ fn answer<'w>(
 ) -> Result<Answer<'w>, Error> {
     let Request { id, seed, generation, individual, parameters, evaluated } = request;
     let behaviour = pool.evaluator().behavior();
-    let (objectives, descriptors) =
-        behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
-    let shape = ScoreShape::new(1 + objectives, descriptors);
+    let (objectives, measures) =
+        behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.measures().len()));
+    let shape = ScoreShape::new(1 + objectives, measures);
     let trials = pool.info().trials;
     let mut results: Vec<(&str, Vec<IndividualResult>)> = Vec::new();
     for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {

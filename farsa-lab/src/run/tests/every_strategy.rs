@@ -215,7 +215,7 @@ impl Behavior for Described {
     fn objectives(&self) -> Vec<String> {
         vec!["speed".into()]
     }
-    fn descriptors(&self) -> Vec<Parameter> {
+    fn measures(&self) -> Vec<Parameter> {
         vec![Parameter::new("place", [0.0, 1.0])]
     }
     fn describe(&self, _: &[Outcome]) -> Vec<f64> {

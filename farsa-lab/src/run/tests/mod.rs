@@ -128,10 +128,8 @@ impl Task for Numbers {
 }
 
 /// The second gene has to match another number, too. The genes are the behavior.
-static BEHAVIOUR: NotedBehavior = NotedBehavior {
-    objectives: &[("to 200", -1.0)],
-    descriptors: &[("first", [0.0, 255.0]), ("second", [0.0, 255.0])],
-};
+static BEHAVIOUR: NotedBehavior =
+    NotedBehavior { objectives: &[("to 200", -1.0)], measures: &[("first", [0.0, 255.0]), ("second", [0.0, 255.0])] };
 
 /// Moves integer genes half way to 100 and 7, with a small difference.
 impl Learner for Numbers {

@@ -95,7 +95,7 @@ pub(in crate::strategy) static CMA_ME: SimpleStrategy = SimpleStrategy {
 
 /// A search over the cells that the settings divide the experiment's descriptor into.
 fn search(start: &StrategyStart<'_>, name: &str, config: &MapElitesConfig) -> Result<AnyStrategy, Error> {
-    let (ranges, cells) = (start.wanted_descriptors(name)?, start.settings.count(CELLS)?);
+    let (ranges, cells) = (start.wanted_measures(name)?, start.settings.count(CELLS)?);
     let refused = |error: farsa_evo::EvoError| Error::setting(CELLS, error);
     if start.settings.word(DIVISION)? == "cvt" {
         let cells = CvtCells::new(cells, ranges, POINTS.saturating_mul(cells), start.seed).map_err(refused)?;
