@@ -5,8 +5,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use farsa_experiments::MinimalCognition;
-use farsa_experiments::minimal_cognition::{AgentEpisode, Config, Object, Wiring};
+use farsa_experiments::minimal_cognition::{AgentEpisode, Config, MinimalCognition, Object, Wiring};
 use farsa_lab::advanced::{Genotype, read_genotypes};
 use farsa_lab::{EpisodeId, Experiment as _};
 

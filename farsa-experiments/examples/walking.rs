@@ -4,8 +4,8 @@
 //! Lengths are in legs, masses in hips, times in sqrt(leg length / gravity).
 
 use farsa_body::ports::World as _;
-use farsa_experiments::WalkingModel;
-use farsa_experiments::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerEpisode};
+use farsa_experiments::walking::WalkingModel;
+use farsa_experiments::walking::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerEpisode};
 use farsa_lab::{Episode as _, EpisodeId};
 use farsa_num::Scalar;
 use farsa_physics::articulated::World;

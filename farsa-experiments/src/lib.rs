@@ -13,27 +13,14 @@ pub mod push_box;
 pub mod reach_grasp_lift;
 mod smooth;
 mod strategy;
-mod walking;
+pub mod walking;
 mod wheeled;
 mod worlds;
 
-pub use compositional_instructions::CompositionalInstructions;
-pub use double_pole::DoublePole;
 pub use embedded::{
     AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING, PREDATOR_PREY,
 };
 pub use farsa_compose::Reflex;
-pub use icub_reach::IcubReach;
-pub use icub_reach_grasp::IcubReachGrasp;
-pub use kinesthetic_grasp::KinestheticGrasp;
-pub use minimal_cognition::MinimalCognition;
-pub use push_box::PushBox;
-pub use reach_grasp_lift::ReachGraspLift;
-pub use walking::body_evolution;
-pub use walking::body_evolution::BodyEvolution;
-pub use walking::passive_walker;
-pub use walking::passive_walker::PassiveWalker;
-pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// Returns the laboratory of the `farsa` command with all experiments, all strategies and support for experiment files.
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
@@ -49,21 +36,21 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
 /// Returns all experiments in the order of the `farsa list` command.
 pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
     [
-        &ReachGraspLift,
-        &CompositionalInstructions,
-        &IcubReach,
-        &IcubReachGrasp,
-        &KinestheticGrasp,
+        &reach_grasp_lift::ReachGraspLift,
+        &compositional_instructions::CompositionalInstructions,
+        &icub_reach::IcubReach,
+        &icub_reach_grasp::IcubReachGrasp,
+        &kinesthetic_grasp::KinestheticGrasp,
         &DISCRIMINATION,
         &DISCRIMINATION_CYLINDERS,
         &BRAITENBERG,
-        &MinimalCognition,
-        &DoublePole,
+        &minimal_cognition::MinimalCognition,
+        &double_pole::DoublePole,
         &FORAGING,
         &AGGREGATION,
         &PREDATOR_PREY,
-        &PushBox,
-        &PassiveWalker,
-        &BodyEvolution,
+        &push_box::PushBox,
+        &walking::passive_walker::PassiveWalker,
+        &walking::body_evolution::BodyEvolution,
     ]
 }

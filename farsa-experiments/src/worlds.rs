@@ -70,7 +70,7 @@ mod tests {
     #[cfg(not(feature = "rapier"))]
     #[test]
     fn a_program_without_rapier_says_how_to_get_it() {
-        for experiment in [&crate::ReachGraspLift as &dyn Experiment, &crate::DISCRIMINATION] {
+        for experiment in [&crate::reach_grasp_lift::ReachGraspLift as &dyn Experiment, &crate::DISCRIMINATION] {
             let condition = experiment.conditions()[0];
             let mut settings = Settings::new(experiment.settings(condition)).unwrap();
             settings.set("", ENGINE, Value::Word("rapier".into())).unwrap();

@@ -3,8 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::ports::Kinematics as _;
-use farsa_experiments::PushBox;
-use farsa_experiments::push_box::{HomingPusher, PushConfig, PushEpisode, PushTrial};
+use farsa_experiments::push_box::{HomingPusher, PushBox, PushConfig, PushEpisode, PushTrial};
 use farsa_lab::advanced::{Value, run_episode};
 use farsa_lab::{EpisodeId, Experiment as _, Settings};
 use farsa_nn::{Controller, Perceptron};

@@ -16,7 +16,7 @@ use farsa_lab::exports::Exports;
 use farsa_lab::strategy::{Learning, StrategyDefinition};
 use farsa_lab::{Error, Evaluation, Evaluator, Experiment, InWorld, Outcome, Setting, Settings, Task, TaskInfo};
 
-/// Trains the network of [`reach-grasp-lift`](crate::ReachGraspLift) with demonstrations of the task.
+/// Trains the network of [`reach-grasp-lift`](crate::reach_grasp_lift::ReachGraspLift) with demonstrations of the task.
 ///
 /// The robot, the sensors, the motors, the trials and the fitness are those of `reach-grasp-lift` with labels. Instead
 /// of evolving a population, this experiment trains a single network. A scripted grasp guides the arm through the

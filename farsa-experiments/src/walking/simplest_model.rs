@@ -33,12 +33,12 @@ pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 /// bisection.
 ///
 /// ```
-/// use farsa_experiments::WalkingModel;
+/// use farsa_experiments::walking::WalkingModel;
 ///
 /// let gait = WalkingModel::new(0.009)?.gait().unwrap();
 /// assert!((gait.angle - 0.200311).abs() < 1e-6);
 /// assert!(gait.largest_multiplier() < 1.0);
-/// # Ok::<(), farsa_experiments::SlopeError>(())
+/// # Ok::<(), farsa_experiments::walking::SlopeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkingModel {

@@ -1,7 +1,6 @@
 //! `double-pole`: its equations of motion compared with others, its constants, its trials.
 
-use farsa_experiments::DoublePole;
-use farsa_experiments::double_pole::{Cart, CartEpisode, CartState, Config, Pole, layout};
+use farsa_experiments::double_pole::{Cart, CartEpisode, CartState, Config, DoublePole, Pole, layout};
 use farsa_lab::advanced::Value;
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Settings};
 use farsa_view::Recording;

@@ -1,8 +1,7 @@
 //! A few iterations of `kinesthetic-grasp`: the arm is guided to a grasp, the network comes nearer to what its motors
 //! should do, and both are the same for every caller.
 
-use farsa_experiments::KinestheticGrasp;
-use farsa_experiments::kinesthetic_grasp::{Config, Trainee, Training};
+use farsa_experiments::kinesthetic_grasp::{Config, KinestheticGrasp, Trainee, Training};
 use farsa_experiments::reach_grasp_lift::Config as Reach;
 use farsa_lab::advanced::{Genotype, Iteration, Learner, Value};
 use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator as _, Experiment as _, Settings, Task as _};

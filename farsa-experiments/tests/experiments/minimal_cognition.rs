@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use farsa_experiments::MinimalCognition;
-use farsa_experiments::minimal_cognition::{AgentEpisode, Config, INNER, MOTORS, NEURONS, Object, RAYS, Wiring};
+use farsa_experiments::minimal_cognition::{
+    AgentEpisode, Config, INNER, MOTORS, MinimalCognition, NEURONS, Object, RAYS, Wiring,
+};
 use farsa_lab::advanced::{Genotype, Value, read_genotypes};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, Note, Outcome, Settings};
 use farsa_num::{Domain, Stream, logistic};

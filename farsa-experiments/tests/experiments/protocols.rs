@@ -2,7 +2,9 @@
 
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
-use farsa_experiments::{FORAGING, MinimalCognition, ReachGraspLift};
+use farsa_experiments::FORAGING;
+use farsa_experiments::minimal_cognition::MinimalCognition;
+use farsa_experiments::reach_grasp_lift::ReachGraspLift;
 use farsa_lab::advanced::{CaseId, Genotype, Lanes, Protocol, Value};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};

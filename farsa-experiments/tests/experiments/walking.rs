@@ -3,12 +3,13 @@
 #[cfg(feature = "rapier")]
 use farsa_body::ports::Contacts as _;
 use farsa_body::ports::{Arrange as _, Joints as _, World as _};
+use farsa_experiments::walking::body_evolution::BodyEvolution;
 #[cfg(feature = "rapier")]
-use farsa_experiments::passive_walker::Pace;
-use farsa_experiments::passive_walker::{
+use farsa_experiments::walking::passive_walker::Pace;
+use farsa_experiments::walking::passive_walker::PassiveWalker;
+use farsa_experiments::walking::passive_walker::{
     Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerEpisode, WalkerParts,
 };
-use farsa_experiments::{BodyEvolution, PassiveWalker};
 use farsa_lab::advanced::{Genotype, Value, run_episode, run_in_lanes};
 use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
