@@ -10,9 +10,6 @@ use crate::escaped::Quoted;
 use crate::experiment::intervention::{Intervention, input_ranges};
 use crate::experiment::outcome::Description;
 
-/// Most bytes of a list of changes.
-const MAX_LIST_BYTES: usize = 10_000;
-
 /// The parts of a controller that a test can change, by name: what `farsa test --lesion` understands.
 ///
 /// A list such as `neuron:3,link:2-5,sensor:touch` names what is changed together:
@@ -126,9 +123,6 @@ impl Anatomy {
     /// [`Error::Setting`] with the nearest name, [`Error::Usage`] for an invalid change and a missing or invalid
     /// number.
     pub fn intervention(&self, list: &str) -> Result<Intervention, Error> {
-        if list.len() > MAX_LIST_BYTES {
-            return Err(Error::Usage(format!("--lesion: a list of {} bytes, at most {MAX_LIST_BYTES}", list.len())));
-        }
         let mut sum = Intervention::default();
         for change in list.split(',') {
             self.add(change.trim(), &mut sum)?;

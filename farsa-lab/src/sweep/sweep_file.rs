@@ -11,8 +11,6 @@ use crate::strategy::settings::STRATEGY;
 
 /// The largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
-/// The largest number of settings that vary.
-const MAX_VARYING: usize = 64;
 
 /// A configuration in which some settings have several values.
 #[derive(Debug)]
@@ -127,9 +125,6 @@ impl Added {
                 })?;
                 if values.is_empty() {
                     return Err(wrong(&key, "has no value"));
-                }
-                if self.grid.len() + self.list.len() == MAX_VARYING {
-                    return Err(wrong(&key, &format!("is one setting too many: at most {MAX_VARYING} vary")));
                 }
                 if table == "grid" { &mut self.grid } else { &mut self.list }.push((key, values));
                 Ok(true)
