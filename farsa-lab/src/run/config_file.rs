@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::{Error, FileFault};
+use crate::error::Error;
 use crate::escaped::{CUT, MAX_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
 use crate::store::bounded;
@@ -51,11 +51,7 @@ impl ConfigFile {
     /// # Errors
     /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        // A damaged file named by the user is a usage error.
-        let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
-            error @ Error::File { fault: FileFault::Damaged, .. } => Error::Usage(error.to_string()),
-            other => other,
-        })?;
+        let text = bounded::read_configuration(path, MAX_BYTES)?;
         Self::parse(&path.display().to_string(), &text)
     }
 

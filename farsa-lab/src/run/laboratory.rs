@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::{Error, FileFault};
+use crate::error::Error;
 use crate::run::config_file::ConfigFile;
 use crate::run::experiment::Experiment;
 use crate::run::imported_file::ImportedFile;
@@ -155,10 +155,7 @@ impl<'e> Laboratory<'e> {
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if name.ends_with(FILE) {
             let path = Path::new(name);
-            let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
-                error @ Error::File { fault: FileFault::Damaged, .. } => Error::Usage(error.to_string()),
-                other => other,
-            })?;
+            let text = bounded::read_configuration(path, MAX_BYTES)?;
             return self.described(name, &text, path.parent());
         }
         let names = self.experiments.iter().map(|experiment| experiment.name());

@@ -31,6 +31,17 @@ pub(crate) fn read_stream_text(path: &Path, limit: u64) -> Result<String, Error>
     to_text(path, read_stream(path, limit)?)
 }
 
+/// Reads a configuration named by the user as text. A damaged one is a usage error.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Usage`] above the limit and for a text that is not UTF-8.
+pub(crate) fn read_configuration(path: &Path, limit: u64) -> Result<String, Error> {
+    read_stream_text(path, limit).map_err(|error| match error {
+        error @ Error::File { .. } => Error::Usage(error.to_string()),
+        other => other,
+    })
+}
+
 /// Reads a file of a run directory, which has to be a regular file or a link to one.
 ///
 /// # Errors

@@ -145,38 +145,27 @@ fn folder(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::evaluator::Evaluator;
-    use crate::experiment::settings::{Setting, Settings};
-    use crate::run::experiment::Experiment;
+    use crate::experiment::settings::Setting;
+    use crate::run::experiment::SimpleExperiment;
 
-    struct Toy;
-
-    impl Experiment for Toy {
-        fn name(&self) -> &'static str {
-            "toy"
-        }
-        fn summary(&self) -> &'static str {
-            "nothing"
-        }
-        fn conditions(&self) -> &'static [&'static str] {
-            &["rough", "smooth"]
-        }
-        fn settings(&self, _: &str) -> Vec<Setting> {
+    const TOY: SimpleExperiment = SimpleExperiment {
+        name: "toy",
+        summary: "nothing",
+        conditions: &["rough", "smooth"],
+        settings: |_| {
             vec![
                 Setting::number("world.step", 0.01, 0.0..=1e9),
                 Setting::whole("trial.step", 1, 1..=1_000_000),
                 Setting::numbers("arm.lengths", &[1.0, 2.0], 0.0..=5.0),
                 Setting::text("world.map", ""),
             ]
-        }
-        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-            Err(Error::Other("never".into()))
-        }
-    }
+        },
+        prepare: |_| Err(Error::Other("never".into())),
+    };
 
     fn names(text: &str) -> Result<Vec<String>, String> {
         let file = SweepFile::parse("my.toml", &format!("experiment = \"toy\"\n{text}")).map_err(|e| e.to_string())?;
-        let laboratory = Laboratory::new(&[&Toy]);
+        let laboratory = Laboratory::new(&[&TOY]);
         Points::new(&file, &laboratory).map(|points| points.names.clone()).map_err(|error| error.to_string())
     }
 
@@ -202,7 +191,7 @@ mod tests {
     fn a_point_has_its_own_values_and_those_of_all() {
         let text = "experiment = \"toy\"\nseed = [8, 3]\nworld.map = \"m\"\n[grid]\ncondition = [\"rough\", \"smooth\"]\ntrial.step = [3, 5]\n";
         let file = SweepFile::parse("my.toml", text).unwrap();
-        let laboratory = Laboratory::new(&[&Toy]);
+        let laboratory = Laboratory::new(&[&TOY]);
         let points = Points::new(&file, &laboratory).unwrap();
         let plan = points.plan(2).unwrap();
         assert_eq!((plan.condition.as_str(), plan.seed, plan.name().as_str()), ("smooth", 8, "toy-smooth-8"));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::{Error, FileFault};
+use crate::error::Error;
 use crate::experiment::settings::Value;
 use crate::run::config_file::{ConfigFile, Entry, FileKey, MAX_BYTES};
 use crate::run::plan::MAX_SEED;
@@ -48,10 +48,7 @@ impl SweepFile {
     /// # Errors
     /// As [`ConfigFile::read`], with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match error {
-            error @ Error::File { fault: FileFault::Damaged, .. } => Error::Usage(error.to_string()),
-            other => other,
-        })?;
+        let text = bounded::read_configuration(path, MAX_BYTES)?;
         Self::parse(&path.display().to_string(), &text)
     }
 

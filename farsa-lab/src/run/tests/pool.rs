@@ -11,28 +11,20 @@ use crate::experiment::evaluator::{Evaluation, Evaluator, InLanes, Task, TaskInf
 use crate::experiment::lanes::{LaneRequest, Lanes};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::parameter::Parameter;
-use crate::experiment::settings::{Setting, Settings};
+use crate::experiment::settings::Settings;
 use crate::run::evaluation_backend::Unfinished;
-use crate::run::experiment::Experiment;
+use crate::run::experiment::SimpleExperiment;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 
 /// Its fitness is the individual's number. It panics from the fifth on if its parameter is set.
 struct Nothing;
 
-impl Experiment for Nothing {
-    fn name(&self) -> &'static str {
-        "nothing"
-    }
-    fn summary(&self) -> &'static str {
-        "nothing"
-    }
-    fn settings(&self, _: &str) -> Vec<Setting> {
-        Vec::new()
-    }
-    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(Nothing))
-    }
+/// The experiment of an evaluator, without settings.
+fn plan(prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>) -> Plan<'static> {
+    let (summary, conditions, settings) = ("nothing", &[][..], |_: &str| Vec::new());
+    let experiment = SimpleExperiment { name: "nothing", summary, conditions, settings, prepare };
+    Plan::new(Box::leak(Box::new(experiment)), None, "").unwrap()
 }
 
 impl Task for Nothing {
@@ -49,7 +41,7 @@ impl Evaluator for Nothing {
 }
 
 fn pool(threads: usize) -> Pool<'static> {
-    Pool::new(&Plan::new(&Nothing, None, "").unwrap(), threads, LaneRequest::ONE).unwrap()
+    Pool::new(&plan(|_| Ok(Box::new(Nothing))), threads, LaneRequest::ONE).unwrap()
 }
 
 fn task(number: usize, parameters: &[f32]) -> Evaluation<'_> {
@@ -99,21 +91,6 @@ fn a_panic_is_an_outcome_and_the_others_are_what_they_are() {
 /// Every tenth individual panics, together with those in the same lanes.
 struct InGroups(usize);
 
-impl Experiment for InGroups {
-    fn name(&self) -> &'static str {
-        "in-groups"
-    }
-    fn summary(&self) -> &'static str {
-        "nothing"
-    }
-    fn settings(&self, _: &str) -> Vec<Setting> {
-        Vec::new()
-    }
-    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(InGroups(1)))
-    }
-}
-
 impl Task for InGroups {
     fn info(&self) -> TaskInfo {
         TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], Schema::default())
@@ -155,7 +132,7 @@ impl InLanes for InGroups {
 #[test]
 fn a_panic_in_a_lane_fails_that_lane_alone() {
     for (threads, lanes) in [(1, 1), (1, 8), (3, 8), (2, 16)] {
-        let plan = Plan::new(&InGroups(1), None, "").unwrap();
+        let plan = plan(|_| Ok(Box::new(InGroups(1))));
         let wanted = LaneRequest { count: Some(lanes), ..LaneRequest::ONE };
         let mut pool = Pool::new(&plan, threads, wanted).unwrap();
         let heard = AtomicUsize::new(0);
