@@ -4,9 +4,6 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Libraries whose root still repeats names of their modules, and errors with more variants.
-const PENDING: [&str; 1] = ["farsa-experiments"];
-
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -96,9 +93,6 @@ fn few_names_at_the_root_and_one_path_for_each() {
         let file = source.join("lib.rs");
         let names = public_names(&file);
         println!("{library}: {} names at the root", names.len());
-        if PENDING.contains(&library.as_str()) {
-            continue;
-        }
         if names.len() > 25 {
             faults.push(format!("{library} has {} names at its root, at most 25", names.len()));
         }
@@ -142,7 +136,7 @@ fn errors_are_grouped() {
                     if line == "}" {
                         println!("{library}: {name} has {variants} variants");
                         count += 1;
-                        if *variants > 8 && !PENDING.contains(&format!("{library}: {name}").as_str()) {
+                        if *variants > 8 {
                             faults.push(format!("{library}: {name} has {variants} variants, at most 8"));
                         }
                         open = None;
