@@ -93,11 +93,11 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     let result = match invocation.take_part(&cli.command) {
         Ok(Part::Followed(code)) => return ExitCode::from(code),
         Ok(Part::Leads) => invocation.execute(cli.command),
-        Err(error) => return ExitCode::from(invocation.told(Err(error))),
+        Err(error) => return ExitCode::from(invocation.report(Err(error))),
     };
-    let code = invocation.told(result);
+    let code = invocation.report(result);
     let dismissed = if followed { invocation.dismiss(code) } else { Ok(()) };
-    ExitCode::from(dismissed.map_or_else(|error| invocation.told(Err(error)), |()| code))
+    ExitCode::from(dismissed.map_or_else(|error| invocation.report(Err(error)), |()| code))
 }
 
 /// Parses a command line, whose first word is the program.
@@ -130,18 +130,18 @@ fn program() -> String {
 
 impl<'e> Invocation<'e, '_> {
     /// Reports an error on rank 0, and returns the exit code.
-    fn told(&self, result: Result<(), Error>) -> u8 {
+    fn report(&self, result: Result<(), Error>) -> u8 {
         match result {
             Ok(()) => 0,
             // A closed pipe is no error: `farsa replay ... | head`.
             Err(error) if replay::reader_left(&error) => 0,
             Err(error) => {
                 if !self.exchange.is_follower() {
-                    let all = match &error {
-                        Error::Several(all) => all.as_slice(),
-                        one => std::slice::from_ref(one),
+                    let errors = match &error {
+                        Error::Several(errors) => errors.as_slice(),
+                        single => std::slice::from_ref(single),
                     };
-                    for error in all {
+                    for error in errors {
                         let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
                     }
                 }
@@ -157,9 +157,9 @@ impl<'e> Invocation<'e, '_> {
             Command::List(ListArgs { json: false }) => tell(&info::list(laboratory.experiments())),
             Command::List(ListArgs { json: true }) => say(&info::list_as_json(laboratory.experiments())?),
             Command::Strategies(StrategiesArgs { strategy, json }) => {
-                let one = strategy.map(|name| laboratory.strategy(&name, "")).transpose()?;
-                let all = one.as_ref().map_or_else(|| laboratory.strategies(), std::slice::from_ref);
-                if json { say(&strategies::as_json(all)?) } else { tell(&strategies::as_text(all)) }
+                let chosen = strategy.map(|name| laboratory.strategy(&name, "")).transpose()?;
+                let table = chosen.as_ref().map_or_else(|| laboratory.strategies(), std::slice::from_ref);
+                if json { say(&strategies::as_json(table)?) } else { tell(&strategies::as_text(table)) }
             }
             Command::Info(InfoArgs { experiment, condition, strategy, json }) => {
                 let strategy = strategy.map(|name| laboratory.strategy(&name, "--strategy")).transpose()?;
@@ -170,19 +170,19 @@ impl<'e> Invocation<'e, '_> {
             Command::Check(args) => self.check(&args),
             Command::Schema => say(&(laboratory.files()?.schema)()),
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
-                let found = match args.groups {
+                let summary = match args.groups {
                     None => Some(self.replicate(&args, count, args.replication)?),
                     Some(groups) => self.replicate_in_groups(&args, count, groups)?,
                 };
-                found.map_or(Ok(()), |found| self.summary(args.json, &found.text(), &|| pretty(&found)))
+                summary.map_or(Ok(()), |summary| self.summary(args.json, &summary.text(), &|| pretty(&summary)))
             }
             Command::Run(args) => {
-                let found = self.start_or_resume(&args)?;
-                self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+                let summary = self.start_or_resume(&args)?;
+                self.summary(args.json, &format!("{}\n", summary.text()), &|| pretty(&summary))
             }
             Command::Sweep(args) => {
-                let found = self.sweep(&args)?;
-                self.summary(args.json, &found.text(), &|| pretty(&found))
+                let summary = self.sweep(&args)?;
+                self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Merge(args) => self.merge(&args),
             Command::Test(args) => self.test(args),
@@ -194,8 +194,8 @@ impl<'e> Invocation<'e, '_> {
                     return lines::serve(&plan, pool, &mut io::stdin().lock(), &mut io::stdout().lock());
                 }
                 let (pool, trials) = (args.workers.pool(&plan)?, args.trials as usize);
-                let found = evaluate::evaluate(&plan, pool, &args.genes(), trials, args.seed, quiet)?;
-                if args.json { say(&pretty(&found)?) } else { tell(&found.text()) }
+                let summary = evaluate::evaluate(&plan, pool, &args.genes(), trials, args.seed, quiet)?;
+                if args.json { say(&pretty(&summary)?) } else { tell(&summary.text()) }
             }
             Command::Import(args) => self.import(&args),
             Command::Replay(args) => self.replay(&args),
@@ -204,18 +204,18 @@ impl<'e> Invocation<'e, '_> {
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
                 if let Some(wish) = args.sheet()? {
-                    let found = sheet::draw(&plan, &directory, &wish, &args.out)?;
-                    return self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found));
+                    let drawing = sheet::draw(&plan, &directory, &wish, &args.out)?;
+                    return self.summary(args.json, &format!("{}\n", drawing.summary), &|| pretty(&drawing));
                 }
                 let (which, camera) = (args.which(), args.camera.as_deref());
                 let wish = draw::DrawRequest { which, time: args.time, frames: args.frames, camera, size: args.size };
-                let found = draw::draw(&plan, &directory, wish, &args.out)?;
-                self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
+                let drawing = draw::draw(&plan, &directory, wish, &args.out)?;
+                self.summary(args.json, &format!("{}\n", drawing.summary), &|| pretty(&drawing))
             }
             Command::Report(args) => {
                 let runs = args.directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
-                let found = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
-                self.summary(args.json, &found.text(), &|| pretty(&found))
+                let summary = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
+                self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Export(ExportArgs { what }) => {
                 let (content, out) = self.exported(what)?;
@@ -226,20 +226,20 @@ impl<'e> Invocation<'e, '_> {
             }
             Command::Robot(args) => {
                 let reading = robot_file::read(&args.file, &args.options())?;
-                let found = robot_file::Summary::new(&args.file, &reading);
+                let summary = robot_file::Summary::new(&args.file, &reading);
                 match (args.format, args.out) {
-                    (None, _) if args.json => say(&pretty(&found)?),
-                    (None, _) => tell(&found.text()),
+                    (None, _) if args.json => say(&pretty(&summary)?),
+                    (None, _) => tell(&summary.text()),
                     (Some(format), None) => say(&robot_file::written(&reading, format)?),
                     (Some(format), Some(path)) => {
                         create_results(&[(path, robot_file::written(&reading, format)?)])?;
-                        self.summary(false, &found.text(), &|| Ok(String::new()))
+                        self.summary(false, &summary.text(), &|| Ok(String::new()))
                     }
                 }
             }
             Command::Bench(args) => {
-                let found = self.bench(&args)?;
-                self.summary(args.json, &found.text(), &|| pretty(&found))
+                let summary = self.bench(&args)?;
+                self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, laboratory)),
             Command::Man(ManArgs { out: None }) => say(&manual::page(program, laboratory)?),
@@ -261,23 +261,28 @@ impl<'e> Invocation<'e, '_> {
         let (threads, lanes) = (workers.threads(), workers.lanes());
         let trials = trials.map(|trials| trials as usize);
         let effort = protocols::test::TestOptions { trials, seed, threads, lanes, quiet };
-        let found = match protocol.as_deref() {
+        let summary = match protocol.as_deref() {
             name if !lesion.is_empty() => Some(protocols::test::lesions(&plan, &directory, name, &lesion, effort)?),
             Some(name) => Some(protocols::test::test(&plan, &directory, name, effort)?),
             None => None,
         };
-        if let Some(found) = found {
-            return self.summary(json, &found.text(), &|| pretty(&found));
+        if let Some(summary) = summary {
+            return self.summary(json, &summary.text(), &|| pretty(&summary));
         }
         let trials = trials.unwrap_or(test::TRIALS);
-        let found = test::test(&plan, &directory, which, trials, seed, threads, lanes, quiet)?;
-        self.summary(json, &found.text(), &|| pretty(&found))
+        let summary = test::test(&plan, &directory, which, trials, seed, threads, lanes, quiet)?;
+        self.summary(json, &summary.text(), &|| pretty(&summary))
     }
 
     /// Prints the summary, or JSON even with `--quiet`.
-    pub(super) fn summary(&self, json: bool, text: &str, all: &dyn Fn() -> Result<String, Error>) -> Result<(), Error> {
+    pub(super) fn summary(
+        &self,
+        json: bool,
+        text: &str,
+        value: &dyn Fn() -> Result<String, Error>,
+    ) -> Result<(), Error> {
         match (json, self.quiet) {
-            (true, _) => say(&all()?),
+            (true, _) => say(&value()?),
             (false, true) => Ok(()),
             (false, false) => tell(text),
         }
@@ -323,14 +328,14 @@ impl<'e> Invocation<'e, '_> {
 
     /// Merges runs, with their table on standard output by default.
     fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
-        let found = args.merge().make(self.laboratory)?;
+        let summary = args.merge().make(self.laboratory)?;
         if !args.prints() {
-            return self.summary(args.json, &found.text(), &|| pretty(&found));
+            return self.summary(args.json, &summary.text(), &|| pretty(&summary));
         }
         if !self.quiet {
-            let _ = write!(io::stderr(), "{}", escaped(&found.text()));
+            let _ = write!(io::stderr(), "{}", escaped(&summary.text()));
         }
-        say(&found.table)
+        say(&summary.table)
     }
 
     /// Makes or lists the runs of all points of a sweep.
@@ -367,8 +372,8 @@ impl<'e> Invocation<'e, '_> {
             return Ok(());
         }
         plan.strategy()?;
-        if let Some(kept) = Directory::move_aside(path)?.filter(|_| !self.quiet) {
-            let text = format!("{}: the run that was there is kept as {}", path.display(), kept.display());
+        if let Some(moved) = Directory::move_aside(path)?.filter(|_| !self.quiet) {
+            let text = format!("{}: the run that was there is kept as {}", path.display(), moved.display());
             let _ = writeln!(io::stderr(), "{}", escaped(&text));
         }
         Ok(())
@@ -385,14 +390,14 @@ impl<'e> Invocation<'e, '_> {
         let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
         let file_name = args.experiment.as_ref().filter(|name| name.ends_with(FILE));
         let named = file_name.map(|name| self.find(name)).transpose()?;
-        let other = |found: &&dyn Experiment| {
-            found.name() == plan.experiment.name() && found.definition() != plan.experiment.definition()
+        let other = |experiment: &&dyn Experiment| {
+            experiment.name() == plan.experiment.name() && experiment.definition() != plan.experiment.definition()
         };
         if named.as_ref().is_some_and(other) {
             let asked = args.experiment.clone().unwrap_or_default();
             return Err(Error::other_configuration(directory.path(), "definition", plan.experiment.name(), &asked));
         }
-        let experiment = named.map(|found| found.name().to_owned()).or_else(|| args.experiment.clone());
+        let experiment = named.map(|experiment| experiment.name().to_owned()).or_else(|| args.experiment.clone());
         let experiment = experiment.or_else(|| in_file(file?.experiment.as_ref()));
         let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
         let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));

@@ -61,8 +61,8 @@ impl Invocation<'_, '_> {
         }
         let mut plan = args.variant.plan(self.find(name)?)?;
         plan.seed = args.seed.unwrap_or(1);
-        let found = import::import(plan, &args.files, args.variant.set(POPULATION), out)?;
-        self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+        let summary = import::import(plan, &args.files, args.variant.set(POPULATION), out)?;
+        self.summary(args.json, &format!("{}\n", summary.text()), &|| pretty(&summary))
     }
 
     /// Writes an experiment file, and reports differences from the original.
@@ -79,8 +79,8 @@ impl Invocation<'_, '_> {
         }
         let import = self.laboratory.files()?.import;
         let import = import.ok_or_else(|| Error::Usage("this program imports no configurations".into()))?;
-        let found = import(&path.display().to_string(), &name, &text)?;
-        let ImportedFile { text, left, idle, more_left, more_idle } = &found;
+        let imported = import(&path.display().to_string(), &name, &text)?;
+        let ImportedFile { text, left, idle, more_left, more_idle } = &imported;
         let lost = left.len() + more_left;
         tell_left(left, lost);
         if args.strict && !left.is_empty() {
@@ -115,9 +115,9 @@ fn tell_left(left: &[LeftOut], lost: usize) {
     for remark in left.iter().take(MAX_REMARKS) {
         let _ = writeln!(errors, "{remark}");
     }
-    let told = left.len().min(MAX_REMARKS);
-    if lost > told {
-        let _ = writeln!(errors, "and {} more", lost - told);
+    let shown = left.len().min(MAX_REMARKS);
+    if lost > shown {
+        let _ = writeln!(errors, "and {} more", lost - shown);
     }
 }
 

@@ -49,21 +49,21 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     let last = run.lines.last();
     row.extend([0, 1].map(|which| number(last.map(|line| line.row[which]))));
     row.push(number(run.lines.iter().map(|line| line.row[0]).reduce(f64::max)));
-    let own = names(run)?;
+    let names = names(run)?;
     for name in populations {
-        let place = own.iter().position(|own| own == name);
+        let place = names.iter().position(|other| other == name);
         let each = place.and_then(|place| last?.each.get(place));
         row.extend([0, 1].map(|which| number(each.map(|row| row[which]))));
     }
     let test = match test::read(&run.directory)? {
         None => Default::default(),
         Some((table, record)) => {
-            let found = table.findings(&plan.evaluator()?.info().terms);
+            let findings = table.findings(&plan.evaluator()?.info().terms);
             [
                 record.map(|record| record.generation.to_string()).unwrap_or_default(),
-                found.trials.to_string(),
-                number(Some(found.part(found.successes))),
-                number(Some(found.fitness)),
+                findings.trials.to_string(),
+                number(Some(findings.part(findings.successes))),
+                number(Some(findings.fitness)),
             ]
         }
     };
@@ -79,16 +79,16 @@ fn names(run: &Gathered<'_>) -> Result<Vec<String>, Error> {
 
 /// Returns the distinct names of all populations of runs with several.
 fn populations(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<String>, Error> {
-    let mut all: Vec<String> = Vec::new();
-    let mut known: Vec<(&str, &str)> = Vec::new();
+    let mut populations: Vec<String> = Vec::new();
+    let mut kinds: Vec<(&str, &str)> = Vec::new();
     for (run, _) in runs {
         let kind = (run.plan.experiment.name(), run.plan.condition.as_str());
-        if !known.contains(&kind) && !run.lines.is_empty() {
-            known.push(kind);
-            all.extend(names(run)?.into_iter().filter(|name| !all.contains(name)).collect::<Vec<_>>());
+        if !kinds.contains(&kind) && !run.lines.is_empty() {
+            kinds.push(kind);
+            populations.extend(names(run)?.into_iter().filter(|name| !populations.contains(name)).collect::<Vec<_>>());
         }
     }
-    Ok(all)
+    Ok(populations)
 }
 
 /// Returns the settings in which two runs differ, in the order of their tables.

@@ -114,9 +114,9 @@ impl<'r> Exchange<'r> {
         self.next.get()
     }
 
-    fn gather<T: Serialize + for<'a> Deserialize<'a>>(&self, own: &T) -> Result<Vec<T>, Error> {
-        let all = self.ranks.all_gather(&to_bytes(own)?)?;
-        all.iter().enumerate().map(|(rank, bytes)| from_bytes(rank, bytes)).collect()
+    fn gather<T: Serialize + for<'a> Deserialize<'a>>(&self, local: &T) -> Result<Vec<T>, Error> {
+        let gathered = self.ranks.all_gather(&to_bytes(local)?)?;
+        gathered.iter().enumerate().map(|(rank, bytes)| from_bytes(rank, bytes)).collect()
     }
 
     /// Returns the number of ranks that share the processors of this one, itself included.
@@ -130,26 +130,26 @@ impl<'r> Exchange<'r> {
         let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
         let status = read("/proc/self/status");
         let processors = status.lines().find(|line| line.starts_with("Cpus_allowed_list:")).unwrap_or_default();
-        let own = format!("{}{processors}", read("/proc/sys/kernel/hostname"));
-        Ok(self.gather(&own)?.into_iter().filter(|other| *other == own).count())
+        let local = format!("{}{processors}", read("/proc/sys/kernel/hostname"));
+        Ok(self.gather(&local)?.into_iter().filter(|other| *other == local).count())
     }
 
     /// Reports whether a command can begin on this rank, and with which facts.
     ///
     /// # Errors
     /// [`Error::Rank`] for the first rank that cannot begin or has other facts than rank 0. On that rank its own error.
-    pub(crate) fn begin(&self, own: Result<Facts, Error>) -> Result<(), Error> {
+    pub(crate) fn begin(&self, local: Result<Facts, Error>) -> Result<(), Error> {
         if self.is_alone() {
-            return own.map(drop);
+            return local.map(drop);
         }
         let next = self.next.replace(SyncPoint::WorkerCommand);
-        let (status, facts) = match &own {
+        let (status, facts) = match &local {
             Ok(facts) => (Status::GoOn, facts.clone()),
             Err(error) => (Status::failed(error), Facts::new()),
         };
-        let all: Vec<(Status, Facts)> = self.gather(&(status, facts))?;
-        let (statuses, facts): (Vec<Status>, Vec<Facts>) = all.into_iter().unzip();
-        own?;
+        let gathered: Vec<(Status, Facts)> = self.gather(&(status, facts))?;
+        let (statuses, facts): (Vec<Status>, Vec<Facts>) = gathered.into_iter().unzip();
+        local?;
         first_failed(&statuses)?;
         facts::same(&facts)?;
         self.next.set(next);
@@ -157,10 +157,10 @@ impl<'r> Exchange<'r> {
     }
 
     /// Sends the command of rank 0 to all ranks.
-    pub(crate) fn command(&self, own: Option<&WorkerCommand>) -> Result<WorkerCommand, Error> {
-        let bytes = own.map(to_bytes).transpose()?.unwrap_or_default();
-        let all = self.ranks.all_gather(&bytes)?;
-        let order = from_bytes(0, all.first().map_or(&[], Vec::as_slice))?;
+    pub(crate) fn command(&self, local: Option<&WorkerCommand>) -> Result<WorkerCommand, Error> {
+        let bytes = local.map(to_bytes).transpose()?.unwrap_or_default();
+        let gathered = self.ranks.all_gather(&bytes)?;
+        let order = from_bytes(0, gathered.first().map_or(&[], Vec::as_slice))?;
         self.fresh.set(true);
         self.next.set(if matches!(order, WorkerCommand::Run { .. }) {
             SyncPoint::Status
@@ -175,11 +175,11 @@ impl<'r> Exchange<'r> {
     ///
     /// # Errors
     /// [`Error::Rank`] for the first rank that failed. Unless all ranks continue, the next synchronization point is a command.
-    pub(crate) fn status(&self, own: &Status) -> Result<Status, Error> {
+    pub(crate) fn status(&self, local: &Status) -> Result<Status, Error> {
         self.next.set(SyncPoint::WorkerCommand);
-        let all = self.gather(own)?;
-        first_failed(&all)?;
-        let reported = |status: Status| all.contains(&status).then_some(status);
+        let gathered = self.gather(local)?;
+        first_failed(&gathered)?;
+        let reported = |status: Status| gathered.contains(&status).then_some(status);
         let status = reported(Status::Over).or_else(|| reported(Status::Stop)).unwrap_or(Status::GoOn);
         if status == Status::GoOn {
             self.next.set(SyncPoint::Outcomes);
@@ -200,32 +200,32 @@ impl<'r> Exchange<'r> {
     /// [`Error::Rank`] for the first rank that failed or evaluated other individuals than rank 0. On that rank its own error.
     pub(crate) fn outcomes(
         &self,
-        own: Result<Vec<Numbered>, Error>,
+        local: Result<Vec<Numbered>, Error>,
         stop: bool,
     ) -> Result<Option<Vec<Numbered>>, Error> {
         self.next.set(SyncPoint::Status);
-        let status = match &own {
+        let status = match &local {
             Ok(_) if stop => Status::Stop,
             Ok(_) => Status::GoOn,
             Err(error) => Status::failed(error),
         };
         let fingerprint = self.fingerprint.take();
-        let outcomes = Outcomes::from_numbered(own.as_deref().unwrap_or_default());
+        let outcomes = Outcomes::from_numbered(local.as_deref().unwrap_or_default());
         let own_rank = self.ranks.rank();
-        let all = self.gather(&Report { status, fingerprint, outcomes })?;
-        let own = own?;
-        let statuses: Vec<Status> = all.iter().map(|report| report.status.clone()).collect();
+        let gathered = self.gather(&Report { status, fingerprint, outcomes })?;
+        let local = local?;
+        let statuses: Vec<Status> = gathered.iter().map(|report| report.status.clone()).collect();
         first_failed(&statuses)?;
-        let first = all.first().and_then(|report| report.fingerprint);
-        if let Some(rank) = all.iter().position(|report| report.fingerprint != first) {
+        let first = gathered.first().and_then(|report| report.fingerprint);
+        if let Some(rank) = gathered.iter().position(|report| report.fingerprint != first) {
             let why = "its individuals or their opponents are not those of rank 0".into();
             return Err(Error::Rank { rank, code: 1, why });
         }
         if statuses.contains(&Status::Stop) {
             return Ok(None);
         }
-        let mut numbered = own;
-        for (rank, report) in all.into_iter().enumerate().filter(|(rank, _)| *rank != own_rank) {
+        let mut numbered = local;
+        for (rank, report) in gathered.into_iter().enumerate().filter(|(rank, _)| *rank != own_rank) {
             let why = "said what this program cannot read: a note without a name, or observations that are none".into();
             numbered.extend(report.outcomes.into_numbered().ok_or(Error::Rank { rank, code: 1, why })?);
         }

@@ -56,8 +56,8 @@ impl Outcomes {
     pub(crate) fn from_numbered(numbered: &[(usize, Option<Outcome>)]) -> Self {
         let mut names: Vec<&'static str> = Vec::new();
         let mut place = |name: &'static str| {
-            let found = names.iter().position(|known| *known == name);
-            found.unwrap_or_else(|| {
+            let index = names.iter().position(|other| *other == name);
+            index.unwrap_or_else(|| {
                 names.push(name);
                 names.len() - 1
             }) as u16
@@ -122,12 +122,12 @@ fn wired_note(note: &Note) -> WireNote {
 fn lasting(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = names.get(name) {
-        return known;
+    if let Some(name) = names.get(name) {
+        return name;
     }
-    let kept: &'static str = Box::leak(name.into());
-    names.insert(kept);
-    kept
+    let leaked: &'static str = Box::leak(name.into());
+    names.insert(leaked);
+    leaked
 }
 
 #[cfg(test)]

@@ -136,9 +136,9 @@ fn intervals(groups: &[Group<'_>], measures: &[Measure]) -> Table {
 /// Counts the successful runs among the tested runs of each group, `None` without tests.
 fn counts(groups: &[Group<'_>], success: Success) -> Vec<Option<Proportion>> {
     let count = |group: &Group<'_>| {
-        let known: Vec<bool> = group.runs.iter().filter_map(|run| success.of(run)).collect();
-        let successes = known.iter().filter(|success| **success).count();
-        (!known.is_empty()).then_some(Proportion { successes, of: known.len() })
+        let results: Vec<bool> = group.runs.iter().filter_map(|run| success.of(run)).collect();
+        let successes = results.iter().filter(|success| **success).count();
+        (!results.is_empty()).then_some(Proportion { successes, of: results.len() })
     };
     groups.iter().map(count).collect()
 }
@@ -171,8 +171,8 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
             for measure in measures {
                 // Without the value of every run the comparison would be about other runs.
                 let of = |group: &Group<'_>| group.runs.iter().map(|run| (measure.of)(run)).collect::<Option<Vec<_>>>();
-                let found = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
-                if let Some(Comparison { u, larger, p, exact: counted }) = found {
+                let comparison = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
+                if let Some(Comparison { u, larger, p, exact: counted }) = comparison {
                     exact &= counted;
                     let name = measure.name.split(" of the champions").next().unwrap_or_default().to_owned();
                     let numbers = [name, format!("{u:?}"), format!("{larger:.3}"), probability(p)];
