@@ -22,8 +22,8 @@ struct Nothing;
 
 /// The experiment of an evaluator, without settings.
 fn plan(prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>) -> Plan<'static> {
-    let (summary, conditions, settings) = ("nothing", &[][..], |_: &str| Vec::new());
-    let experiment = SimpleExperiment { name: "nothing", summary, conditions, settings, prepare };
+    let settings = |_: &str| Vec::new();
+    let experiment = SimpleExperiment { name: "nothing", summary: "nothing", conditions: &[], settings, prepare };
     Plan::new(Box::leak(Box::new(experiment)), None, "").unwrap()
 }
 
