@@ -1,8 +1,9 @@
 //! Seconds of a generation, without evaluations, of strategies over many genes:
 //! `cargo run --release -p farsa-evo --example generation_cost -- [GENERATIONS [NAME...]]`.
 //!
-//! `benches/generation_cost.py` runs it beside pycma and numpy. A line is: name, genes, individuals, median and least seconds of
-//! a generation; for covariance matrix adaptation the mean, because axes are not computed in every generation.
+//! `benches/generation_cost.py` compares it with pycma and numpy. Each line has the name, the genes, the individuals, and the median
+//! and least seconds of a generation. For covariance matrix adaptation the median is replaced by the mean, because the axes
+//! are not computed in every generation.
 
 use std::time::Instant;
 
@@ -11,7 +12,7 @@ use farsa_evo::gradient::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeCo
 use farsa_evo::words::{GaConfig, TruncationGa};
 use farsa_evo::{EvoError, Gene, Strategy};
 
-/// Times so many generations of a strategy that is told numbers of no meaning, after two that are not timed.
+/// Times the given number of generations with arbitrary fitness, after two generations that are not timed.
 fn time<G: Gene>(name: &str, generations: usize, strategy: &mut dyn Strategy<G>) -> Result<(), EvoError> {
     let (individuals, genes) = (strategy.ask().len(), strategy.ask().genome_len());
     let values: Vec<f64> = (0..individuals).map(|i| ((i * 7919) % individuals) as f64).collect();
@@ -32,7 +33,7 @@ fn time<G: Gene>(name: &str, generations: usize, strategy: &mut dyn Strategy<G>)
 fn main() -> Result<(), EvoError> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let generations: usize = arguments.first().and_then(|count| count.parse().ok()).unwrap_or(40).max(1);
-    let wanted = |name: &str| arguments.len() < 2 || arguments[1..].iter().any(|one| one == name);
+    let wanted = |name: &str| arguments.len() < 2 || arguments[1..].iter().any(|argument| argument == name);
     let (covariance, many) = (792, 100_000);
     if wanted("ga") {
         let config = GaConfig { population: 100, ..GaConfig::new(792) };

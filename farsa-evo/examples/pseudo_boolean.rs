@@ -1,12 +1,13 @@
-//! `OneMax`, `LeadingOnes` and deceptive traps on 100 bits: how many evaluations the searches over words take to the optimum.
+//! `OneMax`, `LeadingOnes` and deceptive traps on 100 bits: the evaluations that the searches over integer genes take to the optimum.
 //!
 //! `cargo run --release -p farsa-evo --example pseudo_boolean` prints the table of docs/results/strategies.md: medians of 20
-//! seeds, beside what is known of the (1+1) evolutionary algorithm \[Droste2002\], \[Boettcher2010\]; traps are those of \[Deb1993\].
+//! seeds, next to the expected times of the (1+1) evolutionary algorithm \[Droste2002\], \[Boettcher2010\]. The traps are
+//! those of \[Deb1993\].
 
 use farsa_evo::words::{GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, TruncationGa};
 use farsa_evo::{EvoError, Strategy};
 
-/// Bits, each a gene of its own.
+/// Bits, one gene each.
 const BITS: usize = 100;
 /// Bits of a trap.
 const TRAP: usize = 5;
@@ -28,32 +29,32 @@ const PROBLEMS: [Problem; 3] = [
     Problem { name: "20 traps of 5 bits", value: traps, expected: "more than n^5 = 10^10" },
 ];
 
-/// The ones.
+/// Counts the ones.
 fn one_max(bits: &[u16]) -> usize {
     bits.iter().filter(|bit| **bit == 1).count()
 }
 
-/// The ones in front of the first zero.
+/// Counts the ones in front of the first zero.
 fn leading_ones(bits: &[u16]) -> usize {
     bits.iter().take_while(|bit| **bit == 1).count()
 }
 
-/// Each trap is worth its bits if all are ones, else one less than its zeros: whoever climbs comes to all zeros.
+/// A trap of ones is worth its bits, any other trap one less than its zeros. Hill climbing therefore ends at all zeros.
 fn traps(bits: &[u16]) -> usize {
-    let one = |trap: &[u16]| match one_max(trap) {
+    let value = |trap: &[u16]| match one_max(trap) {
         TRAP => TRAP,
         ones => TRAP - 1 - ones,
     };
-    bits.chunks(TRAP).map(one).sum()
+    bits.chunks(TRAP).map(value).sum()
 }
 
-/// The evaluations up to the first optimum, if there was one, and the best value; of each generation the first `known`
-/// individuals are copies that need no evaluation.
-fn search(mut strategy: impl Strategy, known: usize, value: fn(&[u16]) -> usize) -> Result<(usize, usize), EvoError> {
+/// Returns the evaluations up to the first optimum, or the budget, and the best value. The first `copies` individuals of
+/// each generation need no evaluation.
+fn search(mut strategy: impl Strategy, copies: usize, value: fn(&[u16]) -> usize) -> Result<(usize, usize), EvoError> {
     let (mut evaluations, mut best) = (0, 0);
     loop {
         let values: Vec<usize> = strategy.ask().iter().map(value).collect();
-        let first = if strategy.generation() == 0 { 0 } else { known };
+        let first = if strategy.generation() == 0 { 0 } else { copies };
         for value in &values[first..] {
             evaluations += 1;
             best = best.max(*value);
@@ -65,13 +66,13 @@ fn search(mut strategy: impl Strategy, known: usize, value: fn(&[u16]) -> usize)
     }
 }
 
-/// Medians of all seeds: the optima found, evaluations, and the best value.
+/// Prints the solved runs and the medians over all seeds of evaluations and best value.
 fn row(name: &str, problem: &Problem, run: impl Fn(u64) -> Result<(usize, usize), EvoError>) -> Result<(), EvoError> {
     let runs = (1..=SEEDS).map(run).collect::<Result<Vec<_>, _>>()?;
     let solved = runs.iter().filter(|(_, best)| *best == BITS).count();
-    let median = |mut all: Vec<usize>| {
-        all.sort_unstable();
-        let [low, high] = [all.len() / 2 - 1, all.len() / 2].map(|place| all[place] as f64);
+    let median = |mut values: Vec<usize>| {
+        values.sort_unstable();
+        let [low, high] = [values.len() / 2 - 1, values.len() / 2].map(|place| values[place] as f64);
         0.5 * (low + high)
     };
     let evaluations = median(runs.iter().map(|run| run.0).collect());
@@ -82,7 +83,7 @@ fn row(name: &str, problem: &Problem, run: impl Fn(u64) -> Result<(usize, usize)
 }
 
 fn main() -> Result<(), EvoError> {
-    println!("| function | search | solved | evaluations | best value | (1+1), known |");
+    println!("| function | search | solved | evaluations | best value | (1+1), theory |");
     println!("|---|---|---|---|---|---|");
     let rate = 1.0 / BITS as f64;
     for problem in &PROBLEMS {

@@ -1,9 +1,9 @@
-//! Seconds in which a generation is rebuilt from the record, without evaluating anything:
+//! Seconds to rebuild a generation from the record, without any evaluation:
 //! `cargo run --release -p farsa-evo --example replay_cost -- [GENES [GENERATIONS [NAME...]]]`.
 //!
-//! Each strategy has 100 individuals, but for those whose individuals come in other numbers, and is told numbers of no meaning.
-//! A line is: name, genes, individuals, generations, the most seconds of rebuilding any of five generations (the last and
-//! those just before a state that was saved), megabytes of the record.
+//! Each strategy has 100 individuals where its sizes allow it, and receives arbitrary fitness. A line has the name, the
+//! genes, the individuals, the generations, the seconds of the slowest rebuild and the megabytes of the record. Five
+//! generations are rebuilt: the last, and those just before a saved state.
 
 use std::time::Instant;
 
@@ -20,13 +20,13 @@ use farsa_evo::real::{
 use farsa_evo::words::{GaConfig, OnePlusOne, OnePlusOneConfig, TruncationGa};
 use farsa_evo::{EvoError, Gene, Record, ScoreShape, Scores, Strategy};
 
-/// Numbers of no meaning, others in every generation.
+/// Arbitrary scores that differ between generations.
 fn scores(shape: ScoreShape, individuals: usize, generation: u32) -> Result<Scores, EvoError> {
     let number = |i: usize| ((i * 7919 + generation as usize * 104_729) % 10_007) as f64 / 10_007.0;
     Scores::nan_as_failed(shape, (0..individuals * shape.width()).map(number).collect())
 }
 
-/// Tells a strategy so many generations and times how long some of them take to be rebuilt.
+/// Runs the given number of generations and times the rebuilding of some of them.
 fn time<G: Gene, S: Strategy<G>>(
     name: &str,
     generations: u32,
@@ -37,11 +37,11 @@ fn time<G: Gene, S: Strategy<G>>(
     let mut record = Record::new(&mut strategy)?;
     let mut before_states = Vec::new();
     for generation in 0..generations {
-        let told = scores(strategy.score_shape(), individuals, generation)?;
-        if told.shape() == ScoreShape::FITNESS {
-            record.tell(&mut strategy, &told.fitness())?;
+        let scores = scores(strategy.score_shape(), individuals, generation)?;
+        if scores.shape() == ScoreShape::FITNESS {
+            record.tell(&mut strategy, &scores.fitness())?;
         } else {
-            record.tell_scores(&mut strategy, &told)?;
+            record.tell_scores(&mut strategy, &scores)?;
         }
         if record.entry(generation).is_some_and(|entry| entry.state.is_some()) {
             before_states.push(generation);
@@ -61,7 +61,7 @@ fn time<G: Gene, S: Strategy<G>>(
     Ok(())
 }
 
-/// Strategies over words.
+/// Strategies over integer genes.
 fn words(n: usize, generations: u32, wanted: &dyn Fn(&str) -> bool) -> Result<(), EvoError> {
     let config = GaConfig { population: 100, ..GaConfig::new(n) };
     if wanted("truncation") {
@@ -153,7 +153,7 @@ fn main() -> Result<(), EvoError> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |place: usize| arguments.get(place).and_then(|count| count.parse::<u32>().ok());
     let (genes, generations) = (number(0).unwrap_or(792).max(1) as usize, number(1).unwrap_or(1000).max(1));
-    let wanted = |name: &str| arguments.len() < 3 || arguments[2..].iter().any(|one| one == name);
+    let wanted = |name: &str| arguments.len() < 3 || arguments[2..].iter().any(|argument| argument == name);
     words(genes, generations, &wanted)?;
     bounded(genes, generations, &wanted)?;
     distributions(genes, generations, &wanted)

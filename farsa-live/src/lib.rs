@@ -1,7 +1,7 @@
 //! The reference experiments as WebAssembly, for the pages of `farsa live`.
 //!
-//! Texts go in and come out through memory: `input` gives room for one, `open` and `answer` take what was written there and say
-//! how long their answer is, which `output` points to.
+//! Texts are exchanged through memory. `input` returns a buffer for a request. `open` and `answer` consume that buffer and
+//! return the length of their answer, which starts at `output`.
 
 use std::cell::RefCell;
 
@@ -20,24 +20,24 @@ thread_local! {
 }
 
 impl State {
-    /// Keeps an answer and says how long it is.
-    fn say(&mut self, answer: String) -> usize {
+    /// Stores an answer and returns its length.
+    fn store(&mut self, answer: String) -> usize {
         self.output = answer;
         self.output.len()
     }
 
-    fn taken(&mut self) -> String {
+    fn take_input(&mut self) -> String {
         String::from_utf8_lossy(&std::mem::take(&mut self.input)).into_owned()
     }
 }
 
-/// The experiments, and those that files describe: to read them is all that a page wants of files.
+/// The built-in experiments and those of files. A page only reads files, so it needs no schema and no templates.
 fn laboratory() -> Laboratory<'static> {
     let files = ExperimentFiles { schema: String::new, templates: &[], ..farsa_compose::FILES };
     Laboratory::new(&farsa_experiments::all()).with_files(files)
 }
 
-/// Room for a text of so many bytes.
+/// Returns a buffer for a text of the given number of bytes.
 // SAFETY: no other function of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn input(length: usize) -> *mut u8 {
@@ -47,34 +47,34 @@ pub extern "C" fn input(length: usize) -> *mut u8 {
     })
 }
 
-/// Opens the agent of the script that is the input; the answer is empty, or says what is wrong.
+/// Opens the agent of the script in the input. The answer is empty, or the text of the error.
 // SAFETY: as above.
 #[unsafe(no_mangle)]
 pub extern "C" fn open() -> usize {
     STATE.with_borrow_mut(|state| {
-        let script = state.taken();
+        let script = state.take_input();
         match LiveSession::open(&laboratory(), &script) {
             Ok(session) => {
                 state.session = Some(session);
-                state.say(String::new())
+                state.store(String::new())
             }
-            Err(error) => state.say(error.to_string()),
+            Err(error) => state.store(error.to_string()),
         }
     })
 }
 
-/// Answers the request that is the input.
+/// Answers the request in the input.
 // SAFETY: as above.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> usize {
     STATE.with_borrow_mut(|state| {
-        let request = state.taken();
+        let request = state.take_input();
         let answer = state.session.as_mut().map(|session| session.answer(&request));
-        state.say(answer.unwrap_or_else(|| r#"{"error":"no agent is open"}"#.into()))
+        state.store(answer.unwrap_or_else(|| r#"{"error":"no agent is open"}"#.into()))
     })
 }
 
-/// Where the answer is.
+/// Returns the start of the answer.
 // SAFETY: as above.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *const u8 {

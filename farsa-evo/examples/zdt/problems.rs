@@ -1,14 +1,14 @@
-//! The problems ZDT1 to 4 and 6, as objectives that are maximised.
+//! The problems ZDT1 to 4 and 6, as objectives to maximize.
 
 use std::f64::consts::{PI, TAU};
 
 use farsa_evo::pareto::hypervolume;
 use farsa_num::{exp, sin_cos};
 
-/// What fronts are measured from, in objectives that are minimised: (1.1, 1.1).
+/// The reference point of the hypervolume, in objectives that are minimized.
 pub(crate) const REFERENCE: [f64; 2] = [-1.1, -1.1];
 
-/// One of the problems of \[Zitzler2000\]: ZDT5, of bit strings, is not among them.
+/// One of the problems of \[Zitzler2000\], without ZDT5, whose genes are bit strings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Zdt {
     One,
@@ -31,7 +31,7 @@ impl Zdt {
         }
     }
 
-    /// The range of each gene \[genes\].
+    /// Returns the range of each gene \[genes\].
     pub(crate) fn bounds(self) -> Vec<[f64; 2]> {
         match self {
             Self::One | Self::Two | Self::Three => vec![[0.0, 1.0]; 30],
@@ -40,7 +40,7 @@ impl Zdt {
         }
     }
 
-    /// Minus both functions of these genes.
+    /// Returns the negated values of both functions.
     pub(crate) fn judge(self, genes: &[f64], row: &mut [f64]) {
         let (x, rest) = (genes[0], &genes[1..]);
         let mean = rest.iter().sum::<f64>() / rest.len() as f64;
@@ -55,7 +55,7 @@ impl Zdt {
         row.copy_from_slice(&[-f, -g * self.shape(f, g)]);
     }
 
-    /// The second function as a part of g.
+    /// Returns the second function divided by g.
     fn shape(self, f: f64, g: f64) -> f64 {
         let part = f / g;
         match self {
@@ -65,7 +65,7 @@ impl Zdt {
         }
     }
 
-    /// The hypervolume of the true front, by a hundred thousand points of it.
+    /// Integrates the hypervolume of the true front over a hundred thousand points.
     pub(crate) fn largest_hypervolume(self) -> f64 {
         let first = |i: u32| {
             let x = f64::from(i) / 1e5;
@@ -76,7 +76,7 @@ impl Zdt {
     }
 }
 
-/// The first function of ZDT6.
+/// Returns the first function of ZDT6.
 fn steep(x: f64) -> f64 {
     let sine = sin_cos(6.0 * PI * x).0;
     let square = sine * sine;

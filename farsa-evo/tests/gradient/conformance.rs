@@ -1,4 +1,4 @@
-//! What every strategy keeps to, for several configurations of each.
+//! Conformance of the gradient strategies, for several configurations of each.
 
 use farsa_evo::gradient::{
     Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes, SnesConfig, Xnes,
@@ -49,7 +49,7 @@ fn mirrored_strategies_conform() {
 }
 
 #[test]
-fn what_has_to_be_recorded_is_said() {
+fn record_kinds_match_the_shaping() {
     let pgpe =
         |fitness| Pgpe::new(PgpeConfig { fitness, ..PgpeConfig::new(mean(2), 0.3, 2) }, 0).unwrap().record_kind();
     assert_eq!([PgpeFitness::CenteredRanks, PgpeFitness::Raw].map(pgpe), [RecordKind::Order, RecordKind::Values]);
@@ -63,53 +63,54 @@ fn length(x: impl Iterator<Item = f64>) -> f64 {
     x.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Tells a strategy a few generations; how far its point moved last, and that point.
+/// Runs a few generations and returns the length of the last step and the final mean.
 fn moved<S: Strategy<f64>>(strategy: &mut S, mean: impl Fn(&S) -> Vec<f64>) -> (f64, Vec<f64>) {
     let mut before = Vec::new();
     for _ in 0..5 {
         before = mean(strategy);
-        let told: Vec<f64> =
+        let fitness: Vec<f64> =
             strategy.ask().iter().map(|x| -x.iter().map(|x| (x - 3.0) * (x - 3.0)).sum::<f64>()).collect();
-        strategy.tell_values(&told).unwrap();
+        strategy.tell_values(&fitness).unwrap();
     }
     let after = mean(strategy);
     (length(after.iter().zip(&before).map(|(a, b)| a - b)), after)
 }
 
 #[track_caller]
-fn says(strategy: &impl Strategy<f64>, wanted: &[f64]) {
-    let said = strategy.diagnostics();
-    assert_eq!(said.len(), wanted.len());
-    assert!(said.iter().zip(wanted).all(|(a, b)| *b > 0.0 && (a - b).abs() <= 1e-9 * b), "{said:?} {wanted:?}");
+fn check_diagnostics(strategy: &impl Strategy<f64>, expected: &[f64]) {
+    let diagnostics = strategy.diagnostics();
+    assert_eq!(diagnostics.len(), expected.len());
+    let close = |(a, b): (&f64, &f64)| *b > 0.0 && (a - b).abs() <= 1e-9 * b;
+    assert!(diagnostics.iter().zip(expected).all(close), "{diagnostics:?} {expected:?}");
 }
 
 #[test]
-fn what_they_say_of_themselves_is_what_they_did() {
+fn diagnostics_match_the_last_step() {
     let ends =
         |all: &[f64]| [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)];
     let mut ars = Ars::new(ArsConfig::new(mean(4), 6), 3).unwrap();
     let (step, point) = moved(&mut ars, |ars| ars.mean().to_vec());
-    says(&ars, &[step, length(point.into_iter())]);
+    check_diagnostics(&ars, &[step, length(point.into_iter())]);
     let mut es = OpenAiEs::new(OpenAiEsConfig::new(mean(4), 6), 3).unwrap();
     let (step, point) = moved(&mut es, |es| es.mean().to_vec());
-    says(&es, &[step, length(point.into_iter())]);
+    check_diagnostics(&es, &[step, length(point.into_iter())]);
     let mut pgpe = Pgpe::new(PgpeConfig::new(mean(4), 0.3, 6), 3).unwrap();
     let (speed, _) = moved(&mut pgpe, |pgpe| pgpe.mean().to_vec());
     let [low, high] = ends(pgpe.sigmas());
     assert!(low < high);
-    says(&pgpe, &[speed, low, high]);
+    check_diagnostics(&pgpe, &[speed, low, high]);
     let mut snes = Snes::new(SnesConfig::new(mean(4), 0.5), 3).unwrap();
     moved(&mut snes, |snes| snes.mean().to_vec());
     let [low, high] = ends(snes.sigmas());
     assert!(low < high);
-    says(&snes, &[low, high]);
+    check_diagnostics(&snes, &[low, high]);
     let mut xnes = Xnes::new(XnesConfig::new(mean(4), 0.5), 3).unwrap();
     moved(&mut xnes, |xnes| xnes.mean().to_vec());
-    says(&xnes, &[xnes.sigma()]);
+    check_diagnostics(&xnes, &[xnes.sigma()]);
 }
 
 #[test]
-fn all_can_save_their_state() {
+fn every_strategy_saves_its_state() {
     assert!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().snapshot().is_some());
     assert!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().snapshot().is_some());
     assert!(Pgpe::new(PgpeConfig::new(mean(2), 0.3, 1), 0).unwrap().snapshot().is_some());
@@ -117,35 +118,35 @@ fn all_can_save_their_state() {
     assert!(Xnes::new(XnesConfig::new(mean(2), 0.3), 0).unwrap().snapshot().is_some());
 }
 
-/// Tells a strategy the worst that there is, and looks whether all stays finite and can be saved.
-fn survives<S>(mut strategy: S, mut other: S, values: &[f64])
+/// Feeds extreme fitness and checks that the state stays finite and can be saved.
+fn survives<S>(mut strategy: S, mut restored: S, values: &[f64])
 where
     S: Strategy<f64> + Snapshot + PartialEq + std::fmt::Debug,
 {
     let mut values = values.iter().copied().cycle();
     for _ in 0..30 {
-        let told: Vec<f64> = (0..strategy.ask().len()).map(|_| values.next().unwrap()).collect();
-        strategy.tell_values(&told).unwrap();
+        let fitness: Vec<f64> = (0..strategy.ask().len()).map(|_| values.next().unwrap()).collect();
+        strategy.tell_values(&fitness).unwrap();
         assert!(strategy.ask().as_slice().iter().all(|gene| gene.is_finite()), "{strategy:?}");
         assert!(strategy.diagnostics().iter().all(|number| number.is_finite()), "{strategy:?}");
-        other.restore(&strategy.save()).unwrap();
-        assert_eq!(other, strategy);
+        restored.restore(&strategy.save()).unwrap();
+        assert_eq!(restored, strategy);
     }
 }
 
-/// Selection that always drives the same way, as far as numbers go.
-fn driven<S>(mut strategy: S, mut other: S, away: bool)
+/// Selection that always drives in one direction, up to the limits of `f64`.
+fn driven<S>(mut strategy: S, mut restored: S, away: bool)
 where
     S: Strategy<f64> + Snapshot + PartialEq + std::fmt::Debug,
 {
     for _ in 0..60 {
         let sign = if away { 1.0 } else { -1.0 };
-        let told: Vec<f64> = strategy.ask().iter().map(|x| sign * x.iter().map(|x| x.abs()).sum::<f64>()).collect();
-        strategy.tell_values(&told).unwrap();
+        let fitness: Vec<f64> = strategy.ask().iter().map(|x| sign * x.iter().map(|x| x.abs()).sum::<f64>()).collect();
+        strategy.tell_values(&fitness).unwrap();
         assert!(strategy.ask().as_slice().iter().all(|gene| gene.is_finite()));
     }
-    other.restore(&strategy.save()).unwrap();
-    assert_eq!(other, strategy);
+    restored.restore(&strategy.save()).unwrap();
+    assert_eq!(restored, strategy);
 }
 
 fn any_value() -> impl Generator<Value = f64> {
@@ -160,7 +161,7 @@ fn any_value() -> impl Generator<Value = f64> {
     ]
 }
 
-/// A size of any magnitude.
+/// A positive size of any magnitude.
 fn any_size() -> impl Generator<Value = f64> {
     prop_oneof![4 => 0.01..2.0f64, 1 => Just(1e-100), 1 => Just(1e100), 1 => 1e-9..1e9f64]
 }
@@ -224,7 +225,7 @@ proptest! {
     }
 }
 
-/// Raw fitness of a generation in which nothing can be compared changes nothing but the noise.
+/// With raw fitness, a generation without comparable individuals changes only the noise.
 #[test]
 fn failures_alone_move_nothing_by_value() {
     let mut ars = Ars::new(ArsConfig::new(mean(3), 4), 1).unwrap();

@@ -1,4 +1,4 @@
-//! Known functions are optimised from fixed seeds, within budgets of some times what is needed.
+//! Test functions are optimized from fixed seeds, within budgets of a few times the needed evaluations.
 
 use std::f64::consts::LN_10;
 
@@ -33,7 +33,7 @@ fn rosenbrock(x: &[f64]) -> f64 {
     -x.windows(2).map(|x| 100.0 * square(x[1] - x[0] * x[0]) + square(1.0 - x[0])).sum::<f64>()
 }
 
-/// The best fitness within so many evaluations.
+/// Returns the best fitness within a budget of evaluations.
 fn best(strategy: &mut impl Strategy<f64>, evaluations: usize, function: fn(&[f64]) -> f64) -> f64 {
     let generations = evaluations / strategy.ask().len();
     strategy.maximize(generations as u32, function).unwrap().fitness.get()

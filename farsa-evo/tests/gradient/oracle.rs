@@ -1,4 +1,4 @@
-//! The papers' formulas, written down as they stand, against the strategies for a few generations.
+//! The strategies against direct transcriptions of their papers' formulas, for a few generations.
 
 use farsa_evo::Strategy;
 use farsa_evo::gradient::{
@@ -17,7 +17,7 @@ fn start() -> Vec<f64> {
     vec![0.5, -1.0, 2.0, 0.25, -3.0]
 }
 
-/// The noise of a row of a generation.
+/// Returns the noise of a row of a generation.
 fn noise(row: usize, generation: u32) -> Vec<f64> {
     let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
     let mut stream = Stream::new(SEED, domain, 0, row as u32, generation);
@@ -40,7 +40,7 @@ fn close(got: &[f64], want: &[f64]) {
     assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() <= 1e-12 * size), "{got:?}\n{want:?}");
 }
 
-/// Compares the generation that waits with the oracle's, and tells it the fitness of that.
+/// Compares the current generation with the oracle's, then passes on the oracle's fitness.
 fn compare(strategy: &mut impl Strategy<f64>, genomes: &Matrix) -> Vec<f64> {
     for (got, want) in strategy.ask().iter().zip(genomes) {
         close(got, want);
@@ -50,15 +50,15 @@ fn compare(strategy: &mut impl Strategy<f64>, genomes: &Matrix) -> Vec<f64> {
     values
 }
 
-/// How many are better.
-fn rank(values: &[f64], of: usize) -> usize {
-    values.iter().filter(|value| **value > values[of]).count()
+/// Counts the better values.
+fn rank(values: &[f64], index: usize) -> usize {
+    values.iter().filter(|value| **value > values[index]).count()
 }
 
-fn utility(values: &[f64], of: usize) -> f64 {
+fn utility(values: &[f64], index: usize) -> f64 {
     let lambda = values.len() as f64;
     let raw = |k: usize| (ln(lambda / 2.0 + 1.0) - ln(k as f64)).max(0.0);
-    raw(rank(values, of) + 1) / (1..=values.len()).map(raw).sum::<f64>() - 1.0 / lambda
+    raw(rank(values, index) + 1) / (1..=values.len()).map(raw).sum::<f64>() - 1.0 / lambda
 }
 
 /// Pairs that mirror each other.
@@ -100,7 +100,7 @@ fn identity() -> Matrix {
     (0..GENES).map(|i| (0..GENES).map(|j| f64::from(u8::from(i == j))).collect()).collect()
 }
 
-/// The power series itself.
+/// The matrix exponential by its power series.
 fn matrix_exp(a: &Matrix) -> Matrix {
     let (mut sum, mut term) = (identity(), identity());
     for k in 1..60 {
@@ -128,8 +128,8 @@ fn xnes_follows_its_paper() {
         let mut m = vec![vec![0.0; GENES]; GENES];
         for i in 0..GENES {
             for j in 0..GENES {
-                let one = identity()[i][j];
-                m[i][j] = (0..8).map(|k| utility(&values, k) * (s[k][i] * s[k][j] - one)).sum();
+                let delta = identity()[i][j];
+                m[i][j] = (0..8).map(|k| utility(&values, k) * (s[k][i] * s[k][j] - delta)).sum();
             }
         }
         let growth = (0..GENES).map(|i| m[i][i]).sum::<f64>() / GENES as f64;
@@ -162,7 +162,7 @@ fn the_strategy_of_openai_follows_its_paper() {
             let (genomes, noises) = mirrored(&theta, &[sigma; GENES], pairs, generation);
             let values = compare(&mut strategy, &genomes);
             let count = values.len() as f64;
-            let centred = |of: usize| 0.5 - rank(&values, of) as f64 / (count - 1.0);
+            let centred = |index: usize| 0.5 - rank(&values, index) as f64 / (count - 1.0);
             for i in 0..GENES {
                 let sum: f64 = (0..pairs).map(|k| (centred(2 * k) - centred(2 * k + 1)) * noises[k][i]).sum();
                 let g = sum / (count * sigma) - decay * theta[i];
@@ -195,7 +195,7 @@ fn pgpe_follows_its_paper() {
             let values = compare(&mut strategy, &genomes);
             let f: Vec<f64> = match fitness {
                 PgpeFitness::Raw => values.clone(),
-                _ => (0..values.len()).map(|of| 0.5 - rank(&values, of) as f64 / 11.0).collect(),
+                _ => (0..values.len()).map(|index| 0.5 - rank(&values, index) as f64 / 11.0).collect(),
             };
             let b = f.iter().sum::<f64>() / 12.0;
             let (mut gradient, mut grown) = (vec![0.0; GENES], vec![0.0; GENES]);

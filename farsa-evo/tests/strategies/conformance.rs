@@ -1,4 +1,4 @@
-//! What the check of strategies finds in one that is wrong; how often ours want their states kept.
+//! The conformance check on strategies with flaws, and the snapshot intervals of the built-in strategies.
 
 use crate::errors;
 use farsa_evo::coevolution::Populations;
@@ -16,21 +16,21 @@ use farsa_evo::{EvoError, Fitness, Population, Record, RecordEntry, RecordKind, 
 #[derive(Clone, Copy, PartialEq)]
 enum Flaw {
     None,
-    /// A number that later generations depend on is not in its state.
+    /// The state lacks a number that later generations depend on.
     Forgets,
-    /// A number that it says of itself is not.
+    /// The state lacks a number of the diagnostics.
     SaysLess,
-    /// Its state tells that it was restored.
+    /// The state differs after it was restored.
     SavesMore,
-    /// It says more numbers in each generation.
+    /// The diagnostics grow with each generation.
     SaysMore,
-    /// When it is fresh it saves nothing.
+    /// A new instance has an empty state.
     SavesLate,
-    /// It wants states more often than there are generations.
+    /// The snapshot interval is shorter than a generation.
     SavesTooOften,
 }
 
-/// Genes that are the sum of all that it was told, as far as that is a number.
+/// Genes that are the sum of all finite reported fitness.
 struct Summing {
     flaw: Flaw,
     generation: u32,
@@ -107,7 +107,7 @@ impl Snapshot for Summing {
 }
 
 #[test]
-fn what_is_wrong_is_found() {
+fn every_flaw_is_reported() {
     check_strategy(|| Summing::new(Flaw::None), 8).unwrap();
     for (flaw, expected) in [
         (Flaw::Forgets, "generation 2: other genomes where the same are asked for"),
@@ -123,12 +123,12 @@ fn what_is_wrong_is_found() {
 }
 
 #[test]
-fn a_recorded_gene_that_is_no_number_is_named() {
+fn a_recorded_nan_gene_is_named() {
     let mut strategy = Summing::new(Flaw::None).unwrap();
     let mut record = Record::new(&mut strategy).unwrap();
     record.tell(&mut strategy, &[Fitness::WORST; 3]).unwrap();
     let mut frame = record.entry(0).unwrap().frame.to_vec();
-    // Behind the number of the champion.
+    // The position after the index of the champion.
     frame[1..9].copy_from_slice(&0x7ff8_0001_0203_0405_u64.to_le_bytes());
     record.push(RecordEntry { frame: &frame, state: None }).unwrap();
     let mut genomes = |generation| record.genomes(&mut strategy, generation);
@@ -136,9 +136,9 @@ fn a_recorded_gene_that_is_no_number_is_named() {
     assert_eq!(genomes(1), Err(errors::state_content("a gene", 0x7ff8_0001_0203_0405)));
 }
 
-/// As often as telling again takes a second or some: of genes that are drawn in all, or of their cube.
+/// Snapshot intervals bound the replay to about a second, by the total number of drawn genes, or by their cube.
 #[test]
-fn states_are_kept_as_often_as_telling_takes_time() {
+fn snapshot_intervals_follow_the_cost_of_replay() {
     let bounds = || vec![[-1.0, 1.0]; 250];
     let between = |mut strategy: Box<dyn Strategy<f64>>| strategy.snapshot().unwrap().snapshot_interval();
     let real_ga = |seed| RealGa::new(RealGaConfig { population: 40, ..RealGaConfig::new(bounds()) }, seed);
@@ -164,6 +164,6 @@ fn states_are_kept_as_often_as_telling_takes_time() {
 }
 
 #[test]
-fn a_strategy_that_says_nothing_of_itself_has_no_numbers() {
+fn a_strategy_without_diagnostics_has_no_numbers() {
     assert_eq!(TruncationGa::new(GaConfig::new(3), 0).unwrap().diagnostics(), []);
 }

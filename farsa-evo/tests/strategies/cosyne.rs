@@ -1,4 +1,4 @@
-//! Cooperative co-evolution of weights: beside a transcription of the algorithm, on known functions, and its bits.
+//! Cooperative coevolution of weights, compared with a transcription of the algorithm, on test functions and by digests.
 
 use crate::errors;
 use farsa_evo::coevolution::{Cosyne, CosyneConfig, Permutation};
@@ -26,20 +26,26 @@ fn configs() -> [CosyneConfig; 4] {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| Cosyne::new(config.clone(), 7), 40).unwrap();
     }
-    let [all, by_fitness, ..] = configs().map(|config| Cosyne::new(config, 1).unwrap().record_kind());
-    assert_eq!((all, by_fitness), (RecordKind::Order, RecordKind::Values));
+    let [by_rank, by_fitness, ..] = configs().map(|config| Cosyne::new(config, 1).unwrap().record_kind());
+    assert_eq!((by_rank, by_fitness), (RecordKind::Order, RecordKind::Values));
 }
 
-/// A generation of algorithm 2, gene by gene: rows of weights, each with the row that it was in before.
+/// A generation of algorithm 2, gene by gene: rows of weights, each with its previous row.
 #[allow(clippy::disallowed_methods)]
-fn next(config: &CosyneConfig, seed: u64, generation: u32, rows: &[Vec<f64>], told: &[f64]) -> Vec<Vec<(f64, usize)>> {
+fn next(
+    config: &CosyneConfig,
+    seed: u64,
+    generation: u32,
+    rows: &[Vec<f64>],
+    fitness: &[f64],
+) -> Vec<Vec<(f64, usize)>> {
     let (m, n) = (rows.len(), rows[0].len());
     let mut order: Vec<usize> = (0..m).collect();
-    order.sort_by(|a, b| told[*b].total_cmp(&told[*a]));
+    order.sort_by(|a, b| fitness[*b].total_cmp(&fitness[*a]));
     let mut p: Vec<Vec<(f64, usize)>> =
         order.iter().map(|&row| rows[row].iter().map(|&weight| (weight, row)).collect()).collect();
     let parents = p.clone();
@@ -61,7 +67,7 @@ fn next(config: &CosyneConfig, seed: u64, generation: u32, rows: &[Vec<f64>], to
                         let angle = core::f64::consts::PI * (stream.uniform_f64() - 0.5);
                         weight += config.mutation_scale * angle.tan();
                     }
-                    // The first child of an odd k is drawn again, and not taken.
+                    // For an odd k the first child is drawn but not used.
                     if child == k % 2 {
                         p[m - config.offspring + k][gene] = (weight, row);
                     }
@@ -70,20 +76,20 @@ fn next(config: &CosyneConfig, seed: u64, generation: u32, rows: &[Vec<f64>], to
             }
         }
     }
-    let [worst, best] = [told[order[m - 1]], told[order[0]]];
+    let [worst, best] = [fitness[order[m - 1]], fitness[order[0]]];
     for i in 0..n {
         let mut stream = Stream::new(seed, Domain::Mutation, 1, i as u32, generation);
         let marked: Vec<usize> = (0..m - config.offspring)
             .filter(|&j| match config.permutation {
                 Permutation::All => true,
                 Permutation::ByFitness => {
-                    let part: f64 = (told[order[j]] - worst) / (best - worst);
+                    let part: f64 = (fitness[order[j]] - worst) / (best - worst);
                     stream.uniform_f64() < 1.0 - part.powf(1.0 / n as f64)
                 }
             })
             .collect();
         for last in (1..marked.len()).rev() {
-            let other = stream.below(last as u32 + 1) as usize;
+            let target = stream.below(last as u32 + 1) as usize;
             let weight = p[marked[last]][i];
             p[marked[last]][i] = p[marked[other]][i];
             p[marked[other]][i] = weight;
@@ -98,9 +104,9 @@ fn generations_are_those_of_a_transcription() {
         let mut search = Cosyne::new(config.clone(), 11).unwrap();
         for generation in 1..20 {
             let rows: Vec<Vec<f64>> = search.ask().iter().map(<[f64]>::to_vec).collect();
-            let told: Vec<f64> = rows.iter().map(|row| rosenbrock(row)).collect();
-            search.tell_values(&told).unwrap();
-            let want = next(&config, 11, generation, &rows, &told);
+            let fitness: Vec<f64> = rows.iter().map(|row| rosenbrock(row)).collect();
+            search.tell_values(&fitness).unwrap();
+            let want = next(&config, 11, generation, &rows, &fitness);
             for (individual, (got, want)) in search.ask().iter().zip(&want).enumerate() {
                 let near = |got: f64, want: f64| (got - want).abs() <= 1e-9 * want.abs().max(1.0);
                 assert!(got.iter().zip(want).all(|(got, want)| near(*got, want.0)), "{generation}: {got:?} {want:?}");
@@ -113,7 +119,7 @@ fn generations_are_those_of_a_transcription() {
     }
 }
 
-/// Each subpopulation keeps its weights: nothing but mutation makes new ones, and none crosses to another gene.
+/// Only mutation creates new weights, and no weight moves to another gene.
 #[test]
 fn weights_stay_in_their_subpopulation() {
     for permutation in [Permutation::All, Permutation::ByFitness] {
@@ -122,8 +128,8 @@ fn weights_stay_in_their_subpopulation() {
         let column = |search: &Cosyne, gene: usize| search.ask().iter().map(|row| row[gene]).collect::<Vec<f64>>();
         for _ in 0..10 {
             let before: Vec<Vec<f64>> = (0..8).map(|gene| column(&search, gene)).collect();
-            let told: Vec<f64> = search.ask().iter().map(sphere).collect();
-            search.tell_values(&told).unwrap();
+            let fitness: Vec<f64> = search.ask().iter().map(sphere).collect();
+            search.tell_values(&fitness).unwrap();
             for (gene, before) in before.iter().enumerate() {
                 assert!(column(&search, gene).iter().all(|weight| before.contains(weight)));
             }
@@ -136,21 +142,21 @@ fn by_fitness_the_best_network_stays() {
     let config = CosyneConfig { permutation: Permutation::ByFitness, ..CosyneConfig::new(6) };
     let mut search = Cosyne::new(config, 5).unwrap();
     for _ in 0..30 {
-        let told: Vec<f64> = search.ask().iter().map(sphere).collect();
-        let best = (0..30).max_by(|a, b| told[*a].total_cmp(&told[*b])).unwrap();
+        let fitness: Vec<f64> = search.ask().iter().map(sphere).collect();
+        let best = (0..30).max_by(|a, b| fitness[*a].total_cmp(&fitness[*b])).unwrap();
         let best = search.ask().get(best).unwrap().to_vec();
-        search.tell_values(&told).unwrap();
+        search.tell_values(&fitness).unwrap();
         assert_eq!(search.ask().get(0).unwrap(), best);
     }
 }
 
-/// 30 individuals, so 12 000 evaluations.
+/// 30 individuals, 12 000 evaluations.
 #[test]
 fn it_converges() {
     for permutation in [Permutation::All, Permutation::ByFitness] {
         let config = |genes| CosyneConfig { permutation, ..CosyneConfig::new(genes) };
         let best = Cosyne::new(config(5), 5).unwrap().maximize(400, sphere).unwrap();
-        // Random weights reach -20 in as many evaluations.
+        // Random weights reach -20 with the same budget.
         assert!(best.fitness.get() > -0.2, "{permutation:?}: {:?}", best.fitness);
     }
 }
@@ -200,7 +206,7 @@ fn a_damaged_state_is_refused() {
     search.tell_values(&[0.0; 30]).unwrap();
     let before = search.clone();
     let state = search.snapshot().unwrap().save();
-    // Of an origin and of a gene.
+    // Positions of an origin and of a gene.
     for at in [4, state.len() - 8] {
         let mut damaged = state.clone();
         damaged[at..at + 8].fill(0xff);
@@ -220,7 +226,7 @@ proptest! {
         offspring in 0_usize..=6,
         scale in 0.0_f64..1e100,
         by_fitness: bool,
-        told in proptest::collection::vec(proptest::num::f64::ANY, 6),
+        fitness in proptest::collection::vec(proptest::num::f64::ANY, 6),
     ) {
         let permutation = if by_fitness { Permutation::ByFitness } else { Permutation::All };
         let config = CosyneConfig {
@@ -228,11 +234,11 @@ proptest! {
         };
         let mut search = Cosyne::new(config.clone(), seed).unwrap();
         for _ in 0..10 {
-            search.tell(&told.iter().copied().map(Fitness::nan_as_failed).collect::<Vec<_>>()).unwrap();
+            search.tell(&reported.iter().copied().map(Fitness::nan_as_failed).collect::<Vec<_>>()).unwrap();
             prop_assert!(search.ask().as_slice().iter().all(|gene| gene.is_finite()));
         }
-        let mut other = Cosyne::new(config, seed).unwrap();
-        other.restore(&search.save()).unwrap();
-        prop_assert_eq!(&other, &search);
+        let mut restored = Cosyne::new(config, seed).unwrap();
+        restored.restore(&search.save()).unwrap();
+        prop_assert_eq!(&restored, &search);
     }
 }

@@ -12,7 +12,7 @@ fn sphere(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum()
 }
 
-/// The ellipsoid of condition 10^6, in `f64` whose factors are exact enough.
+/// The ellipsoid of condition 10^6, with factors that `f64` holds exactly enough.
 fn ellipsoid(x: &[f64]) -> f64 {
     let last = (x.len() - 1).max(1) as f64;
     let factor = |index: usize| farsa_num::exp(6.0 * core::f64::consts::LN_10 * index as f64 / last);
@@ -20,14 +20,14 @@ fn ellipsoid(x: &[f64]) -> f64 {
 }
 
 fn rosenbrock(x: &[f64]) -> f64 {
-    let one = |pair: &[f64]| {
+    let term = |pair: &[f64]| {
         let (bend, rest) = (pair[1] - pair[0] * pair[0], 1.0 - pair[0]);
         100.0 * bend * bend + rest * rest
     };
-    x.windows(2).map(one).sum()
+    x.windows(2).map(term).sum()
 }
 
-/// Evaluations until the function is below 10^-8.
+/// Counts the evaluations until the function is below 10^-8.
 fn evaluations(strategy: &mut dyn Strategy<f64>, limit: usize, function: fn(&[f64]) -> f64) -> usize {
     let mut count = 0;
     while count < limit {
@@ -48,16 +48,16 @@ fn cma(mean: f64, genes: usize, sigma: f64) -> CmaEsConfig {
 #[test]
 fn test_functions_are_solved_within_the_usual_evaluations() {
     let mean = |config: &CmaEsConfig, function: fn(&[f64]) -> f64| {
-        let one = |seed| evaluations(&mut CmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
-        (0..5).map(one).sum::<usize>() / 5
+        let run = |seed| evaluations(&mut CmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
+        (0..5).map(run).sum::<usize>() / 5
     };
     let triangular = |config: &CmaEsConfig, function: fn(&[f64]) -> f64| {
-        let one =
+        let run =
             |seed| evaluations(&mut CholeskyCmaEs::with_covariance(config.clone(), seed).unwrap(), 50_000, function);
-        (0..5).map(one).sum::<usize>() / 5
+        (0..5).map(run).sum::<usize>() / 5
     };
-    // The means of pycma 4.5.0.
-    let all: [(CmaEsConfig, Function, usize); 6] = [
+    // The expected values are the means of pycma 4.5.0.
+    let cases: [(CmaEsConfig, Function, usize); 6] = [
         (cma(1.0, 5, 0.5), sphere, 622),
         (cma(1.0, 10, 0.5), sphere, 1370),
         (cma(1.0, 5, 0.5), ellipsoid, 1443),
@@ -65,7 +65,7 @@ fn test_functions_are_solved_within_the_usual_evaluations() {
         (cma(0.0, 5, 0.5), rosenbrock, 1720),
         (cma(0.0, 10, 0.5), rosenbrock, 4860),
     ];
-    for (config, function, usual) in &all {
+    for (config, function, usual) in &cases {
         for found in [mean(config, *function), triangular(config, *function)] {
             assert!(10 * found <= 11 * usual, "{found} evaluations, usual {usual}");
         }
@@ -99,7 +99,7 @@ fn strategies_keep_to_the_contract() {
         check_strategy(|| CholeskyCmaEs::with_covariance(CmaEsConfig { population, ..cma(0.3, genes, 0.7) }, 3), 22)
             .unwrap();
     }
-    // The axes are computed anew in few generations only: c_1 + c_mu is small.
+    // Here c_1 + c_mu is small, so that few generations recompute the axes.
     let config = CmaEsConfig { rank_one_rate: Some(0.003), rank_mu_rate: Some(0.002), ..cma(0.0, 6, 1.0) };
     check_strategy(|| CmaEs::new(config.clone(), 4), 40).unwrap();
     check_strategy(|| CholeskyCmaEs::with_covariance(config.clone(), 4), 40).unwrap();
@@ -107,7 +107,7 @@ fn strategies_keep_to_the_contract() {
     assert_eq!(search.record_kind(), RecordKind::Values);
 }
 
-/// The inverse square root of a symmetric matrix, by Jacobi rotations.
+/// Returns the inverse square root of a symmetric matrix, by Jacobi rotations.
 fn inverse_root(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let n = matrix.len();
     let mut a = matrix.to_vec();
@@ -133,7 +133,7 @@ fn inverse_root(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| element(i, j)).collect()).collect()
 }
 
-/// The inverse of the lower triangular factor of a symmetric matrix.
+/// Returns the inverse of the lower triangular factor of a symmetric matrix.
 fn inverse_factor(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let n = matrix.len();
     let (mut a, mut inverse) = (vec![vec![0.0; n]; n], vec![vec![0.0; n]; n]);
@@ -148,7 +148,7 @@ fn inverse_factor(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     inverse
 }
 
-/// [Hansen2016] appendix A, equation by equation, for the individuals that a strategy asks about.
+/// [Hansen2016] appendix A, equation by equation, for the individuals of a strategy.
 struct Oracle {
     m: Vec<f64>,
     sigma: f64,
@@ -156,9 +156,9 @@ struct Oracle {
     p_sigma: Vec<f64>,
     p_c: Vec<f64>,
     g: i32,
-    /// Whether all but the diagonal is left out, and the rates of the covariance are larger.
+    /// Restricts the covariance to its diagonal, with the larger rates of that case.
     diagonal: bool,
-    /// Whether steps are turned by the inverse of the triangular factor, [Krause2016].
+    /// Rotates steps by the inverse of the triangular factor, [Krause2016].
     triangular: bool,
 }
 
@@ -225,7 +225,7 @@ impl Oracle {
         self.g += 1;
     }
 
-    /// Tells both of them the same for some generations and compares what `state` gives: mean, sigma and the covariance.
+    /// Passes the same fitness to both for some generations and compares mean, sigma and covariance.
     fn follow<S: Strategy<f64>>(&mut self, search: &mut S, state: impl Fn(&S) -> (Vec<f64>, f64, Vec<Vec<f64>>)) {
         for generation in 0..12 {
             let values: Vec<f64> = search.ask().iter().map(|x| -rosenbrock(x)).collect();
@@ -268,13 +268,14 @@ fn updates_are_those_of_the_equations() {
 
 #[test]
 fn only_the_order_counts_and_failures_alone_change_nothing() {
-    let (mut plain, mut other) = (CmaEs::new(cma(1.0, 6, 0.5), 9).unwrap(), CmaEs::new(cma(1.0, 6, 0.5), 9).unwrap());
+    let (mut plain, mut monotone) =
+        (CmaEs::new(cma(1.0, 6, 0.5), 9).unwrap(), CmaEs::new(cma(1.0, 6, 0.5), 9).unwrap());
     for generation in 0..30 {
         if generation == 7 {
             let (mean, sigma, covariance) = (plain.mean().to_vec(), plain.sigma(), plain.covariance());
             let asked = plain.ask().digest();
             plain.tell_values(&[f64::NAN; 9]).unwrap();
-            other.tell_values(&[f64::NAN; 9]).unwrap();
+            monotone.tell_values(&[f64::NAN; 9]).unwrap();
             assert_eq!((plain.mean(), plain.sigma(), plain.covariance()), (&mean[..], sigma, covariance));
             assert_ne!(plain.ask().digest(), asked);
             continue;
@@ -282,19 +283,19 @@ fn only_the_order_counts_and_failures_alone_change_nothing() {
         let values: Vec<f64> = plain.ask().iter().map(|x| -rosenbrock(x)).collect();
         let risen: Vec<f64> = values.iter().map(|value| value * value * value + 7.0 * value - 3.0).collect();
         plain.tell_values(&values).unwrap();
-        other.tell_values(&risen).unwrap();
+        monotone.tell_values(&risen).unwrap();
     }
-    assert_eq!(plain, other);
+    assert_eq!(plain, monotone);
 }
 
 #[test]
-fn the_axis_ratio_finds_that_of_the_function() {
+fn the_axis_ratio_approaches_that_of_the_function() {
     let mut search = CmaEs::new(cma(1.0, 6, 0.5), 2).unwrap();
     evaluations(&mut search, 20_000, ellipsoid);
-    // The root of the condition, 10^3.
+    // The expected ratio is 10^3, the root of the condition.
     assert!((400.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
     assert_eq!(search.diagnostics(), [search.sigma(), search.axis_ratio()]);
-    // Of a factor the ratio on its diagonal, whose squares lie between the eigenvalues.
+    // The ratio of the factor's diagonal is smaller, because its squares are between the eigenvalues.
     let mut search = CholeskyCmaEs::with_covariance(cma(1.0, 6, 0.5), 2).unwrap();
     evaluations(&mut search, 20_000, ellipsoid);
     assert!((100.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
@@ -317,13 +318,13 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(|c| c.rank_one_rate = Some(1.5)), "rank_one_rate is 1.5, where 0 to 1 is possible");
     let both = |c: &mut CmaEsConfig| (c.rank_one_rate, c.rank_mu_rate) = (Some(0.75), Some(0.5));
     assert_eq!(refused(both), "rank_mu_rate is 0.5, where 0 to 1 - rank_one_rate is possible");
-    // Beside the usual rate of rank one, which is about 2 / (4 + 1.3)^2.
+    // The default rate of rank one is about 2 / (4 + 1.3)^2, so that the sum exceeds 1.
     assert_eq!(
         refused(|c| c.rank_mu_rate = Some(0.95)),
         "rank_mu_rate is 0.95, where 0 to 1 - rank_one_rate is possible"
     );
     assert_eq!(refused(|c| c.damping = Some(0.0)), "damping is 0, where 0.001 to 1000 is possible");
-    // More elements of the matrix than genes of a population may be.
+    // The matrix has more elements than a population may have genes.
     let large = refused(|c| c.mean = vec![0.0; 20_000]);
     assert_eq!(large, "20000 genomes of 20000 genes are more than 268435456 genes");
     let refused = |sigma, population| {
@@ -336,7 +337,7 @@ fn impossible_configurations_are_refused() {
 }
 
 #[test]
-fn states_that_cannot_be_change_nothing() {
+fn refused_states_change_nothing() {
     let mut search = CmaEs::new(cma(0.0, 2, 1.0), 1).unwrap();
     search.tell_values(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
     let (before, state) = (search.clone(), search.save());
@@ -369,7 +370,7 @@ fn states_that_cannot_be_change_nothing() {
     assert_eq!(search, before);
 }
 
-/// Fifty generations of Rosenbrock's function, where some evaluations fail.
+/// Digests fifty generations of Rosenbrock's function with some failed evaluations.
 fn digest(mut search: impl Strategy<f64>) -> u64 {
     let mut digest = Digest::new();
     for generation in 0..50 {
@@ -393,14 +394,14 @@ fn the_bits_stay_as_they_are() {
 
 /// Any fitness: common, failed, equal, huge.
 fn any_fitness(count: usize) -> impl proptest::strategy::Strategy<Value = Vec<f64>> {
-    let one = prop_oneof![
+    let fitness = prop_oneof![
         4 => -10.0..10.0_f64,
         1 => Just(f64::NAN),
         1 => Just(f64::INFINITY),
         1 => Just(0.0),
         1 => any::<f64>(),
     ];
-    proptest::collection::vec(one, count)
+    proptest::collection::vec(fitness, count)
 }
 
 proptest! {
@@ -410,24 +411,24 @@ proptest! {
     fn genes_stay_finite(
         genes in 1..7_usize, population in 2..12_usize, active: bool, seed: u64, exponent in -99..99_i32,
         rates in proptest::option::of((0.0..=1.0_f64, 0.0..=1.0_f64, 0.001..10.0_f64)),
-        told in any_fitness(40 * 12), adverse: bool,
+        reported in any_fitness(40 * 12), adverse: bool,
     ) {
         let sigma = farsa_num::exp(f64::from(exponent) * core::f64::consts::LN_10);
         let mut config = CmaEsConfig { population, active, ..cma(sigma, genes, sigma) };
-        if let Some((one, mu, damping)) = rates {
-            config.rank_one_rate = Some(one);
-            config.rank_mu_rate = Some(mu * (1.0 - one));
+        if let Some((rank_one, mu, damping)) = rates {
+            config.rank_one_rate = Some(rank_one);
+            config.rank_mu_rate = Some(mu * (1.0 - rank_one));
             config.damping = Some(damping);
         }
         let mut search = CmaEs::new(config, seed).unwrap();
         let separable = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![sigma; genes], sigma) };
         let mut separable = SeparableCmaEs::with_covariance(separable, seed).unwrap();
-        for told in told.chunks(population) {
-            // What lies farther out is better, without end.
+        for values in reported.chunks(population) {
+            // Fitness that grows without bound with the distance.
             let far = |x: &[f64]| x.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
             let values = |asked: &farsa_evo::Population<f64>| -> Vec<Fitness> {
-                let one = |(x, told): (&[f64], &f64)| Fitness::nan_as_failed(if adverse { far(x) } else { *told });
-                asked.iter().zip(told.iter().chain(std::iter::repeat(&f64::NAN))).map(one).collect()
+                let judge = |(x, value): (&[f64], &f64)| Fitness::nan_as_failed(if adverse { far(x) } else { *value });
+                asked.iter().zip(values.iter().chain(std::iter::repeat(&f64::NAN))).map(judge).collect()
             };
             search.tell(&values(search.ask())).unwrap();
             separable.tell(&values(separable.ask())).unwrap();
@@ -442,7 +443,7 @@ proptest! {
 }
 
 #[test]
-fn a_function_without_an_end_ends_at_the_limits() {
+fn an_unbounded_function_ends_at_the_limits() {
     for direction in [1.0, -1.0] {
         let mut search = CmaEs::new(cma(1.0, 3, 1.0), 6).unwrap();
         for _ in 0..3000 {

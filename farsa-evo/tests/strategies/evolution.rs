@@ -1,4 +1,4 @@
-//! Whole evolutions: what selection keeps, that the past can be rebuilt, and that the same seed gives the same bits.
+//! Selection, the rebuilding of earlier generations, and equal bits from equal seeds.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use farsa_evo::{
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
 
-/// Number of ones.
+/// Counts the ones.
 fn ones(genes: &[u16]) -> f64 {
     f64::from(genes.iter().map(|gene| gene.count_ones()).sum::<u32>())
 }
@@ -21,7 +21,7 @@ fn judge(population: &Population, fitness: impl Fn(&[u16]) -> f64) -> Vec<Fitnes
     population.iter().map(|genes| Fitness::nan_as_failed(fitness(genes))).collect()
 }
 
-/// Evolves and returns every generation that was evaluated, with the summary of the last.
+/// Returns every evaluated generation, with the summary of the last.
 fn evolve<S: Strategy>(
     strategy: &mut S,
     generations: u32,
@@ -30,15 +30,15 @@ fn evolve<S: Strategy>(
     let mut evaluated = Vec::new();
     let mut summary = None;
     for _ in 0..generations {
-        let told = judge(strategy.ask(), &fitness);
-        summary = Statistics::from_fitness(&told);
+        let fitness = judge(strategy.ask(), &fitness);
+        summary = Statistics::from_fitness(&fitness);
         evaluated.push(strategy.ask().clone());
-        strategy.tell(&told).unwrap();
+        strategy.tell(&fitness).unwrap();
     }
     (evaluated, summary.unwrap())
 }
 
-/// Tells and records, and returns every generation that was evaluated.
+/// Evolves into a record and returns every evaluated generation.
 fn recorded<S: Strategy>(
     strategy: &mut S,
     generations: u32,
@@ -48,8 +48,8 @@ fn recorded<S: Strategy>(
     let mut evaluated = Vec::new();
     for _ in 0..generations {
         evaluated.push(strategy.ask().clone());
-        let told = judge(strategy.ask(), &fitness);
-        record.tell(strategy, &told).unwrap();
+        let fitness = judge(strategy.ask(), &fitness);
+        record.tell(strategy, &fitness).unwrap();
     }
     (evaluated, record)
 }
@@ -60,7 +60,7 @@ fn rebuilds<S: Strategy + std::fmt::Debug + PartialEq>(fresh: impl Fn() -> S) {
     for (generation, population) in (0..).zip(&evaluated) {
         assert_eq!(&record.genomes(&mut fresh(), generation).unwrap(), population, "generation {generation}");
     }
-    // On the way from one to the next as well.
+    // Also from one rebuilt generation to a later one.
     let mut on_the_way = fresh();
     for generation in [0, 3, 3, 17, 59] {
         assert_eq!(record.genomes(&mut on_the_way, generation).unwrap(), evaluated[generation as usize]);
@@ -71,14 +71,14 @@ fn rebuilds<S: Strategy + std::fmt::Debug + PartialEq>(fresh: impl Fn() -> S) {
     assert_eq!(on_the_way, strategy);
     let ahead = errors::no_such_generation(61, 60);
     assert_eq!(record.genomes(&mut fresh(), 61), Err(ahead));
-    // What happened after a generation is forgotten, and happens again.
+    // Later generations are discarded and evolve again with equal bits.
     let mut again = record.clone();
     again.truncate(31);
     let mut resumed = fresh();
     again.rebuild(&mut resumed, 31).unwrap();
     for _ in 31..60 {
-        let told = judge(resumed.ask(), ones);
-        again.tell(&mut resumed, &told).unwrap();
+        let fitness = judge(resumed.ask(), ones);
+        again.tell(&mut resumed, &fitness).unwrap();
     }
     assert_eq!((resumed, again), (strategy, record));
 }
@@ -99,7 +99,7 @@ fn every_generation_is_rebuilt_bit_for_bit() {
     });
 }
 
-/// Climbs by steps that it finds by trial, remembers nothing but them, and cannot save its state.
+/// A hill climber with adaptive steps that cannot save its state.
 #[derive(Debug, PartialEq)]
 struct HillClimber {
     generation: u32,
@@ -137,7 +137,7 @@ fn three_methods_make_a_strategy_that_is_recorded() {
     assert!(HillClimber::new().genealogy().is_none() && HillClimber::new().snapshot().is_none());
 }
 
-/// The same with genomes that are recorded as they are.
+/// The hill climber with recorded genomes.
 struct Slow(HillClimber);
 
 impl Strategy for Slow {
@@ -168,7 +168,7 @@ impl Snapshot for Slow {
 }
 
 #[test]
-fn recorded_genomes_come_back_and_are_not_told() {
+fn recorded_genomes_are_rebuilt_without_fitness() {
     let mut strategy = Slow(HillClimber::new());
     let (evaluated, record) = recorded(&mut strategy, 9, ones);
     for (generation, population) in (0..).zip(&evaluated) {
@@ -178,12 +178,12 @@ fn recorded_genomes_come_back_and_are_not_told() {
     assert!(record.genomes(&mut Slow(HillClimber::new()), 9).is_err());
     assert_eq!(record.order(3), None);
     assert!(record.champion(0, 8).is_some() && record.champion(0, 9).is_none());
-    // Nothing could make this one go on.
+    // Evolution cannot continue from this one.
     let mut lost = Slow(HillClimber { population: Population::new(3, 2).unwrap(), ..HillClimber::new() });
     assert_eq!(Record::new(&mut lost).unwrap_err(), errors::no_snapshot());
 }
 
-/// A strategy of some populations that names some champions, whatever it is told.
+/// A strategy that names fixed champions for any fitness.
 struct Wrong {
     populations: usize,
     champions: Vec<usize>,
@@ -209,7 +209,7 @@ impl Strategy for Wrong {
 }
 
 #[test]
-fn what_a_strategy_says_of_itself_is_checked() {
+fn champions_and_populations_are_checked() {
     let wrong = |populations, champions: &[usize]| {
         let population = Population::new(6, 2).unwrap();
         let mut strategy = Wrong { populations, champions: champions.into(), population };
@@ -223,20 +223,20 @@ fn what_a_strategy_says_of_itself_is_checked() {
     for (champions, individual) in [([3, 3], 3), ([0, 6], 6), ([0, 1], 1), ([usize::MAX, 3], usize::MAX)] {
         assert_eq!(wrong(2, &champions), errors::no_such_individual(individual, 6));
     }
-    // It stays where it is, whatever it is told.
+    // The generation never advances.
     assert_eq!(wrong(2, &[0, 3]), errors::stuck(0, 0));
 }
 
 #[test]
-fn a_record_is_of_one_strategy() {
+fn a_record_belongs_to_one_strategy() {
     let config = GaConfig { population: 6, parents: 2, ..GaConfig::new(3) };
     let mut evolution = TruncationGa::new(config, 4).unwrap();
     let mut record = Record::new(&mut evolution).unwrap();
-    let told = [Fitness::WORST; 6];
-    assert_eq!(record.tell(&mut evolution, &told[1..]), Err(errors::fitness_count(6, 5)));
-    evolution.tell(&told).unwrap();
-    let elsewhere = errors::other_record("generations", 0);
-    assert_eq!(record.tell(&mut evolution, &told), Err(elsewhere));
+    let fitness = [Fitness::WORST; 6];
+    assert_eq!(record.tell(&mut evolution, &fitness[1..]), Err(errors::fitness_count(6, 5)));
+    evolution.tell(&fitness).unwrap();
+    let skipped = errors::other_record("generations", 0);
+    assert_eq!(record.tell(&mut evolution, &fitness), Err(skipped));
     assert_eq!(Record::new(&mut evolution), Err(errors::not_at_start(1)));
     let other = |config| record.rebuild(&mut TruncationGa::new(config, 4).unwrap(), 0).unwrap_err();
     assert_eq!(other(GaConfig { genes: 4, ..config }), errors::other_record("genes", 3));
@@ -268,7 +268,7 @@ fn one_plus_one_climbs_and_keeps_its_genes_narrow() {
     assert!(evaluated.iter().all(|pair| pair.as_slice().iter().all(|&gene| gene < 256)));
     let (fitness, evaluations) = search.parent_fitness().unwrap();
     assert!(fitness.get() > 100.0 && evaluations > 1, "{fitness:?} of 112 in {evaluations}");
-    // Without noise the fitness of a parent is what it always was, and never falls.
+    // Without noise the fitness of a parent never falls.
     let parents: Vec<f64> = evaluated.iter().map(|pair| ones(pair.get(0).unwrap())).collect();
     assert!(parents.windows(2).all(|pair| pair[0] <= pair[1]));
 }
@@ -280,7 +280,7 @@ fn resampling_at_rate_one_is_random_search_with_an_elite() {
     let (evaluated, _) = evolve(&mut ga, 20, ones);
     for pair in evaluated.windows(2) {
         let old = pair[0].get(0).unwrap();
-        // A fresh genome shares half its 3200 bits with any other, to within five standard deviations of 28.
+        // A new genome shares half its 3200 bits with any other, within five standard deviations of 28.
         for new in pair[1].iter().skip(1) {
             let differing: u32 = old.iter().zip(new).map(|(a, b)| (a ^ b).count_ones()).sum();
             assert!(differing.abs_diff(1600) < 142, "{differing}");
@@ -288,7 +288,7 @@ fn resampling_at_rate_one_is_random_search_with_an_elite() {
     }
 }
 
-/// The size of the reference experiment, with ranks that change in every generation; prints how long it takes.
+/// Prints the time for the size of the reference experiment, with ranks that change in every generation.
 #[test]
 fn a_thousand_generations_of_a_hundred_take_few_bytes() {
     let fresh = || TruncationGa::new(GaConfig::new(792), 3).unwrap();
@@ -300,7 +300,7 @@ fn a_thousand_generations_of_a_hundred_take_few_bytes() {
     record.rebuild(&mut again, 1000).unwrap();
     println!("1000 generations rebuilt in {:?}, from {} bytes", start.elapsed(), record.bytes());
     assert_eq!(again, ga);
-    // Of small genomes a state is kept every now and then, and the record is at most doubled by them.
+    // Small genomes have occasional states, which at most double the record.
     let fresh = || TruncationGa::new(GaConfig::new(14), 3).unwrap();
     let mut ga = fresh();
     let (evaluated, record) = recorded(&mut ga, 1000, ones);
@@ -321,7 +321,7 @@ fn configs() -> impl proptest::strategy::Strategy<Value = GaConfig> {
     )
 }
 
-/// Fitness of few values, so that ties and failures abound.
+/// Fitness with few distinct values, for many ties and failures.
 fn coarse(seed: u64, index: usize) -> f64 {
     let word = (seed ^ index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61;
     if word == 7 { f64::NAN } else { word as f64 }
@@ -335,15 +335,15 @@ proptest! {
         for generation in 0..4_u32 {
             let before = ga.ask().clone();
             prop_assert_eq!(ga.parents_of(0).len(), usize::from(generation > 0));
-            let told: Vec<_> = (0..config.population)
+            let fitness: Vec<_> = (0..config.population)
                 .map(|index| Fitness::nan_as_failed(coarse(noise ^ u64::from(generation) << 32, index)))
                 .collect();
-            record.tell(&mut ga, &told).unwrap();
+            record.tell(&mut ga, &fitness).unwrap();
             let selected = ga.selected().to_vec();
             let order = record.order(generation).unwrap();
             prop_assert_eq!(order.iter().map(|&i| i as u32).take(selected.len()).collect::<Vec<_>>(), &selected[..]);
-            prop_assert_eq!(selected[0] as usize, Statistics::from_fitness(&told).unwrap().best_index);
-            let ahead = |a: usize, b: usize| told[a] > told[b] || told[a] == told[b] && a < b;
+            prop_assert_eq!(selected[0] as usize, Statistics::from_fitness(&fitness).unwrap().best_index);
+            let ahead = |a: usize, b: usize| fitness[a] > fitness[b] || fitness[a] == fitness[b] && a < b;
             for pair in selected.windows(2) {
                 prop_assert!(ahead(pair[0] as usize, pair[1] as usize));
             }
@@ -392,7 +392,7 @@ fn values_are_told_as_fitness() {
     assert_eq!(by_values.tell_values(&values[1..]), Err(errors::fitness_count(6, 5)));
 }
 
-/// With fitness that falls from generation to generation, so that the best so far is an early one.
+/// Fitness falls over the generations, so that the best individual is an early one.
 #[test]
 fn the_champion_is_the_earliest_best_of_all_generations() {
     let config = GaConfig { population: 6, parents: 2, ..GaConfig::new(3) };

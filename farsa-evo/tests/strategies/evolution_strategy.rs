@@ -1,4 +1,4 @@
-//! Evolution strategies: beside a transcription of their source, on known functions, and their bits.
+//! Evolution strategies, compared with a transcription of their source, on test functions and by digests.
 
 #![allow(clippy::disallowed_methods)]
 
@@ -44,27 +44,27 @@ fn config(
     }
 }
 
-/// One of everything, of four genes.
+/// Every option at least once, with four genes.
 fn configs() -> [EvolutionStrategyConfig; 5] {
     use Recombination::{Discrete, Intermediate, None};
-    let (one, each) = (StepSizes::one(4), StepSizes::per_gene(4));
+    let (shared, per_gene) = (StepSizes::one(4), StepSizes::per_gene(4));
     [
-        config(Survival::Comma, (Discrete, Intermediate, 5), each),
-        config(Survival::Comma, (Intermediate, Intermediate, 3), one),
-        config(Survival::Plus, (Intermediate, Discrete, 2), each),
-        config(Survival::Plus, (None, None, 1), one),
-        config(Survival::PlusEvaluatedAgain, (Discrete, None, 4), each),
+        config(Survival::Comma, (Discrete, Intermediate, 5), per_gene),
+        config(Survival::Comma, (Intermediate, Intermediate, 3), shared),
+        config(Survival::Plus, (Intermediate, Discrete, 2), per_gene),
+        config(Survival::Plus, (None, None, 1), shared),
+        config(Survival::PlusEvaluatedAgain, (Discrete, None, 4), per_gene),
     ]
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| EvolutionStrategy::new(config.clone(), 7), 40).unwrap();
     }
     let [.., last] = configs();
-    let one = EvolutionStrategyConfig { parents: 1, offspring: 1, mixing: 1, survival: Survival::Plus, ..last };
-    check_strategy(|| EvolutionStrategy::new(one.clone(), 7), 20).unwrap();
+    let single = EvolutionStrategyConfig { parents: 1, offspring: 1, mixing: 1, survival: Survival::Plus, ..last };
+    check_strategy(|| EvolutionStrategy::new(single.clone(), 7), 20).unwrap();
 }
 
 #[test]
@@ -81,7 +81,7 @@ struct Naive {
     fitness: f64,
 }
 
-/// A row of a child, by the words of the source.
+/// Recombines one row of a child, as the source describes it.
 fn mixed(how: Recombination, rows: &[&Vec<f64>], stream: &mut Stream) -> Vec<f64> {
     let width = rows[0].len();
     match how {
@@ -97,8 +97,8 @@ fn child(config: &EvolutionStrategyConfig, parents: &[Naive], mut stream: Stream
     let stream = &mut stream;
     let mut drawn: Vec<&Naive> = parents.iter().collect();
     for slot in 0..config.mixing {
-        let other = slot + stream.below((drawn.len() - slot) as u32) as usize;
-        drawn.swap(slot, other);
+        let partner = slot + stream.below((drawn.len() - slot) as u32) as usize;
+        drawn.swap(slot, partner);
     }
     drawn.truncate(config.mixing);
     let steps = mixed(config.step_recombination, &drawn.iter().map(|p| &p.steps).collect::<Vec<_>>(), stream);
@@ -113,8 +113,8 @@ fn child(config: &EvolutionStrategyConfig, parents: &[Naive], mut stream: Stream
         StepSizes::PerGene { tau_0, tau } => {
             let mut z = vec![0.0; 1 + 2 * n];
             stream.fill_normal(&mut z);
-            let own = |i: usize| steps[i] * (tau_0 * z[0]).exp() * (tau * z[1 + i]).exp();
-            ((0..n).map(own).collect(), z[1 + n..].to_vec())
+            let step = |i: usize| steps[i] * (tau_0 * z[0]).exp() * (tau * z[1 + i]).exp();
+            ((0..n).map(step).collect(), z[1 + n..].to_vec())
         }
     };
     let sigma = |i: usize| steps[if steps.len() == 1 { 0 } else { i }];
@@ -134,13 +134,13 @@ fn generations_are_those_of_a_transcription() {
             .collect();
         let mut parents: Vec<Naive> = Vec::new();
         for generation in 1..10 {
-            // Another landscape every generation: it shows who is evaluated again.
+            // The landscape differs in every generation, which shows which parents are evaluated again.
             let judge = |genes: &[f64]| sphere(genes) * f64::from(1 + generation % 3);
             for one in &mut asked {
                 one.fitness = judge(&one.genes);
             }
-            let told: Vec<f64> = search.ask().iter().map(judge).collect();
-            search.tell_values(&told).unwrap();
+            let values: Vec<f64> = search.ask().iter().map(judge).collect();
+            search.tell_values(&values).unwrap();
             let mut pool = if config.survival == Survival::Plus { parents } else { Vec::new() };
             pool.append(&mut asked);
             pool.sort_by(|a, b| b.fitness.total_cmp(&a.fitness));
@@ -163,33 +163,33 @@ fn generations_are_those_of_a_transcription() {
 }
 
 #[test]
-fn parents_that_are_kept_keep_their_fitness() {
+fn surviving_parents_keep_their_fitness() {
     let [_, _, plus, ..] = configs();
     let mut search = EvolutionStrategy::new(plus, 3).unwrap();
-    let told: Vec<f64> = (0..20).map(f64::from).collect();
-    search.tell_values(&told).unwrap();
+    let values: Vec<f64> = (0..20).map(f64::from).collect();
+    search.tell_values(&values).unwrap();
     let parents = |search: &EvolutionStrategy, i| search.genealogy().unwrap().parents_of(i);
     assert!((0..20).all(|i| parents(&search, i).len() == 2 && parents(&search, i).iter().all(|&p| p >= 15)));
-    // One child is better than all parents; the others fail.
-    let mut told = [f64::NAN; 20];
-    told[7] = 30.0;
-    search.tell_values(&told).unwrap();
-    let kept: Vec<f64> = search.parent_fitness().into_iter().map(Fitness::get).collect();
-    assert_eq!(kept, [30.0, 19.0, 18.0, 17.0, 16.0]);
-    // The others come from two generations before.
+    // One child is better than all parents. The others fail.
+    let mut values = [f64::NAN; 20];
+    values[7] = 30.0;
+    search.tell_values(&values).unwrap();
+    let survivors: Vec<f64> = search.parent_fitness().into_iter().map(Fitness::get).collect();
+    assert_eq!(survivors, [30.0, 19.0, 18.0, 17.0, 16.0]);
+    // The others are two generations old.
     assert!((0..20).all(|i| parents(&search, i).is_empty() || parents(&search, i) == [7]));
     assert!((0..20).any(|i| parents(&search, i) == [7]));
 }
 
 #[test]
-fn a_record_makes_it_again() {
+fn a_record_rebuilds_it() {
     for config in configs() {
         let fresh = || EvolutionStrategy::new(config.clone(), 5).unwrap();
         let mut search = fresh();
         let mut record = Record::new(&mut search).unwrap();
         for _ in 0..30 {
-            let told: Vec<Fitness> = search.ask().iter().map(|genes| Fitness::nan_as_failed(sphere(genes))).collect();
-            record.tell(&mut search, &told).unwrap();
+            let values: Vec<Fitness> = search.ask().iter().map(|genes| Fitness::nan_as_failed(sphere(genes))).collect();
+            record.tell(&mut search, &values).unwrap();
         }
         let mut again = fresh();
         record.rebuild(&mut again, 30).unwrap();
@@ -197,7 +197,8 @@ fn a_record_makes_it_again() {
     }
 }
 
-/// Ten genes: 30 000 evaluations for the sphere, 60 000 for the ellipsoid; Rosenbrock of four, 100 000.
+/// Ten genes with 30 000 evaluations for the sphere and 60 000 for the ellipsoid. Rosenbrock has four genes, 100 000
+/// evaluations.
 #[test]
 fn it_converges() {
     let base = |genes| EvolutionStrategyConfig::new(vec![3.0; genes], 1.0);
@@ -206,12 +207,12 @@ fn it_converges() {
     };
     for survival in [Survival::Comma, Survival::Plus, Survival::PlusEvaluatedAgain] {
         let config = EvolutionStrategyConfig { survival, ..base(10) };
-        let one = EvolutionStrategyConfig { step_sizes: StepSizes::one(10), ..config.clone() };
-        let got = [best(config.clone(), 300, sphere), best(one, 300, sphere), best(config, 600, ellipsoid)];
+        let shared = EvolutionStrategyConfig { step_sizes: StepSizes::one(10), ..config.clone() };
+        let got = [best(config.clone(), 300, sphere), best(shared, 300, sphere), best(config, 600, ellipsoid)];
         assert!(got.iter().all(|fitness| *fitness > -1e-10), "{survival:?}: {got:?}");
     }
     let got = best(base(4), 1000, rosenbrock);
-    // The mean has -10 812; in the valley the steps of single axes stay short.
+    // The mean has -10 812. In the valley the steps of single axes stay short.
     assert!(got > -0.5, "{got}");
 }
 
@@ -266,7 +267,7 @@ fn a_damaged_state_is_refused() {
     let state = search.snapshot().unwrap().save();
     let row = 8 * 8;
     let of_steps = 4 + 5 * (12 + row);
-    // Of an origin, of a fitness, of a parent's step size and gene, of a step size, of a gene.
+    // Positions of an origin, a fitness, a parent's step size and gene, a step size and a gene.
     let damages = [(4, 0xee), (8, 0xff), (16, 0xee), (48, 0x7f), (of_steps, 0xff), (state.len() - 8, 0x7e)];
     for (at, byte) in damages {
         let mut damaged = state.clone();
@@ -285,7 +286,7 @@ proptest! {
         rate in 0.0_f64..10.0,
         mean in -1e100_f64..1e100,
         power in -99_i32..=100,
-        told in proptest::collection::vec(proptest::num::f64::ANY, 25),
+        reported in proptest::collection::vec(proptest::num::f64::ANY, 25),
     ) {
         let mut config = configs()[which].clone();
         config.mean[0] = mean;
@@ -298,7 +299,7 @@ proptest! {
         let mut search = EvolutionStrategy::new(config, seed).unwrap();
         for _ in 0..30 {
             let count = search.ask().len();
-            search.tell_values(&told[..count]).unwrap();
+            search.tell_values(&reported[..count]).unwrap();
             prop_assert!(search.ask().as_slice().iter().chain(search.step_sizes()).all(|x| x.is_finite()));
             let state = search.snapshot().unwrap().save();
             prop_assert_eq!(search.snapshot().unwrap().restore(&state), Ok(()));

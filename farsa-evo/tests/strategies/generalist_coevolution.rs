@@ -1,4 +1,4 @@
-//! Co-evolution with generalist selection: beside a transcription of its source, conformant, and on games.
+//! Coevolution with generalist selection, compared with a transcription of its source and on games.
 
 use crate::errors;
 use farsa_evo::coevolution::{GeneralistCoevolution, GeneralistConfig};
@@ -18,14 +18,15 @@ fn configs() -> [GeneralistConfig; 5] {
     ]
 }
 
-/// What a genome earns against another in the generation: a game without a best player, in eighths so that sums are exact.
-fn earned(generation: u32, side: usize, own: &[u16], other: &[u16]) -> f64 {
-    let [a, b] = [own[0], other[own.len() / 2]].map(u32::from);
+/// Reward of a genome against another in the generation. The game has no best player, and rewards are eighths, so that
+/// sums are exact.
+fn reward(generation: u32, side: usize, genes: &[u16], other: &[u16]) -> f64 {
+    let [a, b] = [genes[0], other[genes.len() / 2]].map(u32::from);
     let roll = (a.wrapping_mul(2_654_435_761) ^ b.wrapping_mul(40_503).rotate_left(9)) >> 7;
     f64::from((roll + generation + side as u32 * 3) % 17) / 8.0
 }
 
-/// A round of the source, with all loops, of both populations at once.
+/// The source's algorithm for both populations, with its explicit loops.
 struct Transcription {
     config: GeneralistConfig,
     seed: u64,
@@ -37,17 +38,17 @@ struct Transcription {
 impl Transcription {
     fn new(config: GeneralistConfig, seed: u64) -> Self {
         let size = config.members + config.newcomers;
-        let genome = |side: usize, own: usize| {
-            let mut stream = Stream::new(seed, Domain::InitialGenome, side as u32, own as u32, 0);
+        let genome = |side: usize, index: usize| {
+            let mut stream = Stream::new(seed, Domain::InitialGenome, side as u32, index as u32, 0);
             let mut genes = vec![0; config.genes];
             farsa_evo::words::randomize(&mut genes, &mut stream);
             genes.iter().map(|gene| gene >> (16 - config.gene_bits)).collect()
         };
-        let everyone = [0, 1].map(|side| (0..size).map(|own| genome(side, own)).collect());
+        let everyone = [0, 1].map(|side| (0..size).map(|index| genome(side, index)).collect());
         Self { config, seed, generation: 0, everyone }
     }
 
-    /// Goes through a round; `seen` is told whom each population asks for and whom everyone of it meets.
+    /// Runs a round. Calls `seen` with the individuals of both populations and with the opponents of each.
     fn round(&mut self, mut seen: impl FnMut(u32, [&[Vec<u16>]; 2], [Vec<Vec<u16>>; 2])) {
         let GeneralistConfig { members, newcomers, opponents, iterations, .. } = self.config;
         let size = members + newcomers;
@@ -58,24 +59,24 @@ impl Transcription {
             let others = |side: usize| columns.iter().map(|&column| self.everyone[1 - side][column].clone()).collect();
             seen(self.generation, [&self.everyone[0], &self.everyone[1]], [others(0), others(1)]);
             for side in 0..2 {
-                for own in 0..size {
+                for index in 0..size {
                     for &column in columns.iter().take(size - first) {
-                        let [a, b] = [&self.everyone[side][own], &self.everyone[1 - side][column]];
-                        matrix[side][own][column] = earned(self.generation, side, a, b);
+                        let [a, b] = [&self.everyone[side][index], &self.everyone[1 - side][column]];
+                        matrix[side][index][column] = reward(self.generation, side, a, b);
                     }
                 }
             }
             first += opponents;
             self.generation += 1;
         }
-        // The best of all are members, the worst places first.
+        // The best individuals become members and take the worst places first.
         let mut places = [Vec::new(), Vec::new()];
         for side in 0..2 {
-            let mean = |own: usize| matrix[side][own][..members].iter().sum::<f64>() / members as f64;
+            let mean = |index: usize| matrix[side][index][..members].iter().sum::<f64>() / members as f64;
             let mut order: Vec<usize> = (0..size).collect();
             order.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)).then(a.cmp(&b)));
-            let going = order[members..].iter().rev().filter(|own| **own < members);
-            let coming = order[..members].iter().rev().filter(|own| **own >= members);
+            let going = order[members..].iter().rev().filter(|index| **index < members);
+            let coming = order[..members].iter().rev().filter(|index| **index >= members);
             places[side] = (0..members).collect();
             going.zip(coming).for_each(|(&member, &newcomer)| places[side][member] = newcomer);
         }
@@ -84,10 +85,11 @@ impl Transcription {
         for side in 0..2 {
             let mut stream = Stream::new(self.seed, Domain::Mutation, 2 + side as u32, 0, self.generation);
             let mut chosen = vec![stream.below(members as u32) as usize];
-            let column = |other: usize| places[side].iter().map(|&own| matrix[side][own][other]).collect::<Vec<_>>();
+            let column =
+                |other: usize| places[side].iter().map(|&index| matrix[side][index][other]).collect::<Vec<_>>();
             while chosen.len() < opponents {
                 let apart = |other: usize| -> f64 {
-                    let sums = chosen.iter().map(|&one| {
+                    let sums = chosen.iter().map(|&opponent| {
                         let [a, b] = [column(places[1 - side][other]), column(places[1 - side][one])];
                         a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum::<f64>()
                     });
@@ -101,7 +103,7 @@ impl Transcription {
                 }
                 chosen.extend(next);
             }
-            let genome = |of: usize, own: usize| self.everyone[of][places[of][own]].clone();
+            let genome = |side: usize, index: usize| self.everyone[side][places[side][index]].clone();
             against[side] = chosen.iter().map(|&other| genome(1 - side, other)).collect::<Vec<_>>();
             let mut order: Vec<usize> = (0..members).collect();
             for place in 0..newcomers {
@@ -110,15 +112,15 @@ impl Transcription {
             }
         }
         let resting =
-            [0, 1].map(|side| places[side].iter().map(|&own| self.everyone[side][own].clone()).collect::<Vec<_>>());
+            [0, 1].map(|side| places[side].iter().map(|&index| self.everyone[side][index].clone()).collect::<Vec<_>>());
         let tried = size / newcomers;
         for _ in 0..iterations {
-            let all = [0, 1].map(|side| {
-                let candidate = |own: usize| {
-                    let mut genes = trained[side][own / tried].clone();
-                    if !own.is_multiple_of(tried) {
+            let individuals = [0, 1].map(|side| {
+                let candidate = |index: usize| {
+                    let mut genes = trained[side][index / tried].clone();
+                    if !index.is_multiple_of(tried) {
                         let mut stream =
-                            Stream::new(self.seed, Domain::Mutation, side as u32, own as u32, self.generation);
+                            Stream::new(self.seed, Domain::Mutation, side as u32, index as u32, self.generation);
                         let GeneralistConfig { mutation, mutation_rate, gene_bits, .. } = self.config;
                         let mutation = farsa_evo::words::BitMutation::new(mutation, mutation_rate).unwrap();
                         mutation.with_gene_bits(gene_bits).unwrap().apply(&mut genes, &mut stream);
@@ -127,16 +129,16 @@ impl Transcription {
                 };
                 (0..size).map(candidate).collect::<Vec<Vec<u16>>>()
             });
-            seen(self.generation, [&all[0], &all[1]], against.clone());
+            seen(self.generation, [&individuals[0], &individuals[1]], against.clone());
             for side in 0..2 {
                 for newcomer in 0..newcomers {
-                    let fitness = |own: &Vec<u16>| -> f64 {
-                        against[side].iter().map(|other| earned(self.generation, side, own, other)).sum()
+                    let fitness = |genes: &Vec<u16>| -> f64 {
+                        against[side].iter().map(|other| reward(self.generation, side, genes, other)).sum()
                     };
-                    let mut best = &all[side][newcomer * tried];
-                    for own in &all[side][newcomer * tried..(newcomer + 1) * tried] {
-                        if fitness(own) > fitness(best) {
-                            best = own;
+                    let mut best = &individuals[side][newcomer * tried];
+                    for genes in &individuals[side][newcomer * tried..(newcomer + 1) * tried] {
+                        if fitness(genes) > fitness(best) {
+                            best = genes;
                         }
                     }
                     trained[side][newcomer].clone_from(best);
@@ -148,27 +150,27 @@ impl Transcription {
     }
 }
 
-/// The scores of a game: the sum of what was earned, and what was earned against each opponent.
+/// Returns the scores of a game: the total reward, and the reward against each opponent.
 fn played(search: &GeneralistCoevolution, game: impl Fn(usize, &[u16], &[u16]) -> f64) -> Scores {
     let (opponents, size) = (search.opponents().unwrap(), search.config().size());
     let mut rows = Vec::new();
     for (individual, genes) in search.ask().iter().enumerate() {
         let met = (0..opponents.count()).map(|opponent| opponents.opponents_of(individual, opponent)[0]);
-        let each: Vec<f64> = met.map(|other| game(individual / size, genes, other)).collect();
-        rows.push(each.iter().sum());
-        rows.extend(each);
+        let rewards: Vec<f64> = met.map(|other| game(individual / size, genes, other)).collect();
+        rows.push(rewards.iter().sum());
+        rows.extend(rewards);
     }
     Scores::new(search.score_shape(), rows).unwrap()
 }
 
 fn next(search: &mut GeneralistCoevolution) {
     let generation = search.generation();
-    let scores = played(search, |side, own, other| earned(generation, side, own, other));
+    let scores = played(search, |side, genes, other| reward(generation, side, genes, other));
     search.tell_scores(&scores).unwrap();
 }
 
 #[test]
-fn it_asks_for_whom_the_transcription_asks_and_meets_the_same() {
+fn individuals_and_opponents_are_those_of_the_transcription() {
     for (config, seed) in configs().into_iter().zip(5..) {
         let mut search = GeneralistCoevolution::new(config, seed).unwrap();
         let mut plain = Transcription::new(config, seed);
@@ -177,9 +179,13 @@ fn it_asks_for_whom_the_transcription_asks_and_meets_the_same() {
             plain.round(|generation, asked, met| {
                 assert_eq!(search.generation(), generation);
                 for side in 0..2 {
-                    for own in 0..size {
-                        let individual = side * size + own;
-                        assert_eq!(search.ask().get(individual).unwrap(), asked[side][own], "{own} of {generation}");
+                    for index in 0..size {
+                        let individual = side * size + index;
+                        assert_eq!(
+                            search.ask().get(individual).unwrap(),
+                            asked[side][index],
+                            "{index} of {generation}"
+                        );
                         for (opponent, genes) in met[side].iter().enumerate() {
                             assert_eq!(search.opponents().unwrap().opponents_of(individual, opponent), [&genes[..]]);
                         }
@@ -210,7 +216,7 @@ fn its_bits_stay() {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| GeneralistCoevolution::new(config, 7), 40).unwrap();
     }
@@ -230,7 +236,7 @@ fn the_best_of_all_encounters_is_the_champion() {
     let mut sums = vec![0.0; 2 * size];
     assert_eq!(search.diagnostics(), [0.0; 4], "nothing was replaced yet");
     for generation in 0..config.encounters() {
-        let fitness = played(&search, |side, own, other| earned(generation, side, own, other)).fitness();
+        let fitness = played(&search, |side, genes, other| reward(generation, side, genes, other)).fitness();
         sums.iter_mut().zip(&fitness).for_each(|(sum, fitness)| *sum += fitness.get());
         let ranked_by = search.ranked_by(&fitness);
         for (ranked_by, sum) in ranked_by.iter().zip(&sums) {
@@ -246,7 +252,7 @@ fn the_best_of_all_encounters_is_the_champion() {
 }
 
 #[test]
-fn parents_are_those_that_were_copied() {
+fn parents_are_the_copied_individuals() {
     for config in configs() {
         let config = GeneralistConfig { mutation_rate: 0.0, ..config };
         let mut search = GeneralistCoevolution::new(config, 9).unwrap();
@@ -306,7 +312,7 @@ fn impossible_configurations_are_refused_with_their_numbers() {
 }
 
 #[test]
-fn damaged_states_are_refused_whole() {
+fn damaged_states_are_refused_and_change_nothing() {
     for config in configs() {
         let mut search = GeneralistCoevolution::new(config, 4).unwrap();
         for generation in 0..2 * config.round() + 2 {
@@ -320,7 +326,7 @@ fn damaged_states_are_refused_whole() {
             assert!(search.restore(&[&state[..], &[0]].concat()).is_err() && search == before);
             next(&mut search);
         }
-        // An origin of the other population, a fitness that is no number, a gene of too many bits.
+        // An origin of the other population, a NaN fitness, a gene with too many bits.
         let at = 4 + 4 * config.genes * config.size();
         while search.generation() % config.round() != config.encounters() {
             next(&mut search);
@@ -337,24 +343,24 @@ fn damaged_states_are_refused_whole() {
         if config.gene_bits < 16 {
             let bent = [&state[..5], &[0xff], &state[6..]].concat();
             assert_eq!(search.restore(&bent).unwrap_err(), {
-                let found = u64::from(u16::from_le_bytes([state[4], 0xff]));
-                errors::state_content("a gene", found)
+                let bits = u64::from(u16::from_le_bytes([state[4], 0xff]));
+                errors::state_content("a gene", bits)
             });
         }
     }
 }
 
 proptest! {
-    /// Whatever failed and wherever it goes on from, a search is the one that was not interrupted.
+    /// A search that continues from a saved state equals the uninterrupted one, with any failures.
     #[test]
-    fn a_search_goes_on_from_its_state(seed: u64, failing in 0_u32..8, rounds in 1_u32..3) {
+    fn a_search_continues_from_its_state(seed: u64, failing in 0_u32..8, rounds in 1_u32..3) {
         let config = configs()[0];
         let mut search = GeneralistCoevolution::new(config, seed).unwrap();
         let mut again = GeneralistCoevolution::new(config, seed).unwrap();
         for generation in 0..rounds * config.round() {
-            let game = |side: usize, own: &[u16], other: &[u16]| {
-                let fails = u32::from(own[0] ^ other[0]) % 16 < failing;
-                if fails { f64::NEG_INFINITY } else { earned(generation, side, own, other) }
+            let game = |side: usize, genes: &[u16], other: &[u16]| {
+                let fails = u32::from(genes[0] ^ other[0]) % 16 < failing;
+                if fails { f64::NEG_INFINITY } else { reward(generation, side, genes, other) }
             };
             let scores = played(&search, game);
             search.tell_scores(&scores).unwrap();
@@ -367,16 +373,16 @@ proptest! {
     }
 }
 
-/// Rock, paper, scissors in one gene counts for more than all ones in the other: who is of the right kind wins whatever its
-/// strength is, and no kind is best. Strength grows all the same: of 16 bits a random genome has 8.
+/// Rock, paper, scissors in one gene outweighs the number of ones in the other. The right kind wins with any strength, and
+/// no kind is best. Strength grows nevertheless, from about 8 of 16 bits in a random genome.
 #[test]
 fn members_become_better_against_all() {
     let small = GeneralistConfig { mutation_rate: 0.06, ..GeneralistConfig::new(2) };
     let config = GeneralistConfig { members: 12, newcomers: 4, opponents: 4, iterations: 5, ..small };
     let strength = |genes: &[u16]| f64::from(genes[0].count_ones());
-    let game = |_: usize, own: &[u16], other: &[u16]| {
-        let kind = [0.0, 20.0, -20.0][usize::from((own[1] % 3 + 3 - other[1] % 3) % 3)];
-        kind + strength(own) - strength(other)
+    let game = |_: usize, genes: &[u16], other: &[u16]| {
+        let kind = [0.0, 20.0, -20.0][usize::from((genes[1] % 3 + 3 - other[1] % 3) % 3)];
+        kind + strength(genes) - strength(other)
     };
     for seed in 0..5 {
         let mut search = GeneralistCoevolution::new(config, seed).unwrap();

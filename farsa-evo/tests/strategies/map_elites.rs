@@ -1,4 +1,4 @@
-//! MAP-Elites and CMA-ME: beside a transcription, on the arm, and their bits.
+//! MAP-Elites and CMA-ME, compared with a transcription, on the arm and by digests.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ fn grid() -> GridCells {
     GridCells::new(vec![[-3.0, 5.0], [-3.0, 5.0]], vec![6, 5]).unwrap()
 }
 
-/// One of each emitter alone, and all together.
+/// Each emitter alone, and all together.
 fn configs() -> [MapElitesConfig; 4] {
     let gaussian = Emitter::Gaussian { batch: 9, sigma: 0.1 };
     let line = Emitter::IsoLine { batch: 10, iso_sigma: 0.02, line_sigma: 0.3 };
@@ -33,7 +33,7 @@ fn configs() -> [MapElitesConfig; 4] {
     ]
 }
 
-/// A cost, and a measures that often changes; one evaluation in eleven fails.
+/// A cost, and measures that often change. One evaluation in eleven fails.
 fn plain(genes: &[f64], row: &mut [f64]) {
     let sum: f64 = genes.iter().sum();
     let cost = if sum.to_bits().is_multiple_of(11) { f64::NAN } else { genes[0] * genes[0] + (genes[1] - 0.3).abs() };
@@ -47,7 +47,7 @@ fn scores<C: Cells + Clone>(search: &MapElites<C>) -> Scores {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     let cells = CvtCells::new(40, &[[-3.0, 5.0]; 2], 400, 3).unwrap();
     for config in configs() {
         check_strategy(|| MapElites::new(config.clone(), grid(), 7), 30).unwrap();
@@ -55,7 +55,7 @@ fn it_keeps_to_what_a_strategy_is() {
     }
 }
 
-/// What the archive of the transcription knows of a cell.
+/// An elite of the transcription: genes and objective.
 type Naive = (Vec<f64>, f64, [u32; 2]);
 
 fn mirrored(mut x: f64, [low, high]: [f64; 2]) -> f64 {
@@ -65,7 +65,7 @@ fn mirrored(mut x: f64, [low, high]: [f64; 2]) -> f64 {
     x
 }
 
-/// Both emitters that vary elites, by the formulas of their sources.
+/// Both variation emitters, by the formulas of their sources.
 #[test]
 fn generations_are_those_of_a_transcription() {
     for which in [0, 1] {
@@ -73,20 +73,20 @@ fn generations_are_those_of_a_transcription() {
         let mut search = MapElites::new(config.clone(), grid(), 11).unwrap();
         let (mut elites, mut order): (BTreeMap<usize, Naive>, Vec<usize>) = (BTreeMap::new(), Vec::new());
         for generation in 0..25 {
-            let told = scores(&search);
+            let scores = scores(&search);
             for (i, genes) in search.ask().iter().enumerate() {
-                let objective = told.objectives(i)[0];
+                let objective = scores.objectives(i)[0];
                 let place = |x: f64, parts: f64| ((x + 3.0) / 8.0 * parts).floor().clamp(0.0, parts - 1.0) as usize;
-                let cell = place(told.measures(i)[0], 6.0) * 5 + place(told.measures(i)[1], 5.0);
+                let cell = place(scores.measures(i)[0], 6.0) * 5 + place(scores.measures(i)[1], 5.0);
                 let better = elites.get(&cell).is_none_or(|elite| objective > elite.1);
-                if !told.is_failed(i) && better {
+                if !scores.is_failed(i) && better {
                     if !elites.contains_key(&cell) {
                         order.push(cell);
                     }
                     elites.insert(cell, (genes.to_vec(), objective, [generation, i as u32]));
                 }
             }
-            search.tell_scores(&told).unwrap();
+            search.tell_scores(&scores).unwrap();
             let archive = search.archive();
             assert!(archive.elites().map(|elite| elite.cell).eq(order.iter().copied()));
             let [count, sum] = search.diagnostics()[..] else { panic!("says two numbers") };
@@ -111,9 +111,11 @@ fn generations_are_those_of_a_transcription() {
                 };
                 stream.fill_normal(&mut normal);
                 for gene in 0..3 {
-                    let (own, other, [low, high]) = (first.0[gene], second.0[gene], BOUNDS[gene]);
-                    let want =
-                        mirrored(own + sigma * (high - low) * normal[gene] + along * (other - own), BOUNDS[gene]);
+                    let (gene_1, gene_2, [low, high]) = (first.0[gene], second.0[gene], BOUNDS[gene]);
+                    let want = mirrored(
+                        gene_1 + sigma * (high - low) * normal[gene] + along * (gene_2 - gene_1),
+                        BOUNDS[gene],
+                    );
                     assert!((genes[gene] - want).abs() <= 1e-12, "{generation} {i}: {} {want}", genes[gene]);
                 }
                 let mut named: Vec<usize> = [first.2, second.2]
@@ -129,8 +131,7 @@ fn generations_are_those_of_a_transcription() {
     }
 }
 
-/// Where the better half of the individuals are always the first of their cells, the improvement emitter is CMA-ES without
-/// negative weights.
+/// The improvement emitter equals CMA-ES without negative weights if the better half always fills empty cells.
 #[test]
 fn an_improvement_emitter_whose_better_half_improves_is_cma_es() {
     let mean = vec![0.0; 4];
@@ -149,7 +150,7 @@ fn an_improvement_emitter_whose_better_half_improves_is_cma_es() {
         let values: Vec<f64> = search.ask().iter().map(cost).collect();
         let mut sorted = values.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
-        // The better half are the first of their cells; the evaluations of the rest fail.
+        // The better half fills empty cells, and the evaluations of the rest fail.
         let row = |(i, value): (u32, &f64)| {
             let objective = if *value >= sorted[5] { *value } else { f64::NAN };
             [objective, f64::from(12 * generation + i)]
@@ -161,10 +162,10 @@ fn an_improvement_emitter_whose_better_half_improves_is_cma_es() {
 }
 
 #[test]
-fn an_improvement_emitter_that_improves_nothing_starts_again_from_an_elite() {
+fn an_improvement_emitter_without_improvement_restarts_from_an_elite() {
     let [_, _, config, _] = configs();
     let mut search = MapElites::new(config, grid(), 3).unwrap();
-    // Nothing is taken by an empty archive: from its own mean.
+    // The archive is still empty, so that the emitter restarts from its own mean.
     let failed = vec![f64::NAN; 3 * 16];
     let failed = Scores::nan_as_failed(search.score_shape(), failed).unwrap();
     search.tell_scores(&failed).unwrap();
@@ -173,7 +174,7 @@ fn an_improvement_emitter_that_improves_nothing_starts_again_from_an_elite() {
         search.ask().iter().filter(|genes| !genes.iter().zip(centre).any(far)).count()
     };
     assert!(search.archive().is_empty() && near(&search, &[0.5; 3]) == 16);
-    // One elite, then nothing: from that.
+    // After one elite without further improvement it restarts from that elite.
     let mut rows = vec![f64::NAN; 3 * 16];
     rows[..3].copy_from_slice(&[1.0, 0.0, 0.0]);
     let elite = search.ask().get(0).unwrap().to_vec();
@@ -182,14 +183,14 @@ fn an_improvement_emitter_that_improves_nothing_starts_again_from_an_elite() {
     assert_eq!((search.archive().len(), near(&search, &elite)), (1, 16));
 }
 
-/// The figures of 10 000 cells and 105 000 evaluations are those of the example `arm`; here are a tenth and a seventh of them.
+/// A tenth of the cells and a seventh of the evaluations of the example `arm`, which has 10 000 cells.
 #[test]
 fn cma_me_fills_the_arms_cells() {
     let cells = CvtCells::new(1000, &PLACES, 10_000, 1).unwrap();
     let config = MapElitesConfig::cma_me(vec![ANGLES; JOINTS], 5, 30, 0.1);
     let mut search = MapElites::new(config, cells, 1).unwrap();
     search.evolve(100, judge).unwrap();
-    // The circle that can be reached is 78.5 % of its square, and cells at its edge belong to it, too.
+    // The reachable disk is 78.5 % of its square, and cells at its edge count as reachable.
     assert!((750..850).contains(&search.archive().len()), "{}", search.archive().len());
     let mean = search.archive().sum() / search.archive().len() as f64;
     assert!(mean > -0.3, "{mean}");
@@ -214,8 +215,8 @@ fn a_thousand_generations_are_rebuilt() {
         }
         let mut values = vec![0.0; 300];
         search.ask().iter().zip(values.chunks_mut(3)).for_each(|(genes, row)| judge(genes, row));
-        let told = Scores::new(search.score_shape(), values).unwrap();
-        record.tell_scores(&mut search, &told).unwrap();
+        let scores = Scores::new(search.score_shape(), values).unwrap();
+        record.tell_scores(&mut search, &scores).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -260,8 +261,8 @@ fn impossible_configurations_are_refused() {
     let frozen = MapElitesConfig { bounds: vec![[1.0; 2]], emitters: vec![improvement(5, &[1.0], 0.1)] };
     assert!(matches!(error(frozen), EvoError::OutOfRange { field: "the high end of a gene", value: 1.0, .. }));
     let many = GridCells::new(vec![[0.0, 1.0]; 2], vec![1 << 14, 1 << 14]).unwrap();
-    let found = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), many, 0).unwrap_err();
-    assert_eq!(found, errors::too_large(1 << 28, 3));
+    let error = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), many, 0).unwrap_err();
+    assert_eq!(error, errors::too_large(1 << 28, 3));
     let mut search = MapElites::new(MapElitesConfig::new(BOUNDS.to_vec()), grid(), 1).unwrap();
     let (expected, found) = (ScoreShape::new(1, 2), ScoreShape::FITNESS);
     assert_eq!(search.tell(&[Fitness::WORST; 100]), Err(errors::score_shape(expected, found)));
@@ -281,12 +282,12 @@ fn a_damaged_state_is_refused() {
     let (before, state) = (search.clone(), search.save());
     let elites = search.archive().len();
     let first = 8;
-    // An elite more in every other cell.
+    // The state lists an additional elite in every other cell.
     let empty = search.archive().cells().cells() - elites;
     assert_eq!(search.largest_state(), state.len() + empty * (12 + 8 * 6));
     let last = first + (elites - 1) * (12 + 8 * 6);
-    // The number of elites, a cell that is not that of its measures, an objective that failed, a gene out of its
-    // bounds, a step size of zero.
+    // The number of elites, the wrong cell for its measures, a failed objective, a gene out of its bounds, a zero step
+    // size.
     let changes: [(usize, Vec<u8>); 6] = [
         (4, (elites as u32 + 1).to_le_bytes().into()),
         (first, 77_u32.to_le_bytes().into()),
@@ -313,19 +314,19 @@ proptest! {
         seed: u64,
         which in 0_usize..4,
         sigma in 1e-3_f64..1e6,
-        told in proptest::collection::vec(proptest::num::f64::NORMAL | proptest::num::f64::INFINITE, 10 * 81),
+        scores in proptest::collection::vec(proptest::num::f64::NORMAL | proptest::num::f64::INFINITE, 10 * 81),
     ) {
         let mut config = configs()[which].clone();
         for emitter in &mut config.emitters {
-            if let Emitter::Improvement { sigma: own, .. } = emitter {
-                *own = sigma;
+            if let Emitter::Improvement { sigma: step, .. } = emitter {
+                *step = sigma;
             }
         }
         let mut search = MapElites::new(config, grid(), seed).unwrap();
-        for values in told.chunks_exact(3 * search.ask().len()).take(10) {
-            let told = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
+        for values in reported.chunks_exact(3 * search.ask().len()).take(10) {
+            let scores = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
             let before = search.archive().clone();
-            search.tell_scores(&told).unwrap();
+            search.tell_scores(&scores).unwrap();
             for elite in before.elites() {
                 prop_assert!(search.archive().elite(elite.cell).is_some_and(|now| now.objective >= elite.objective));
             }

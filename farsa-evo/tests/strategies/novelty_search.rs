@@ -1,4 +1,4 @@
-//! Novelty search over several strategies: beside a transcription, where fitness deceives, and its bits.
+//! Novelty search over several strategies, compared with a transcription, on deceptive fitness and by digests.
 
 use core::fmt::Debug;
 
@@ -29,7 +29,7 @@ fn normal() -> Result<CmaEs, EvoError> {
 }
 
 #[test]
-fn what_it_says_is_its_archive_and_what_the_other_says() {
+fn diagnostics_are_its_archive_and_those_of_the_inner_strategy() {
     let mut search = NoveltySearch::new(config(ArchiveRule::Random { rate: 1.0 }), normal().unwrap(), 7).unwrap();
     for _ in 0..3 {
         let values: Vec<f64> = search.ask().iter().flat_map(|genes| [0.0, genes[0], genes[1]]).collect();
@@ -42,7 +42,7 @@ fn what_it_says_is_its_archive_and_what_the_other_says() {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for rule in [ArchiveRule::Random { rate: 0.3 }, THRESHOLD] {
         check_strategy(|| NoveltySearch::new(config(rule), words()?, 7), 40).unwrap();
         check_strategy(|| NoveltySearch::new(config(rule), reals()?, 7), 40).unwrap();
@@ -50,7 +50,7 @@ fn it_keeps_to_what_a_strategy_is() {
     }
 }
 
-/// A behaviour in two numbers; one evaluation in eleven fails.
+/// A behavior of two numbers. One evaluation in eleven fails.
 fn judge(genes: &[f64], row: &mut [f64]) {
     let failed = genes[0].to_bits().is_multiple_of(11);
     row.copy_from_slice(&[if failed { f64::NAN } else { genes[2] }, genes[0] + genes[1], genes[1] * genes[2]]);
@@ -64,8 +64,8 @@ fn scores<G: Gene>(search: &impl Strategy<G>, real: impl Fn(G) -> f64) -> Scores
     Scores::nan_as_failed(search.score_shape(), values).unwrap()
 }
 
-/// Tells a strategy of its own what the source says, and compares.
-fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
+/// Computes novelty as the source defines it, passes it to a second inner strategy, and compares the two.
+fn check_against_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
     fresh: impl Fn() -> Result<S, EvoError>,
     rule: ArchiveRule,
     real: impl Fn(G) -> f64,
@@ -74,20 +74,20 @@ fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
     let mut alone = fresh().unwrap();
     let (mut archive, mut threshold, mut idle): (Vec<[f64; 2]>, f64, u32) = (Vec::new(), 0.4, 0);
     for generation in 0..30 {
-        let told = scores(&search, &real);
-        let place = |i: usize| [told.measures(i)[0], told.measures(i)[1]];
-        let living: Vec<usize> = (0..12).filter(|i| !told.is_failed(*i)).collect();
-        let novelty = |own: usize| {
+        let scores = scores(&search, &real);
+        let place = |i: usize| [scores.measures(i)[0], scores.measures(i)[1]];
+        let valid: Vec<usize> = (0..12).filter(|i| !scores.is_failed(*i)).collect();
+        let novelty = |index: usize| {
             let far = |other: [f64; 2]| {
-                let [x, y] = [0, 1].map(|axis| other[axis] - place(own)[axis]);
+                let [x, y] = [0, 1].map(|axis| other[axis] - place(index)[axis]);
                 (x * x + y * y).sqrt()
             };
-            let others = living.iter().filter(|i| **i != own).map(|i| far(place(*i)));
-            let mut all: Vec<f64> = others.chain(archive.iter().map(|behaviour| far(*behaviour))).collect();
-            all.sort_by(f64::total_cmp);
-            all.iter().take(4).sum::<f64>() / 4.0
+            let others = valid.iter().filter(|i| **i != index).map(|i| far(place(*i)));
+            let mut distances: Vec<f64> = others.chain(archive.iter().map(|behaviour| far(*behaviour))).collect();
+            distances.sort_by(f64::total_cmp);
+            distances.iter().take(4).sum::<f64>() / 4.0
         };
-        let values: Vec<f64> = (0..12).map(|i| if told.is_failed(i) { f64::NAN } else { novelty(i) }).collect();
+        let values: Vec<f64> = (0..12).map(|i| if scores.is_failed(i) { f64::NAN } else { novelty(i) }).collect();
         let mut added = Vec::new();
         for &i in &living {
             let chance = Stream::new(7, Domain::General, 1, i as u32, generation).uniform_f64();
@@ -106,7 +106,7 @@ fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
             (threshold, idle) = (0.95 * threshold, 0);
         }
         archive.extend(added);
-        search.tell_scores(&told).unwrap();
+        search.tell_scores(&scores).unwrap();
         alone.tell_values(&values).unwrap();
         assert_eq!(search.inner(), &alone, "{generation}");
         assert_eq!(search.archive(), archive.as_flattened());
@@ -121,17 +121,17 @@ fn beside_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + PartialEq>(
 }
 
 #[test]
-fn it_tells_what_the_source_says() {
+fn novelty_is_that_of_the_source() {
     for rule in [ArchiveRule::Random { rate: 0.3 }, THRESHOLD] {
-        beside_the_source(words, rule, |gene| f64::from(gene) / 16_384.0);
-        beside_the_source(reals, rule, |gene| gene);
-        beside_the_source(normal, rule, |gene| gene);
+        check_against_the_source(words, rule, |gene| f64::from(gene) / 16_384.0);
+        check_against_the_source(reals, rule, |gene| gene);
+        check_against_the_source(normal, rule, |gene| gene);
     }
 }
 
-/// From 0 on, fitness rises to a trap at 0.3, falls from there, and is largest from 3 on.
+/// Fitness rises from 0 to a trap at 0.3, then falls, and is largest from 3.
 #[test]
-fn it_gets_out_of_a_trap_that_fitness_leads_into() {
+fn it_leaves_a_trap_of_deceptive_fitness() {
     let fitness = |x: f64| if x >= 3.0 { 10.0 } else { 1.0 - (x - 0.3).abs() };
     for seed in 0..5 {
         let inner = || EvolutionStrategy::new(EvolutionStrategyConfig::new(vec![0.0; 2], 0.05), seed).unwrap();
@@ -154,8 +154,8 @@ fn a_thousand_generations_are_rebuilt() {
         if generation % 333 == 0 {
             asked.push((generation, search.ask().clone()));
         }
-        let told = scores(&search, |gene: u16| f64::from(gene) / 16_384.0);
-        record.tell_scores(&mut search, &told).unwrap();
+        let scores = scores(&search, |gene: u16| f64::from(gene) / 16_384.0);
+        record.tell_scores(&mut search, &scores).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -191,12 +191,12 @@ fn impossible_configurations_are_refused() {
     let threshold = |first, patience| ArchiveRule::Threshold { first, most: 4, patience };
     assert_eq!(refused(rule(threshold(0.0, 5))), ("the first threshold", 0.0));
     assert_eq!(refused(rule(threshold(1.0, 0))), ("the patience of the archive", 0.0));
-    let mut told = words().unwrap();
-    told.tell(&[Fitness::WORST; 12]).unwrap();
-    assert_eq!(NoveltySearch::new(base, told, 0).unwrap_err(), errors::not_at_start(1));
-    let own = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
+    let mut advanced = words().unwrap();
+    advanced.tell(&[Fitness::WORST; 12]).unwrap();
+    assert_eq!(NoveltySearch::new(base, advanced, 0).unwrap_err(), errors::not_at_start(1));
+    let nested = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
     let (expected, found) = (ScoreShape::FITNESS, ScoreShape::new(1, 2));
-    assert_eq!(NoveltySearch::new(base, own, 0).unwrap_err(), errors::score_shape(expected, found));
+    assert_eq!(NoveltySearch::new(base, nested, 0).unwrap_err(), errors::score_shape(expected, found));
     let mut search = NoveltySearch::new(base, words().unwrap(), 0).unwrap();
     let (expected, found) = (found, expected);
     assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(errors::score_shape(expected, found)));
@@ -209,7 +209,7 @@ fn a_damaged_state_is_refused() {
     let (before, state) = (search.save(), search.save());
     let inner = 8 + u64::from_le_bytes(state[..8].try_into().unwrap()) as usize;
     assert!(search.archive().len() >= 4);
-    // The length of the inner state, that state itself, the threshold, the number of behaviours, a behaviour.
+    // The length of the inner state, that state, the threshold, the number of behaviors, a behavior.
     let changes: [(usize, [u8; 8]); 6] = [
         (0, u64::MAX.to_le_bytes()),
         (inner - 8, 7.0_f64.to_le_bytes()),
@@ -233,16 +233,16 @@ fn a_damaged_state_is_refused() {
 
 #[test]
 fn distances_are_taken_in_units() {
-    // The first value a thousand times as large is the same search where its unit is.
+    // A value and its unit that are both a thousand times as large give the same search.
     let plain = NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();
     let scaled = plain.clone().with_units::<u16>(&[1024.0, 0.5]).unwrap();
     let (mut plain, mut scaled) = (plain, scaled);
     for _ in 0..20 {
-        let told = scores(&plain, |gene: u16| f64::from(gene) / 65_536.0);
+        let scores = scores(&plain, |gene: u16| f64::from(gene) / 65_536.0);
         let larger = |row: &[f64]| [row[0], 1024.0 * row[1], 0.5 * row[2]];
-        let larger = told.values().chunks(3).flat_map(larger).collect();
-        plain.tell_scores(&told).unwrap();
-        scaled.tell_scores(&Scores::nan_as_failed(told.shape(), larger).unwrap()).unwrap();
+        let larger = scores.values().chunks(3).flat_map(larger).collect();
+        plain.tell_scores(&scores).unwrap();
+        scaled.tell_scores(&Scores::nan_as_failed(scores.shape(), larger).unwrap()).unwrap();
         assert_eq!((plain.ask(), plain.novelty(), plain.archive()), (scaled.ask(), scaled.novelty(), scaled.archive()));
     }
     let fresh = || NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();

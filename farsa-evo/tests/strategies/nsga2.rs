@@ -1,4 +1,4 @@
-//! NSGA-II: beside a transcription of its source, on the problems ZDT, its parents, and its bits.
+//! NSGA-II, compared with a transcription of its source, on the ZDT problems and by digests.
 
 #![allow(clippy::disallowed_methods)]
 
@@ -24,11 +24,11 @@ fn configs() -> [Nsga2Config; 4] {
     ]
 }
 
-/// Up to four objectives that contradict each other; one evaluation in eleven fails.
+/// Up to four conflicting objectives. One evaluation in eleven fails.
 fn judge(genes: &[f64], row: &mut [f64]) {
     let sum: f64 = genes.iter().sum();
-    let all = [-(genes[0] - 1.0).abs(), -sum * sum, (2.0 * genes[1]).floor(), genes[3] - genes[0]];
-    row.copy_from_slice(&all[..row.len()]);
+    let objectives = [-(genes[0] - 1.0).abs(), -sum * sum, (2.0 * genes[1]).floor(), genes[3] - genes[0]];
+    row.copy_from_slice(&objectives[..row.len()]);
     if sum.to_bits().is_multiple_of(11) {
         row[0] = f64::NAN;
     }
@@ -42,7 +42,7 @@ fn scores(search: &Nsga2) -> Scores {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| Nsga2::new(config.clone(), 7), 40).unwrap();
     }
@@ -57,19 +57,19 @@ struct Naive {
     objectives: Vec<f64>,
     front: usize,
     distance: f64,
-    told: Option<usize>,
+    evaluated: Option<usize>,
 }
 
-/// The next parents, by the words of the source: fronts by peeling, distances by sorting each objective.
-fn survivors(all: &[Naive], size: usize) -> Vec<Naive> {
-    let (mut rest, mut next, mut number): (Vec<Naive>, Vec<Naive>, usize) = (all.to_vec(), Vec::new(), 0);
+/// Returns the next parents as the source describes them, with fronts by peeling and distances by sorting each objective.
+fn survivors(candidates: &[Naive], size: usize) -> Vec<Naive> {
+    let (mut rest, mut next, mut number): (Vec<Naive>, Vec<Naive>, usize) = (candidates.to_vec(), Vec::new(), 0);
     while next.len() < size {
         let alone = |a: &Naive| !rest.iter().any(|b| dominates(&b.objectives, &a.objectives));
         let (mut front, behind): (Vec<Naive>, Vec<Naive>) = rest.iter().cloned().partition(alone);
-        for (own, distance) in front.iter_mut().zip(vec![0.0; rest.len()]) {
-            (own.front, own.distance) = (number, distance);
+        for (individual, distance) in front.iter_mut().zip(vec![0.0; rest.len()]) {
+            (individual.front, individual.distance) = (number, distance);
         }
-        for m in 0..all[0].objectives.len() {
+        for m in 0..candidates[0].objectives.len() {
             let mut order: Vec<usize> = (0..front.len()).collect();
             order.sort_by(|a, b| front[*a].objectives[m].partial_cmp(&front[*b].objectives[m]).unwrap());
             let value: Vec<f64> = order.iter().map(|i| front[*i].objectives[m]).collect();
@@ -94,8 +94,8 @@ fn survivors(all: &[Naive], size: usize) -> Vec<Naive> {
 
 fn rival(parents: &[Naive], stream: &mut Stream) -> usize {
     let [a, b] = [0, 1].map(|_| stream.below(parents.len() as u32) as usize);
-    let (own, other) = (&parents[a], &parents[b]);
-    let better = other.front < own.front || (other.front == own.front && other.distance > own.distance);
+    let (first, second) = (&parents[a], &parents[b]);
+    let better = second.front < first.front || (second.front == first.front && second.distance > first.distance);
     if better { b } else { a }
 }
 
@@ -137,15 +137,15 @@ fn generations_are_those_of_a_transcription() {
         let mut search = Nsga2::new(config.clone(), 11).unwrap();
         let mut parents: Vec<Naive> = Vec::new();
         for generation in 1..20 {
-            let told = scores(&search);
+            let scores = scores(&search);
             for parent in &mut parents {
-                parent.told = None;
+                parent.evaluated = None;
             }
             parents.extend(search.ask().iter().enumerate().map(|(i, genes)| {
-                let objectives = told.objectives(i).to_vec();
-                Naive { genes: genes.to_vec(), objectives, front: 0, distance: 0.0, told: Some(i) }
+                let objectives = scores.objectives(i).to_vec();
+                Naive { genes: genes.to_vec(), objectives, front: 0, distance: 0.0, evaluated: Some(i) }
             }));
-            search.tell_scores(&told).unwrap();
+            search.tell_scores(&scores).unwrap();
             parents = survivors(&parents, config.population);
             assert!(search.parents().map(|(genes, _)| genes).eq(parents.iter().map(|parent| &parent.genes[..])));
             assert!(search.parents().map(|(_, m)| m).eq(parents.iter().map(|parent| &parent.objectives[..])));
@@ -169,14 +169,14 @@ fn generations_are_those_of_a_transcription() {
                     assert!((got - want).abs() <= 1e-12 * want.abs().max(1.0), "{generation} {i}: {got} {want}");
                 }
                 named.dedup();
-                let named: Vec<usize> = named.into_iter().filter_map(|parent| parents[parent].told).collect();
+                let named: Vec<usize> = named.into_iter().filter_map(|parent| parents[parent].evaluated).collect();
                 assert_eq!(search.genealogy().unwrap().parents_of(i), named);
             }
         }
     }
 }
 
-/// 100 individuals, 25 000 evaluations. With 100 points the best hypervolume is 0.4 to 0.6 % below that of the whole front.
+/// 100 individuals, 25 000 evaluations. The best 100 points have a hypervolume 0.4 to 0.6 % below that of the true front.
 #[test]
 fn it_finds_the_fronts_of_the_zdt_problems() {
     for problem in Zdt::ALL {
@@ -188,14 +188,14 @@ fn it_finds_the_fronts_of_the_zdt_problems() {
     }
 }
 
-/// The hypervolumes of the true fronts, by integration.
+/// Integrates the hypervolumes of the true fronts.
 #[test]
 fn the_true_fronts_have_their_hypervolume() {
     let above = |problem: Zdt| problem.largest_hypervolume();
     // 1.21 less the area below 1 - sqrt(x), and below 1 - x^2.
     assert!((above(Zdt::One) - (1.21 - 1.0 / 3.0)).abs() < 1e-4 && (above(Zdt::Two) - (1.21 - 2.0 / 3.0)).abs() < 1e-4);
     assert_eq!(above(Zdt::One), above(Zdt::Four));
-    // The front of ZDT6 begins at 0.2807753191: the same as ZDT2 from there, and nothing before.
+    // The front of ZDT6 begins at 0.2807753191 and equals that of ZDT2 from there.
     let start: f64 = 0.280_775_319_1;
     let want = 1.1 * (1.1 - start) - (1.0 - start) + (1.0 - start.powi(3)) / 3.0;
     assert!((above(Zdt::Six) - want).abs() < 1e-4, "{} {want}", above(Zdt::Six));
@@ -214,8 +214,8 @@ fn a_thousand_generations_are_rebuilt() {
         }
         let mut values = vec![0.0; 200];
         search.ask().iter().zip(values.chunks_mut(2)).for_each(|(genes, row)| Zdt::Four.judge(genes, row));
-        let told = Scores::new(search.score_shape(), values).unwrap();
-        record.tell_scores(&mut search, &told).unwrap();
+        let scores = Scores::new(search.score_shape(), values).unwrap();
+        record.tell_scores(&mut search, &scores).unwrap();
     }
     for (generation, genomes) in asked {
         assert_eq!(record.genomes(&mut fresh(), generation).unwrap(), genomes);
@@ -223,8 +223,8 @@ fn a_thousand_generations_are_rebuilt() {
     let mut again = fresh();
     record.rebuild(&mut again, 1000).unwrap();
     assert_eq!(again, search);
-    let kept = Strategy::collection(&search).map(|collection| collection.members().len());
-    assert!(kept.is_some_and(|kept| kept > 0), "{kept:?}");
+    let members = Strategy::collection(&search).map(|collection| collection.members().len());
+    assert!(members.is_some_and(|members| members > 0), "{members:?}");
 }
 
 #[test]
@@ -269,8 +269,8 @@ fn a_damaged_state_is_refused() {
     (0..3).for_each(|_| search.tell_scores(&scores(&search)).unwrap());
     let (before, state) = (search.clone(), search.save());
     let (genes, objectives) = (4 + 4 * 8 * 12, 4 + 6 * 8 * 12);
-    // A gene out of its bounds, an objective that is NaN, a front that leaves one out, a generation that was not told, an
-    // individual that is none, a distance below zero.
+    // A gene out of its bounds, a NaN objective, a gap between fronts, a future generation, an individual out of range,
+    // a negative distance.
     let changes: [(usize, Vec<u8>); 6] = [
         (4, 7.0_f64.to_le_bytes().into()),
         (genes, vec![0xff; 8]),
@@ -291,13 +291,13 @@ fn a_damaged_state_is_refused() {
 }
 
 #[test]
-fn fitness_is_too_little() {
-    let [two, _, one, _] = configs();
-    let mut search = Nsga2::new(two, 1).unwrap();
+fn fitness_alone_is_refused() {
+    let [two_objectives, _, one_objective, _] = configs();
+    let mut search = Nsga2::new(two_objectives, 1).unwrap();
     let (expected, found) = (ScoreShape::new(2, 0), ScoreShape::FITNESS);
     assert_eq!(search.tell(&[Fitness::WORST; 12]), Err(errors::score_shape(expected, found)));
-    // Of one objective it is told as any other.
-    let mut search = Nsga2::new(one, 1).unwrap();
+    // With one objective, plain fitness suffices.
+    let mut search = Nsga2::new(one_objective, 1).unwrap();
     search.tell(&[Fitness::WORST; 12]).unwrap();
     assert_eq!(search.generation(), 1);
 }
@@ -308,18 +308,18 @@ proptest! {
     fn no_parent_is_lost_to_a_worse_one(
         seed: u64,
         which in 0_usize..3,
-        told in proptest::collection::vec(proptest::num::f64::ANY, 8 * 45),
+        reported in proptest::collection::vec(proptest::num::f64::ANY, 8 * 45),
     ) {
         let config = configs()[which].clone();
         let (bounds, m, size) = (config.bounds.clone(), config.objectives, config.population);
         let mut search = Nsga2::new(config, seed).unwrap();
-        for values in told.chunks_exact(m * size).take(8) {
-            let told = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
+        for values in reported.chunks_exact(m * size).take(8) {
+            let scores = Scores::nan_as_failed(search.score_shape(), values.to_vec()).unwrap();
             let before: Vec<Vec<f64>> = search.parents().map(|(_, objectives)| objectives.to_vec()).collect();
-            search.tell_scores(&told).unwrap();
+            search.tell_scores(&scores).unwrap();
             let after: Vec<Vec<f64>> = search.parents().map(|(_, objectives)| objectives.to_vec()).collect();
             prop_assert_eq!(after.len(), size);
-            // Elitism: whoever was there is there, or not dominating anybody of the last front.
+            // Elitism: each parent survives, or dominates no survivor of the last front.
             for lost in before.iter().filter(|row| !after.contains(row)) {
                 prop_assert!(!after.iter().any(|row| dominates(lost, row)));
             }

@@ -1,4 +1,4 @@
-//! Selection by the outcomes of encounters: beside a transcription of its source, and on a game without a best player.
+//! Selection by the outcomes of encounters, compared with a transcription of its source and on a game without a best player.
 
 use crate::errors;
 use farsa_evo::coevolution::{Outcomes, Replacement};
@@ -6,7 +6,7 @@ use farsa_evo::{EvoError, Fitness};
 use farsa_num::Stream;
 use proptest::prelude::*;
 
-/// The source's choice of opponents, which sums all differences anew for each, from a first one.
+/// Chooses opponents as the source does, which sums all differences again for each candidate.
 fn transcribed_opponents(matrix: &[Vec<f64>], first: usize, count: usize) -> Vec<usize> {
     let mut unselected: Vec<usize> = (0..matrix[0].len()).filter(|opponent| *opponent != first).collect();
     let mut selected = vec![first];
@@ -28,12 +28,12 @@ fn transcribed_opponents(matrix: &[Vec<f64>], first: usize, count: usize) -> Vec
     selected
 }
 
-/// The source's replacement: newcomers among the best take the places of the worst members, in rising order of both. Its
-/// search for the next member ends one place too early where nearly all are newcomers; here it goes to the end.
+/// Replaces the worst members by the best newcomers, in rising order of both, as the source does. Its search for the next
+/// member stops one place too early if nearly all are newcomers. This one continues to the end.
 fn transcribed_replacements(means: &[f64], newcomers: usize) -> Vec<(usize, usize)> {
     let members = means.len() - newcomers;
     let mut order: Vec<usize> = (0..means.len()).collect();
-    // Rising; of equals the higher index first, so that it counts as worse.
+    // Rising order. Among equals the higher index is first and counts as worse.
     order.sort_by(|&a, &b| means[a].total_cmp(&means[b]).then(b.cmp(&a)));
     let skip = |mut place: usize| {
         while place < order.len() && order[place] >= members {
@@ -41,10 +41,10 @@ fn transcribed_replacements(means: &[f64], newcomers: usize) -> Vec<(usize, usiz
         }
         place
     };
-    let (mut found, mut replaced) = (Vec::new(), skip(0));
+    let (mut pairs, mut replaced) = (Vec::new(), skip(0));
     for i in 0..members {
         if order[i + newcomers] >= members {
-            found.push((order[replaced], order[i + newcomers]));
+            pairs.push((order[replaced], order[i + newcomers]));
             replaced = skip(replaced + 1);
         }
     }
@@ -91,13 +91,13 @@ proptest! {
     }
 }
 
-/// Rock, paper, scissors: who has learned to beat one and lost to another does not pass, who draws with all does.
+/// In rock, paper, scissors a newcomer that beats one opponent and loses to another fails. One that draws with all passes.
 #[test]
 fn opportunists_do_not_pass() {
     let outcomes = [
-        [0.5, 0.5, 0.0], // Draws with two and loses against the third.
+        [0.5, 0.5, 0.0], // Draws with two, loses to the third.
         [0.5, 0.0, 0.5],
-        [1.0, 0.0, 0.0], // Newcomers: one that beats the first and nobody else,
+        [1.0, 0.0, 0.0], // Newcomers: one that beats only the first,
         [0.5, 0.5, 0.5], // and one that draws with all.
     ];
     let outcomes = Outcomes::new(3, outcomes.concat()).unwrap();
@@ -108,7 +108,7 @@ fn opportunists_do_not_pass() {
 }
 
 #[test]
-fn failed_encounters_rank_last_and_choose_nobody() {
+fn failed_encounters_rank_last_and_choose_no_opponent() {
     let values = vec![0.1, 0.1, 0.2, f64::NAN, 1.0, 0.9, 0.2, 0.2, 0.1];
     let outcomes = Outcomes::new(3, values).unwrap();
     assert_eq!(outcomes.fitness()[1], Fitness::WORST);
@@ -116,8 +116,8 @@ fn failed_encounters_rank_last_and_choose_nobody() {
     let chosen = outcomes.differing_opponents(3, &mut Stream::from_seed(1)).unwrap();
     assert_eq!(
         {
-            let mut all = chosen;
-            all.sort_unstable();
+            let mut sorted = chosen;
+            sorted.sort_unstable();
             all
         },
         [0, 1, 2]

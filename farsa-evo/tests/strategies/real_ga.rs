@@ -1,5 +1,5 @@
-//! The generational genetic algorithm over reals: beside a transcription of its sources, on known functions, and its
-//! bits.
+//! The generational genetic algorithm over reals, compared with a transcription of its sources, on test functions and by
+//! digests.
 
 #![allow(clippy::disallowed_methods)]
 
@@ -33,7 +33,7 @@ fn config(selection: Selection, crossover: Crossover, mutation: RealMutation) ->
     RealGaConfig { population: 24, elites: 2, selection, crossover, mutation, rate_factors, ..base }
 }
 
-/// One of everything.
+/// Every option at least once.
 fn configs() -> [RealGaConfig; 4] {
     let gaussian = RealMutation::Gaussian { rate: 0.4, sigma: 0.1 };
     [
@@ -45,7 +45,7 @@ fn configs() -> [RealGaConfig; 4] {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| RealGa::new(config.clone(), 7), 40).unwrap();
     }
@@ -54,7 +54,7 @@ fn it_keeps_to_what_a_strategy_is() {
     check_strategy(|| RealGa::new(alone.clone(), 7), 20).unwrap();
 }
 
-/// The rank of a parent, by the words of the sources.
+/// Draws the rank of a parent, as the sources describe it.
 fn rank(selection: Selection, n: usize, stream: &mut Stream) -> usize {
     match selection {
         Selection::Tournament { size } => (0..size).map(|_| stream.below(n as u32) as usize).min().unwrap(),
@@ -96,14 +96,14 @@ fn deb(a: f64, b: f64, [yl, yu]: [f64; 2], eta: f64, stream: &mut Stream) -> f64
     if stream.uniform_f64() < 0.5 { c2 } else { c1 }
 }
 
-/// A child: its genes and its step size.
+/// Returns the genes and the step size of a child.
 fn child(config: &RealGaConfig, ranked: &[(Vec<f64>, f64)], mut stream: Stream) -> (Vec<f64>, f64) {
     let stream = &mut stream;
     let (mut genes, mut step) = ranked[rank(config.selection, ranked.len(), stream)].clone();
     if config.crossover != Crossover::None && stream.uniform_f64() < config.crossover_rate {
-        let other = &ranked[rank(config.selection, ranked.len(), stream)].0;
+        let partner = &ranked[rank(config.selection, ranked.len(), stream)].0;
         for (i, range) in config.bounds.iter().enumerate() {
-            let (a, b) = (genes[i], other[i]);
+            let (a, b) = (genes[i], partner[i]);
             genes[i] = match config.crossover {
                 Crossover::None => a,
                 Crossover::Uniform { rate } => [a, b][usize::from(stream.uniform_f64() < rate)],
@@ -140,10 +140,10 @@ fn generations_are_those_of_a_transcription() {
         let mut naive: Vec<(Vec<f64>, f64)> =
             search.ask().iter().zip(search.step_sizes()).map(|(genes, step)| (genes.to_vec(), *step)).collect();
         for generation in 1..8 {
-            let told: Vec<f64> = search.ask().iter().map(sphere).collect();
-            search.tell_values(&told).unwrap();
+            let values: Vec<f64> = search.ask().iter().map(sphere).collect();
+            search.tell_values(&values).unwrap();
             let mut order: Vec<usize> = (0..naive.len()).collect();
-            order.sort_by(|a, b| told[*b].total_cmp(&told[*a]));
+            order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
             let ranked: Vec<_> = order.iter().map(|i| naive[*i].clone()).collect();
             let made = |i: usize| {
                 let stream = Stream::new(11, Domain::Mutation, 0, i as u32, generation);
@@ -169,15 +169,15 @@ fn parents_are_named() {
     let mut search = RealGa::new(config, 3).unwrap();
     let parents = |search: &RealGa, i| search.genealogy().unwrap().parents_of(i);
     assert!((0..30).all(|i| parents(&search, i).is_empty()));
-    let told: Vec<f64> = (0..24).map(|i| f64::from((i * 7) % 24)).collect();
-    search.tell_values(&told).unwrap();
+    let values: Vec<f64> = (0..24).map(|i| f64::from((i * 7) % 24)).collect();
+    search.tell_values(&values).unwrap();
     // 17 * 7 = 119 = 4 * 24 + 23, and 10 * 7 = 70 = 2 * 24 + 22.
     assert_eq!([0, 1].map(|i| parents(&search, i)), [[17], [10]]);
     assert!((2..24).all(|i| (1..=2).contains(&parents(&search, i).len())));
     assert!((2..24).any(|i| parents(&search, i).len() == 2) && parents(&search, 24).is_empty());
 }
 
-/// Population 100, so 30 000 evaluations, of ten genes; Rosenbrock of four, 100 000 evaluations.
+/// Ten genes and 30 000 evaluations with a population of 100. Rosenbrock has four genes and 100 000 evaluations.
 #[test]
 fn it_converges() {
     let base = |genes| RealGaConfig::new(vec![[-5.0, 5.0]; genes]);
@@ -185,7 +185,7 @@ fn it_converges() {
     for config in [base(10), RealGaConfig { mutation: adaptive, crossover_rate: 0.5, ..base(10) }] {
         let reached = [sphere as fn(&[f64]) -> f64, ellipsoid]
             .map(|function| RealGa::new(config.clone(), 5).unwrap().maximize(300, function).unwrap().fitness.get());
-        // The best of the first generation has some -30 and -50 000.
+        // The best of the first generation is about -30 and -50 000.
         assert!(reached[0] > -0.01 && reached[1] > -2.0, "{reached:?}");
     }
     let best = RealGa::new(base(4), 5).unwrap().maximize(1000, rosenbrock).unwrap();
@@ -241,7 +241,7 @@ fn a_damaged_state_is_refused() {
     search.tell_values(&[0.0; 24]).unwrap();
     let before = search.clone();
     let state = search.snapshot().unwrap().save();
-    // Of a parent, of a step size, of a gene.
+    // Positions of a parent, a step size and a gene.
     for at in [4, 4 + 8 * 24, 4 + 16 * 24 + 8] {
         let mut damaged = state.clone();
         damaged[at..at + 8].copy_from_slice(&1e9_f64.to_le_bytes());
@@ -249,7 +249,7 @@ fn a_damaged_state_is_refused() {
         assert!(search.snapshot().unwrap().restore(&damaged).is_err(), "{at}");
         assert_eq!(search, before);
     }
-    // A step size below the smallest.
+    // A step size below the minimum.
     let RealMutation::SelfAdaptive { smallest, .. } = config.mutation else { panic!("adapts no step sizes") };
     for (step, possible) in [(smallest, true), (smallest.next_down(), false), (-smallest, false)] {
         let mut state = state.clone();
@@ -266,17 +266,17 @@ proptest! {
         which in 0_usize..4,
         tau in 0.0_f64..10.0,
         ends in proptest::array::uniform2(-1e100_f64..1e100),
-        told in proptest::collection::vec(proptest::num::f64::ANY, 24),
+        reported in proptest::collection::vec(proptest::num::f64::ANY, 24),
     ) {
         let mut config = configs()[which].clone();
         config.bounds[0] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        if let RealMutation::SelfAdaptive { tau: own, .. } = &mut config.mutation {
-            *own = tau;
+        if let RealMutation::SelfAdaptive { tau: rate, .. } = &mut config.mutation {
+            *rate = tau;
         }
         let bounds = config.bounds.clone();
         let mut search = RealGa::new(config, seed).unwrap();
         for _ in 0..10 {
-            search.tell(&told.iter().copied().map(Fitness::nan_as_failed).collect::<Vec<_>>()).unwrap();
+            search.tell(&reported.iter().copied().map(Fitness::nan_as_failed).collect::<Vec<_>>()).unwrap();
             for genes in search.ask() {
                 prop_assert!(genes.iter().zip(&bounds).all(|(gene, [low, high])| low <= gene && gene <= high));
             }

@@ -1,12 +1,12 @@
-//! Records that keep states, whole, cut, read entry by entry, and written elsewhere.
+//! Records with states: complete, truncated, read by entry, and written by a separate writer.
 
 use farsa_evo::words::{GaConfig, TruncationGa};
 use farsa_evo::{EvoError, Fitness, Population, Record, RecordWriter, Snapshot, Strategy};
 
-/// A search that asks for its state to be kept every three generations.
+/// A strategy with a snapshot every three generations.
 struct Asking {
     search: TruncationGa,
-    /// Bytes of a state beyond those that it needs.
+    /// Padding of the state [bytes].
     more: usize,
 }
 
@@ -44,7 +44,7 @@ fn fresh() -> Asking {
     Asking { search, more: 0 }
 }
 
-/// What a generation is told.
+/// The fitness of a generation.
 fn values(generation: u32) -> Vec<Fitness> {
     (0..10_u32).map(|i| Fitness::nan_as_failed(f64::from((7 * i + generation) % 10))).collect()
 }
@@ -60,12 +60,12 @@ fn recorded() -> Record {
 }
 
 #[test]
-fn states_are_kept_as_often_as_a_slow_strategy_asks() {
+fn states_are_stored_at_the_interval_of_the_strategy() {
     let record = recorded();
     assert_eq!((record.size(), record.populations(), record.generations()), (10, 1, 10));
-    let kept: Vec<u32> = (0..10).filter(|generation| record.entry(*generation).unwrap().state.is_some()).collect();
-    assert_eq!(kept, [2, 5, 8]);
-    // A record that was cut and went on is the same, and so is one that is read entry by entry.
+    let stored: Vec<u32> = (0..10).filter(|generation| record.entry(*generation).unwrap().state.is_some()).collect();
+    assert_eq!(stored, [2, 5, 8]);
+    // A truncated and continued record is equal, and so is one that is read by entry.
     let (mut cut, mut again) = (record.clone(), fresh());
     cut.truncate(4);
     cut.rebuild(&mut again, 4).unwrap();
@@ -85,18 +85,18 @@ fn states_are_kept_as_often_as_a_slow_strategy_asks() {
 }
 
 #[test]
-fn states_are_kept_half_as_often_for_each_256_mib_of_them() {
+fn the_snapshot_rate_halves_with_each_256_mib_of_states() {
     let mut large = Asking { more: 1 << 26, ..fresh() };
     let mut writer = RecordWriter::new(&mut large).unwrap();
-    let kept = (0..60).filter(|&generation| {
+    let stored = (0..60).filter(|&generation| {
         writer.tell(&mut large, &values(generation)).unwrap();
         writer.entry().unwrap().state.is_some()
     });
-    assert_eq!(kept.collect::<Vec<u32>>(), [2, 5, 8, 11, 17, 23, 29, 35, 47, 59]);
+    assert_eq!(stored.collect::<Vec<u32>>(), [2, 5, 8, 11, 17, 23, 29, 35, 47, 59]);
 }
 
 #[test]
-fn a_writer_takes_down_what_a_record_keeps_from_any_generation_on() {
+fn a_writer_writes_the_entries_of_a_record_from_any_generation() {
     let record = recorded();
     for first in 0..10 {
         let (mut before, mut strategy) = (record.clone(), fresh());

@@ -1,4 +1,4 @@
-//! Covariance matrix adaptation that begins anew: which runs follow each other, and what they find.
+//! Restarts of covariance matrix adaptation: the schedule of the runs, and their results.
 
 use crate::errors;
 use farsa_evo::covariance::{CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
@@ -10,7 +10,7 @@ fn config(mean: f64, genes: usize, sigma: f64, schedule: RestartSchedule) -> Cma
     CmaEsRestartsConfig::new(CmaEsConfig::new(vec![mean; genes], sigma), schedule)
 }
 
-/// Many optima, the best at 0.
+/// Many local optima, the global one at 0.
 fn rastrigin(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x - 10.0 * sin_cos(core::f64::consts::TAU * x).1 + 10.0).sum()
 }
@@ -21,7 +21,7 @@ fn tell(search: &mut impl Strategy<f64>, function: fn(&[f64]) -> f64) -> f64 {
     values.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Generations until the function is below 10^-8.
+/// Counts the generations until the function is below 10^-8.
 fn generations(search: &mut impl Strategy<f64>, limit: usize) -> Option<usize> {
     (0..limit).find(|_| tell(search, rastrigin) > -1e-8)
 }
@@ -29,12 +29,12 @@ fn generations(search: &mut impl Strategy<f64>, limit: usize) -> Option<usize> {
 #[test]
 fn restarts_find_what_one_run_misses() {
     for seed in 0..5 {
-        let one = CmaEsConfig::new(vec![3.0; 5], 1.0);
-        assert_eq!(generations(&mut CmaEs::new(one, seed).unwrap(), 2000), None);
+        let single = CmaEsConfig::new(vec![3.0; 5], 1.0);
+        assert_eq!(generations(&mut CmaEs::new(single, seed).unwrap(), 2000), None);
         for schedule in [RestartSchedule::Ipop, RestartSchedule::Bipop] {
             let mut search = CmaEsRestarts::new(config(3.0, 5, 1.0, schedule), seed).unwrap();
-            let found = generations(&mut search, 20_000);
-            assert!(found.is_some() && search.run() > 0, "{schedule:?}, seed {seed}");
+            let solved = generations(&mut search, 20_000);
+            assert!(solved.is_some() && search.run() > 0, "{schedule:?}, seed {seed}");
         }
     }
 }
@@ -49,7 +49,8 @@ fn a_step_size_begins_as_given_and_falls_towards_an_optimum() {
     assert!(search.run() == 0 && search.sigma() < 1e-3, "{}", search.sigma());
 }
 
-/// Small runs begin with a step size between a hundredth of the first and that, evenly drawn by its logarithm [Hansen2009].
+/// Small runs draw their step size between a hundredth of the first and the first, uniformly in its logarithm
+/// [Hansen2009].
 #[test]
 fn small_runs_begin_with_small_step_sizes() {
     let mut small = vec![];
@@ -68,11 +69,11 @@ fn small_runs_begin_with_small_step_sizes() {
     let magnitude = small.iter().map(|sigma| farsa_num::ln(*sigma)).sum::<f64>() / small.len() as f64;
     println!("{} small runs begin with e^{magnitude} in the geometric mean", small.len());
     assert!(small.len() > 20 && small.iter().all(|sigma| (0.01..1.0).contains(sigma)), "{small:?}");
-    // The logarithm of a tenth, by which a mean of so many is not 0.8 off.
+    // The expected mean is ln 0.1. A mean over this number of runs is within 0.8 of it.
     assert!((magnitude + std::f64::consts::LN_10).abs() < 0.8, "{magnitude}");
 }
 
-/// The individuals of each run and the blocks that it evaluated.
+/// Returns the individuals of each run and its evaluated blocks.
 fn runs(schedule: RestartSchedule, seed: u64, generations: u32) -> Vec<(usize, u32)> {
     let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), seed).unwrap();
     let mut runs = vec![];
@@ -97,7 +98,7 @@ fn runs_have_the_sizes_of_their_schedule() {
             let small = spent[1] < spent[0];
             if small {
                 assert!((8..=(large / 2).max(8)).contains(size), "{runs:?}");
-                // A run ends with the generation in which it has spent half of what the latest large run had.
+                // A small run ends with the generation in which it has spent half the budget of the latest large run.
                 assert!(*blocks < latest / 2 + *size as u32 / 8, "{runs:?}");
             } else {
                 large *= 2;
@@ -111,7 +112,7 @@ fn runs_have_the_sizes_of_their_schedule() {
 }
 
 #[test]
-fn the_first_run_is_that_of_one_alone() {
+fn the_first_run_equals_plain_cma_es() {
     let restarts = config(3.0, 4, 1.0, RestartSchedule::Ipop);
     let mut alone = CmaEs::new(restarts.first.clone(), 7).unwrap();
     let mut search = CmaEsRestarts::new(restarts, 7).unwrap();
@@ -125,10 +126,10 @@ fn the_first_run_is_that_of_one_alone() {
 }
 
 #[test]
-fn the_contract_is_kept() {
+fn it_conforms() {
     for schedule in [RestartSchedule::Ipop, RestartSchedule::Bipop] {
         check_strategy(|| CmaEsRestarts::new(config(0.0, 3, 1.0, schedule), 3), 22).unwrap();
-        // Steps so small that a run ends with its first generation: runs of 1, 2, 4 ... blocks.
+        // The steps are so small that a run ends with its first generation, with runs of 1, 2, 4 ... blocks.
         check_strategy(|| CmaEsRestarts::new(config(1e6, 2, 1e-12, schedule), 3), 80).unwrap();
     }
 }
@@ -142,20 +143,20 @@ fn impossible_configurations_are_refused() {
     };
     assert_eq!(refused(|c| c.first.mean.clear()), errors::no_genes());
     assert_eq!(refused(|c| c.spread = -1.0).to_string(), "spread is -1, where 0 to 1e100 is possible");
-    // The largest run has 512 times as many.
+    // The largest run has 512 times as many individuals.
     let population = 512 * 1_000_000;
     assert_eq!(refused(|c| c.first.population = 1_000_000), errors::too_large(population, 4));
 }
 
 #[test]
-fn states_that_cannot_be_change_nothing() {
+fn refused_states_change_nothing() {
     let mut search = CmaEsRestarts::new(config(1e6, 2, 1e-12, RestartSchedule::Ipop), 3).unwrap();
     while search.individuals() < 48 {
         tell(&mut search, rastrigin);
     }
     tell(&mut search, rastrigin);
     let (before, state) = (search.clone(), search.save());
-    // Generation, large, number, blocks, kind, iterations, block, remembered; then sigma of the run.
+    // Generation, large, number, blocks, kind, iterations, block, history, then sigma of the run.
     for (place, wrong) in
         [(4, 3), (4, 1024), (12, 0), (12, 513), (16, 2), (24, 8), (24, u32::MAX), (28, 5), (28, u32::MAX)]
     {
@@ -179,12 +180,12 @@ fn the_bits_stay_as_they_are() {
     let mut digests = [0; 2];
     for (digest, schedule) in digests.iter_mut().zip([RestartSchedule::Ipop, RestartSchedule::Bipop]) {
         let mut search = CmaEsRestarts::new(config(3.0, 3, 1.0, schedule), 2005).unwrap();
-        let mut all = Digest::new();
+        let mut bits = Digest::new();
         for _ in 0..1000 {
-            all.add_u64(search.ask().digest());
+            bits.add_u64(search.ask().digest());
             tell(&mut search, rastrigin);
         }
-        *digest = all.finish();
+        *digest = bits.finish();
     }
     assert_eq!(digests, [0x96ea_864f_43b0_7c4d, 0xa69a_1894_9be6_0625], "{digests:#018x?}");
 }
@@ -195,14 +196,14 @@ proptest! {
     #[test]
     fn genes_stay_finite(
         genes in 1..5_usize, exponent in -99..99_i32, seed: u64, bipop: bool,
-        told in proptest::collection::vec(prop_oneof![any::<f64>(), Just(f64::NAN), -1.0..1.0_f64], 60),
+        reported in proptest::collection::vec(prop_oneof![any::<f64>(), Just(f64::NAN), -1.0..1.0_f64], 60),
     ) {
         let sigma = farsa_num::exp(f64::from(exponent) * core::f64::consts::LN_10);
         let schedule = if bipop { RestartSchedule::Bipop } else { RestartSchedule::Ipop };
         let mut search = CmaEsRestarts::new(config(1.0, genes, sigma, schedule), seed).unwrap();
         for generation in 0..120 {
-            let told = told.iter().cycle().skip(generation).step_by(1 + generation % 7);
-            let fitness: Vec<Fitness> = told.take(search.ask().len()).map(|x| Fitness::nan_as_failed(*x)).collect();
+            let reported = reported.iter().cycle().skip(generation).step_by(1 + generation % 7);
+            let fitness: Vec<Fitness> = reported.take(search.ask().len()).map(|x| Fitness::nan_as_failed(*x)).collect();
             search.tell(&fitness).unwrap();
             prop_assert!(search.ask().as_slice().iter().chain(&search.diagnostics()).all(|x| x.is_finite()));
             let mut again = search.clone();

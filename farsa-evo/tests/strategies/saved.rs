@@ -1,4 +1,4 @@
-//! Saving and reading: the same bits go on, and an altered state is refused.
+//! Saved and restored strategies continue with the same bits, and altered states are refused.
 
 use farsa_evo::coevolution::Populations;
 use farsa_evo::words::{GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, TruncationGa};
@@ -6,25 +6,25 @@ use farsa_evo::{Champion, Fitness, Record, RecordEntry, RecordKind, Snapshot, St
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
 
-fn live<S: Strategy>(strategy: &mut S, generations: u32) {
+fn advance<S: Strategy>(strategy: &mut S, generations: u32) {
     for _ in 0..generations {
-        let told: Vec<_> = strategy.ask().iter().map(|genes| Fitness::nan_as_failed(f64::from(genes[0]))).collect();
-        strategy.tell(&told).unwrap();
+        let fitness: Vec<_> = strategy.ask().iter().map(|genes| Fitness::nan_as_failed(f64::from(genes[0]))).collect();
+        strategy.tell(&fitness).unwrap();
     }
 }
 
 fn interrupted_is_uninterrupted<S: Strategy + Serialize + DeserializeOwned + PartialEq + std::fmt::Debug>(
     fresh: impl Fn() -> S,
 ) {
-    let mut whole = fresh();
-    live(&mut whole, 30);
+    let mut uninterrupted = fresh();
+    advance(&mut uninterrupted, 30);
     let mut part = fresh();
     for _ in 0..3 {
         part = from_bytes(&to_allocvec(&part).unwrap()).unwrap();
-        live(&mut part, 10);
+        advance(&mut part, 10);
     }
-    assert_eq!(part, whole);
-    assert_eq!(to_allocvec(&part).unwrap(), to_allocvec(&whole).unwrap());
+    assert_eq!(part, uninterrupted);
+    assert_eq!(to_allocvec(&part).unwrap(), to_allocvec(&uninterrupted).unwrap());
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn interrupted_evolution_gives_the_same_bits() {
     interrupted_is_uninterrupted(|| Populations::truncation(&[GaConfig::new(12), narrow], 6).unwrap());
 }
 
-/// A configuration as it was saved before genes had a number of bits.
+/// The saved form of a configuration whose genes have no number of bits.
 #[derive(Serialize)]
 struct Old {
     genes: usize,
@@ -48,7 +48,7 @@ struct Old {
 }
 
 #[test]
-fn a_configuration_of_16_bits_is_saved_as_ever() {
+fn a_configuration_of_16_bits_keeps_its_saved_form() {
     for mutation in [Mutation::Resample, Mutation::Flip] {
         let config = GaConfig { mutation, ..GaConfig::new(300) };
         let old = Old { genes: 300, population: 100, parents: 20, mutation_rate: 0.015, mutation };
@@ -60,7 +60,7 @@ fn a_configuration_of_16_bits_is_saved_as_ever() {
     }
 }
 
-/// A strategy as it is saved, free of its checks.
+/// The saved form of a strategy, without its checks.
 #[derive(Serialize)]
 struct Forged<C> {
     config: C,
@@ -68,7 +68,7 @@ struct Forged<C> {
     state: Vec<u8>,
 }
 
-/// Changes the state of a strategy after three generations, and the error that reading it gives.
+/// Changes the state of a strategy after three generations and reads it back.
 fn bent<S, C>(strategy: &S, config: C, change: impl Fn(&mut Vec<u8>)) -> Result<S, postcard::Error>
 where
     S: Snapshot + DeserializeOwned,
@@ -83,7 +83,7 @@ where
 fn a_forged_state_is_refused() {
     let config = GaConfig { population: 4, parents: 2, gene_bits: 8, ..GaConfig::new(3) };
     let mut ga = TruncationGa::new(config, 6).unwrap();
-    live(&mut ga, 3);
+    advance(&mut ga, 3);
     let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&ga, config, change);
     assert_eq!(read(&|_| ()).unwrap(), ga);
     // Generation (4 bytes), two parents (4 each), then genes (2 each).
@@ -111,7 +111,7 @@ fn a_forged_state_is_refused() {
 
     let config = OnePlusOneConfig::new(5);
     let mut search = OnePlusOne::new(config, 6).unwrap();
-    live(&mut search, 3);
+    advance(&mut search, 3);
     let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&search, config, change);
     assert_eq!(read(&|_| ()).unwrap(), search);
     // Generation, survivor (4 bytes each), sum (8), evaluations (4), genes.
@@ -123,21 +123,21 @@ fn a_forged_state_is_refused() {
     assert!(bent(&search, OnePlusOneConfig { last_rate: 0.9, ..config }, |_| ()).is_err());
 
     let configs = vec![GaConfig::new(4), GaConfig::new(5)];
-    let mut all = Populations::truncation(&configs, 6).unwrap();
-    live(&mut all, 3);
-    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&all, configs.clone(), change);
-    assert_eq!(read(&|_| ()).unwrap(), all);
+    let mut populations = Populations::truncation(&configs, 6).unwrap();
+    advance(&mut populations, 3);
+    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&populations, configs.clone(), change);
+    assert_eq!(read(&|_| ()).unwrap(), populations);
     assert!(read(&|state| state[8] = 2).is_err(), "a population at another generation");
     assert!(read(&|state| state[0] ^= 4).is_err() && read(&|state| state[7] = 255).is_err(), "another length");
     assert!(
         read(&|state| state.push(0)).is_err() && read(&|state| state.truncate(state.len() - 1)).is_err(),
         "another length"
     );
-    assert!(bent(&all, configs[..1].to_vec(), |_| ()).is_err());
+    assert!(bent(&populations, configs[..1].to_vec(), |_| ()).is_err());
 
     let mut search = RandomSearch::new(5, 10, 6).unwrap();
     assert_eq!(bent(&search, (5_usize, 10_usize), |_| ()).unwrap(), search);
-    live(&mut search, 3);
+    advance(&mut search, 3);
     let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&search, (5_usize, 10_usize), change);
     assert_eq!(read(&|_| ()).unwrap(), search);
     // Generation, generation of the best (4 bytes each), its index (8), its fitness (8).
@@ -149,17 +149,17 @@ fn a_forged_state_is_refused() {
 
 #[test]
 fn a_refused_state_changes_nothing() {
-    let mut all = Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
-    live(&mut all, 3);
+    let mut populations = Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
+    advance(&mut populations, 3);
     let (before, state) =
-        (all.clone(), Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap().save());
+        (populations.clone(), Populations::truncation(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap().save());
     for len in (0..state.len()).step_by(7) {
-        assert!(all.restore(&state[..len]).is_err());
-        assert_eq!(all, before);
+        assert!(populations.restore(&state[..len]).is_err());
+        assert_eq!(populations, before);
     }
 }
 
-/// A record as it is saved, free of its checks.
+/// The saved form of a record, without its checks.
 #[derive(Clone, Serialize)]
 struct ForgedRecord {
     shape: (RecordKind, usize, usize, usize, usize),
@@ -168,18 +168,18 @@ struct ForgedRecord {
 }
 
 #[test]
-fn a_record_comes_back_and_a_forged_one_is_refused() {
+fn a_record_round_trips_and_a_forged_one_is_refused() {
     let config = GaConfig { population: 4, parents: 2, ..GaConfig::new(3) };
     let fresh = || TruncationGa::new(config, 6).unwrap();
     let mut ga = fresh();
     let mut record = Record::new(&mut ga).unwrap();
     for _ in 0..40 {
-        let told: Vec<_> = ga.ask().iter().map(|genes| Fitness::nan_as_failed(f64::from(genes[0]))).collect();
-        record.tell(&mut ga, &told).unwrap();
+        let fitness: Vec<_> = ga.ask().iter().map(|genes| Fitness::nan_as_failed(f64::from(genes[0]))).collect();
+        record.tell(&mut ga, &fitness).unwrap();
     }
     let read: Record = from_bytes(&to_allocvec(&record).unwrap()).unwrap();
     assert_eq!(read, record);
-    // The same from entries, one generation after the other; an interrupted search goes on as if it had not been.
+    // An interrupted search that replays single entries continues like an uninterrupted one.
     let mut again = Record::new(&mut fresh()).unwrap();
     for generation in 0..record.generations() {
         again.push(record.entry(generation).unwrap()).unwrap();
@@ -215,9 +215,9 @@ fn a_record_comes_back_and_a_forged_one_is_refused() {
         from_bytes::<Record>(&to_allocvec(&forged).unwrap())
     };
     assert!(values([0xff; 8]).is_err() && values([0; 8]).is_ok(), "a fitness that is NaN");
-    // The state of another generation, and one that is not of the strategy, are refused when they are needed.
-    let other = read(&|record| record.keyframes[0].0 = 2).unwrap();
-    assert!(other.rebuild(&mut fresh(), 2).is_err());
+    // A state of another generation or another strategy is refused when it is needed.
+    let shifted = read(&|record| record.keyframes[0].0 = 2).unwrap();
+    assert!(shifted.rebuild(&mut fresh(), 2).is_err());
     let bent = read(&|record| record.keyframes[0].1.truncate(5)).unwrap();
     assert!(bent.rebuild(&mut fresh(), 2).is_err());
 }
@@ -232,7 +232,7 @@ fn fitness_round_trips() {
     assert!(from_bytes::<Fitness>(&to_allocvec(&Some(f64::NAN)).unwrap()).is_err());
 }
 
-/// A strategy as it is saved, free of its checks.
+/// The saved form of a strategy, without its checks.
 #[derive(Serialize)]
 struct ForgedStrategy<C> {
     config: C,
@@ -242,7 +242,7 @@ struct ForgedStrategy<C> {
 
 #[test]
 fn a_forged_size_takes_no_memory() {
-    // Half a gigabyte of genes in some thirty bytes; a hundred thousand of them would take hours if they were made.
+    // About thirty bytes claim half a gigabyte of genes. Allocating a hundred thousand of them would take hours.
     let config = GaConfig { population: 1 << 27, parents: 1, ..GaConfig::new(2) };
     for _ in 0..100_000 {
         let state = Vec::from([0; 12]);
@@ -258,28 +258,28 @@ fn a_forged_size_takes_no_memory() {
 #[test]
 fn torn_bytes_are_refused() {
     let mut ga = TruncationGa::new(GaConfig::new(12), 6).unwrap();
-    live(&mut ga, 3);
+    advance(&mut ga, 3);
     let bytes = to_allocvec(&ga).unwrap();
     for len in 0..bytes.len() {
         assert!(from_bytes::<TruncationGa>(&bytes[..len]).is_err());
     }
-    // Any single changed byte gives an error or, where it holds nothing that shows yet, a state that goes on.
+    // A changed byte gives an error, or a state that can continue if the byte has no visible effect yet.
     for at in 0..bytes.len() {
         let mut bent = bytes.clone();
         bent[at] ^= 0x15;
         if let Ok(mut read) = from_bytes::<TruncationGa>(&bent) {
-            live(&mut read, 2);
+            advance(&mut read, 2);
         }
     }
 }
 
 #[test]
-fn ranges_and_summaries_come_back_and_are_checked() {
+fn ranges_and_summaries_round_trip_and_are_checked() {
     let range = GeneRange::new(3, -6.0, 6.0).unwrap();
     for range in [range, range.with_gene_bits(8).unwrap()] {
         assert_eq!(from_bytes::<GeneRange>(&to_allocvec(&range).unwrap()).unwrap(), range);
     }
-    // Its fields, with the ends exchanged and with too many bits.
+    // The fields with exchanged ends, and with too many bits.
     for (low, high, bits) in [(6.0_f32, -6.0_f32, 16_u32), (-6.0, 6.0, 17), (-6.0, f32::NAN, 16)] {
         assert!(from_bytes::<GeneRange>(&to_allocvec(&(3_usize, low, high, bits)).unwrap()).is_err());
     }

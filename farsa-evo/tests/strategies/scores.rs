@@ -1,4 +1,4 @@
-//! Strategies that are told more than one number of an individual: what they refuse, their records, several side by side.
+//! Strategies with several scores per individual: refused shapes, records, and coupled populations.
 
 use crate::errors;
 use farsa_evo::coevolution::Populations;
@@ -7,12 +7,12 @@ use farsa_num::{Domain, Stream};
 
 const SHAPE: ScoreShape = ScoreShape::new(2, 1);
 
-/// Half of it descends from the individual with the largest second objective, the rest from the one farthest out.
+/// Half of it descends from the individual with the largest second objective, half from the one with the largest measure.
 #[derive(Clone, Debug, PartialEq)]
 struct Extremes {
     generation: u32,
     population: Population,
-    /// Whether it takes anything that it is told.
+    /// Accepts scores of any shape.
     careless: bool,
 }
 
@@ -27,7 +27,7 @@ impl Extremes {
         for (individual, genes) in self.population.iter_mut().enumerate() {
             let mut stream = Stream::new(1, Domain::Mutation, 0, individual as u32, self.generation);
             let parent = old.get(best[individual % 2]).unwrap();
-            genes.iter_mut().zip(parent).for_each(|(gene, own)| *gene = own ^ (1 << stream.below(16)));
+            genes.iter_mut().zip(parent).for_each(|(gene, parent)| *gene = parent ^ (1 << stream.below(16)));
         }
     }
 }
@@ -74,7 +74,7 @@ impl Snapshot for Extremes {
         let (generation, genes) = state.split_first_chunk::<4>().filter(|_| state.len() == 28).ok_or(wrong)?;
         self.generation = u32::from_le_bytes(*generation);
         let genes = genes.as_chunks::<2>().0.iter().map(|gene| u16::from_le_bytes(*gene));
-        self.population.iter_mut().flatten().zip(genes).for_each(|(gene, own)| *gene = own);
+        self.population.iter_mut().flatten().zip(genes).for_each(|(gene, saved)| *gene = saved);
         Ok(())
     }
 }
@@ -94,32 +94,32 @@ fn scores(strategy: &impl Strategy) -> Scores {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     check_strategy(|| Extremes::new(false), 20).unwrap();
     check_strategy(|| Populations::new(2, 1, |_| Extremes::new(false)), 20).unwrap();
-    let told = check_strategy(|| Extremes::new(true), 20).unwrap_err();
-    assert_eq!(told, "generation 0: takes judgements of another shape, or is changed by them");
+    let scores = check_strategy(|| Extremes::new(true), 20).unwrap_err();
+    assert_eq!(scores, "generation 0: takes judgements of another shape, or is changed by them");
 }
 
 #[test]
 fn a_record_rebuilds_any_generation() {
     let mut strategy = Extremes::new(false).unwrap();
     let mut record = Record::new(&mut strategy).unwrap();
-    let (mut asked, mut told) = (Vec::new(), Vec::new());
+    let (mut asked, mut scores) = (Vec::new(), Vec::new());
     for _ in 0..30 {
         asked.push(strategy.ask().clone());
-        told.push(scores(&strategy));
-        record.tell_scores(&mut strategy, told.last().unwrap()).unwrap();
+        scores.push(scores(&strategy));
+        record.tell_scores(&mut strategy, scores.last().unwrap()).unwrap();
     }
-    assert!(told.iter().any(|told| (0..6).any(|i| told.is_failed(i))), "none failed");
+    assert!(scores.iter().any(|scores| (0..6).any(|i| scores.is_failed(i))), "none failed");
     assert_eq!(record.bytes(), 30 * (1 + 6 * 3 * 8));
     for (generation, asked) in (0..).zip(&asked) {
         assert_eq!(&record.genomes(&mut Extremes::new(false).unwrap(), generation).unwrap(), asked);
-        let fitness = told[generation as usize].fitness();
+        let fitness = scores[generation as usize].fitness();
         assert_eq!(record.order(generation).unwrap()[0], record.champion(0, generation).unwrap());
         assert_eq!(fitness.iter().max(), Some(&fitness[record.champion(0, generation).unwrap()]));
     }
-    // As a file that grows by each generation has it.
+    // Entry by entry, like a file that grows with each generation.
     let mut read = Record::new(&mut Extremes::new(false).unwrap()).unwrap();
     (0..30).for_each(|generation| read.push(record.entry(generation).unwrap()).unwrap());
     assert_eq!(read, record);
@@ -128,13 +128,13 @@ fn a_record_rebuilds_any_generation() {
     assert_eq!(read.push(farsa_evo::RecordEntry { frame: &damaged, state: None }), Err(EvoError::NanFitness));
     #[cfg(feature = "serde")]
     {
-        let bytes = postcard::to_allocvec(&told).unwrap();
-        assert_eq!(postcard::from_bytes::<Vec<Scores>>(&bytes).unwrap(), told);
+        let bytes = postcard::to_allocvec(&scores).unwrap();
+        assert_eq!(postcard::from_bytes::<Vec<Scores>>(&bytes).unwrap(), scores);
         let nan = postcard::to_allocvec(&(SHAPE, [Some(1.0), Some(f64::NAN), Some(0.0)].as_slice())).unwrap();
         assert!(postcard::from_bytes::<Scores>(&nan).is_err());
         let mut bytes = postcard::to_allocvec(&record).unwrap();
         assert_eq!(postcard::from_bytes::<Record>(&bytes).unwrap(), record);
-        // The kind, the objectives, the measures; then populations and the rest.
+        // The kind, the objectives and the measures, followed by populations and the rest.
         assert_eq!(bytes[..6], [3, 2, 1, 1, 6, 2]);
         bytes[1] = 0;
         assert!(postcard::from_bytes::<Record>(&bytes).is_err());
@@ -147,39 +147,39 @@ fn other_shapes_are_refused_everywhere() {
     let mut record = Record::new(&mut strategy).unwrap();
     let before = strategy.clone();
     let fitness = [Fitness::WORST; 6];
-    let one = errors::score_shape(SHAPE, ScoreShape::FITNESS);
+    let error = errors::score_shape(SHAPE, ScoreShape::FITNESS);
     let text =
         "1 objective and 0 descriptor values of each individual where 2 objectives and 1 descriptor value are expected";
-    assert_eq!(one.to_string(), text);
-    assert_eq!(strategy.tell(&fitness), Err(one.clone()));
-    assert_eq!(record.tell(&mut strategy, &fitness), Err(one.clone()));
-    assert_eq!(record.tell_scores(&mut strategy, &Scores::from_fitness(&fitness)), Err(one));
+    assert_eq!(error.to_string(), text);
+    assert_eq!(strategy.tell(&fitness), Err(error.clone()));
+    assert_eq!(record.tell(&mut strategy, &fitness), Err(error.clone()));
+    assert_eq!(record.tell_scores(&mut strategy, &Scores::from_fitness(&fitness)), Err(error));
     let few = Scores::new(SHAPE, vec![0.0; 15]).unwrap();
     assert_eq!(strategy.tell_scores(&few), Err(errors::fitness_count(6, 5)));
     assert_eq!((strategy, record.generations()), (before, 0));
 
-    // One that is told fitness takes scores of one objective, and no others.
+    // A strategy of plain fitness accepts scores of one objective only.
     let mut plain = farsa_evo::words::RandomSearch::new(2, 6, 1).unwrap();
-    let told = Scores::new(SHAPE, vec![0.0; 18]).unwrap();
+    let scores = Scores::new(SHAPE, vec![0.0; 18]).unwrap();
     let many = errors::score_shape(ScoreShape::FITNESS, SHAPE);
-    assert_eq!(plain.tell_scores(&told), Err(many));
+    assert_eq!(plain.tell_scores(&scores), Err(many));
     plain.tell_scores(&Scores::from_fitness(&fitness)).unwrap();
     assert_eq!(plain.generation(), 1);
-    // A record of another shape is of another strategy.
+    // A record with another score shape belongs to another strategy.
     assert!(matches!(record.check(&plain), Err(EvoError::Record { .. })));
 }
 
 #[test]
 fn zeros_have_the_same_bits_whatever_their_sign() {
-    let told = Scores::new(SHAPE, vec![-0.0; 3]).unwrap();
-    assert!(told.values().iter().all(|x| x.to_bits() == 0), "{told:?}");
+    let scores = Scores::new(SHAPE, vec![-0.0; 3]).unwrap();
+    assert!(scores.values().iter().all(|x| x.to_bits() == 0), "{scores:?}");
 }
 
 #[test]
 fn scores_are_counted_by_rows() {
     for individuals in [0, 1, 5] {
-        let told = Scores::new(SHAPE, vec![0.0; 3 * individuals]).unwrap();
-        assert_eq!((told.len(), told.is_empty()), (individuals, individuals == 0));
+        let scores = Scores::new(SHAPE, vec![0.0; 3 * individuals]).unwrap();
+        assert_eq!((scores.len(), scores.is_empty()), (individuals, individuals == 0));
     }
 }
 

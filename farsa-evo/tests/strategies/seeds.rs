@@ -1,4 +1,4 @@
-//! What every strategy tells of itself: the seed that it was given, and whose best its champion is.
+//! Every strategy returns its seed, and reports if its champion is the best ever.
 
 use farsa_evo::Strategy;
 use farsa_evo::archives::{GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch};
@@ -22,7 +22,7 @@ fn the_seed_is_the_one_that_was_given() {
     let cells = GridCells::new(vec![[0.0, 1.0]], vec![4]).unwrap();
     let restarts = CmaEsRestartsConfig::new(CmaEsConfig::new(mean.clone(), 0.5), RestartSchedule::Ipop);
     for seed in [0, 7, u64::MAX] {
-        let told = [
+        let seeds = [
             TruncationGa::new(GaConfig::new(3), seed).unwrap().seed(),
             OnePlusOne::new(OnePlusOneConfig::new(3), seed).unwrap().seed(),
             Populations::truncation(&[GaConfig::new(3); 2], seed).unwrap().seed(),
@@ -43,30 +43,30 @@ fn the_seed_is_the_one_that_was_given() {
             MapElites::new(MapElitesConfig::new(bounds.clone()), cells.clone(), seed).unwrap().seed(),
             CmaEsRestarts::new(restarts.clone(), seed).unwrap().seed(),
         ];
-        assert_eq!(told, [seed; 19]);
+        assert_eq!(seeds, [seed; 19]);
         let inner = TruncationGa::new(GaConfig::new(3), 5).unwrap();
         assert_eq!(NoveltySearch::new(NoveltyConfig::new(2), inner, seed).unwrap().seed(), seed);
     }
 }
 
 #[test]
-fn who_keeps_an_archive_or_only_guesses_keeps_its_champion() {
+fn champions_are_the_best_ever_with_archives_and_random_search() {
     let bounds = vec![[-1.0, 1.0]; 3];
     let cells = GridCells::new(vec![[0.0, 1.0]], vec![4]).unwrap();
     let guesses = |seed| RandomSearch::new(3, 4, seed);
     let novel = NoveltyConfig::new(2);
     let (alone, two) =
         (TruncationGa::new(GaConfig::new(3), 5).unwrap(), Populations::truncation(&[GaConfig::new(3); 2], 5));
-    let told = [
+    let best_ever = [
         TruncationGa::new(GaConfig::new(3), 5).unwrap().champion_is_best_ever(),
         CmaEs::new(CmaEsConfig::new(vec![0.0; 3], 0.5), 5).unwrap().champion_is_best_ever(),
         Nsga2::new(Nsga2Config::new(bounds.clone(), 2), 5).unwrap().champion_is_best_ever(),
         MapElites::new(MapElitesConfig::new(bounds), cells, 5).unwrap().champion_is_best_ever(),
         guesses(5).unwrap().champion_is_best_ever(),
         NoveltySearch::new(novel, alone, 5).unwrap().champion_is_best_ever(),
-        // Where populations may meet, fitness of one generation is not that of another.
+        // With encounters between populations, fitness is not comparable between generations.
         Populations::new(2, 5, guesses).unwrap().champion_is_best_ever(),
         NoveltySearch::new(novel, two.unwrap(), 5).unwrap().champion_is_best_ever(),
     ];
-    assert_eq!(told, [false, false, true, true, true, true, false, false]);
+    assert_eq!(best_ever, [false, false, true, true, true, true, false, false]);
 }

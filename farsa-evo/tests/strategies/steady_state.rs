@@ -1,4 +1,4 @@
-//! The steady state strategy: beside a transcription of its source, on known functions, and its bits.
+//! The steady state strategy, compared with a transcription of its source, on test functions and by digests.
 
 use crate::errors;
 use farsa_evo::real::{SteadyState, SteadyStateConfig};
@@ -25,7 +25,7 @@ fn configs() -> [SteadyStateConfig; 3] {
 }
 
 #[test]
-fn it_keeps_to_what_a_strategy_is() {
+fn it_conforms() {
     for config in configs() {
         check_strategy(|| SteadyState::new(config.clone(), 7), 40).unwrap();
     }
@@ -44,13 +44,13 @@ fn generations_are_those_of_a_transcription() {
         let mut search = SteadyState::new(config.clone(), 11).unwrap();
         let mut pop: Vec<Vec<f64>> = search.ask().iter().map(<[f64]>::to_vec).collect();
         for generation in 1..20 {
-            let told: Vec<f64> = search.ask().iter().map(sphere).collect();
+            let values: Vec<f64> = search.ask().iter().map(sphere).collect();
             let noise = |i: usize| {
                 let mut stream = Stream::new(11, Domain::Mutation, 1, i as u32, generation - 1);
                 config.noise * (2.0 * stream.uniform_f64() - 1.0)
             };
-            let ranked_by: Vec<f64> = told.iter().enumerate().map(|(i, fitness)| fitness + noise(i)).collect();
-            search.tell_values(&told).unwrap();
+            let ranked_by: Vec<f64> = values.iter().enumerate().map(|(i, fitness)| fitness + noise(i)).collect();
+            search.tell_values(&values).unwrap();
             let mut index: Vec<usize> = (0..pop.len()).collect();
             index.sort_by(|a, b| ranked_by[*b].total_cmp(&ranked_by[*a]));
             let half = pop.len() / 2;
@@ -74,7 +74,7 @@ fn generations_are_those_of_a_transcription() {
     }
 }
 
-/// Ten genes: 20 000 evaluations; Rosenbrock of two, 20 000.
+/// Ten genes, and two for Rosenbrock, with 20 000 evaluations each.
 #[test]
 fn it_converges() {
     let config = |genes| SteadyStateConfig { sigma: 0.005, ..SteadyStateConfig::new(vec![[-5.0, 5.0]; genes]) };
@@ -136,7 +136,7 @@ proptest! {
         noise in 0.0_f64..1e100,
         sigma in 0.0_f64..1.0,
         ends in proptest::array::uniform2(-1e100_f64..1e100),
-        told in proptest::collection::vec(proptest::num::f64::ANY, 20),
+        reported in proptest::collection::vec(proptest::num::f64::ANY, 20),
     ) {
         let [mut config, ..] = configs();
         config.bounds[0] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
@@ -144,7 +144,7 @@ proptest! {
         let bounds = config.bounds.clone();
         let mut search = SteadyState::new(config, seed).unwrap();
         for _ in 0..10 {
-            search.tell_values(&told).unwrap();
+            search.tell_values(&reported).unwrap();
             for genes in search.ask() {
                 prop_assert!(genes.iter().zip(&bounds).all(|(gene, [low, high])| low <= gene && gene <= high));
             }

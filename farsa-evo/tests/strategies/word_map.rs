@@ -1,4 +1,4 @@
-//! Maps of words: both ways, beside the decoding that exists.
+//! Maps of integer genes in both directions, compared with the direct decoding.
 
 use crate::errors;
 use farsa_evo::EvoError;
@@ -22,7 +22,7 @@ fn encoded(map: &WordMap, parameters: &[f32]) -> Vec<u16> {
 }
 
 #[test]
-fn words_of_sixteen_bits_are_decoded_as_ever() {
+fn sixteen_bits_decode_like_the_direct_decoding() {
     let words: Vec<u16> = (0..=u16::MAX).collect();
     let map = WordMap::new(vec![word(16, -6.0, 6.0, WordCode::Plain); words.len()]).unwrap();
     let mut want = vec![0.0; words.len()];
@@ -31,9 +31,9 @@ fn words_of_sixteen_bits_are_decoded_as_ever() {
     assert_eq!(encoded(&map, &want), words);
 }
 
-/// Every word of every width and code comes back.
+/// Every value of every width and code round-trips.
 #[test]
-fn every_word_comes_back() {
+fn every_value_round_trips() {
     for bits in 1..=16 {
         for code in [WordCode::Plain, WordCode::Gray] {
             let words: Vec<u16> = (0..=u16::MAX >> (16 - bits)).collect();
@@ -46,17 +46,17 @@ fn every_word_comes_back() {
 }
 
 #[test]
-fn neighbouring_values_of_a_gray_code_differ_by_a_bit() {
+fn neighboring_values_of_a_gray_code_differ_by_a_bit() {
     let map = WordMap::new(vec![word(6, 0.0, 63.0, WordCode::Gray)]).unwrap();
     let words: Vec<u16> = (0..64).map(|value| encoded(&map, &[value as f32])[0]).collect();
     assert!(words.windows(2).all(|pair| (pair[0] ^ pair[1]).is_power_of_two()));
     assert_eq!(words[..6], [0b0, 0b1, 0b11, 0b10, 0b110, 0b111]);
-    // Bits that do not count mean nothing.
+    // Unused bits have no effect.
     assert_eq!(decoded(&map, &[words[5] | 0xFFC0]), [5.0]);
 }
 
 #[test]
-fn frozen_parameters_take_no_word() {
+fn frozen_parameters_take_no_gene() {
     let gene = word(8, 0.0, 255.0, WordCode::Plain);
     let map = WordMap::new(vec![WordGene::Frozen(-3.0), gene, WordGene::Frozen(9.5), gene]).unwrap();
     assert_eq!(map.genes(), [WordGene::Frozen(-3.0), gene, WordGene::Frozen(9.5), gene]);
@@ -66,7 +66,7 @@ fn frozen_parameters_take_no_word() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn invalid_maps_are_refused() {
     assert_eq!(WordMap::new(Vec::new()), Err(errors::no_genes()));
     let refused = |gene| WordMap::new(vec![gene]).unwrap_err();
     assert_eq!(refused(word(0, 0.0, 1.0, WordCode::Gray)), errors::gene_bits(0));
@@ -87,7 +87,7 @@ fn gene() -> impl Strategy<Value = WordGene> {
     let ends = proptest::array::uniform2(prop_oneof![-10.0_f32..10.0, proptest::num::f32::NORMAL]);
     (1..=16_u32, ends, any::<bool>(), 0..5_u32).prop_map(|(bits, [a, b], gray, kind)| match kind {
         0 => WordGene::Frozen(a),
-        // A range of few numbers: several words have the same value.
+        // In a range with few numbers several genes have the same value.
         1 => word(bits, a, a.next_up().min(f32::MAX).max(a), WordCode::Gray),
         _ => word(bits, a.min(b), a.max(b), if gray { WordCode::Gray } else { WordCode::Plain }),
     })
@@ -95,7 +95,7 @@ fn gene() -> impl Strategy<Value = WordGene> {
 
 proptest! {
     #[test]
-    fn what_was_decoded_comes_back(
+    fn decoded_values_round_trip(
         genes in proptest::collection::vec(gene(), 1..20),
         words in proptest::collection::vec(any::<u16>(), 20),
     ) {
@@ -105,9 +105,9 @@ proptest! {
         prop_assert_eq!(decoded(&map, &encoded(&map, &parameters)), parameters);
     }
 
-    /// Beside a search through all words.
+    /// Compares with a search through all values.
     #[test]
-    fn the_nearest_word_is_found(bits in 1..=9_u32, ends in proptest::array::uniform2(-10.0_f32..10.0), x in -12.0_f32..12.0) {
+    fn the_nearest_value_is_chosen(bits in 1..=9_u32, ends in proptest::array::uniform2(-10.0_f32..10.0), x in -12.0_f32..12.0) {
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         let map = WordMap::new(vec![word(bits, low, high, WordCode::Plain)]).unwrap();
         let away = |number: u16| (f64::from(decoded(&map, &[number])[0]) - f64::from(x)).abs();

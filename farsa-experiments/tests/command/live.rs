@@ -1,4 +1,4 @@
-//! Pages that run an agent: what they hold, and that it does what the command does.
+//! Pages that run an agent: their contents, and equal results of page and command.
 
 use std::fs;
 use std::io::Read as _;
@@ -25,21 +25,21 @@ fn decoded(text: &Value) -> Vec<u8> {
     STANDARD.decode(text.as_str().expect("text")).expect("base64")
 }
 
-/// The agent of a page, here instead of in a browser.
+/// Opens the agent of a page without a browser.
 fn opened(live: &Value) -> LiveSession {
     LiveSession::open(&farsa_experiments::laboratory(), &live["script"].to_string()).expect("an agent")
 }
 
-/// The script of a page whose evolution goes on.
+/// Returns the script of a page, with the saved state of its evolution.
 fn standing(live: &Value) -> Value {
-    let mut script = live["script"].clone();
+    let mut script = live["script"].clchange();
     let mut state = String::new();
     GzDecoder::new(&decoded(&live["standing"])[..]).read_to_string(&mut state).expect("gzip");
     script["standing"] = parsed(&state);
     script
 }
 
-/// A session that goes on with evolution.
+/// Opens a session that can continue the evolution.
 fn evolving(live: &Value) -> LiveSession {
     LiveSession::open(&farsa_experiments::laboratory(), &standing(live).to_string()).expect("an agent")
 }
@@ -52,7 +52,7 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
-/// A run of a known agent.
+/// Imports the agent of a fixture as the run `catcher`.
 fn catcher(here: &Path) {
     let genes = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/minimal-cognition.gen");
     fs::copy(genes, here.join("own.gen")).expect("a copy");
@@ -60,40 +60,41 @@ fn catcher(here: &Path) {
 }
 
 #[test]
-fn an_agent_lives_as_it_is_replayed_and_tested() {
+fn an_agent_runs_as_it_is_replayed_and_tested() {
     let here = scratch("live");
     catcher(&here);
-    let told = parsed(&ok(farsa(), &here, "live catcher --html live.html --json"));
-    assert_eq!((&told["generations"], &told["file"]), (&json!([0]), &"live.html".into()));
+    let summary = parsed(&ok(farsa(), &here, "live catcher --html live.html --json"));
+    assert_eq!((&summary["generations"], &summary["file"]), (&json!([0]), &"live.html".into()));
     let page = data(&here.join("live.html"));
     assert_eq!((&page["episodes"], &page["title"]), (&json!([]), &"minimal-cognition-1".into()));
     let live = &page["live"];
     assert_eq!(decoded(&live["module"]), include_bytes!("../../src/live.wasm.gz"));
-    assert!(told["bytes"].as_u64().is_some_and(|bytes| bytes < 3_000_000), "{told}");
+    assert!(summary["bytes"].as_u64().is_some_and(|bytes| bytes < 3_000_000), "{summary}");
     let mut session = opened(live);
 
-    // A trial is the one of a replay, and so is one with a change.
+    // A trial equals that of a replay, also with a lesion.
     for (lesion, number) in [("", 0), ("sensor:rays", 1)] {
         let request = json!({ "do": "film", "individual": 0, "trial": { "number": 3 }, "lesion": lesion });
-        let found = asked(&mut session, &request);
+        let reply = asked(&mut session, &request);
         let line = "replay catcher --trial 3 --lesion sensor:rays --html replay.html --json";
         let replayed = parsed(&ok(farsa(), &here, line));
         let film = &data(&here.join("replay.html"))["episodes"][number];
-        assert_eq!((&found["film"]["data"], &found["film"]["facts"]), (&film["data"], &film["facts"]));
+        assert_eq!((&reply["film"]["data"], &reply["film"]["facts"]), (&film["data"], &film["facts"]));
         let outcome = if lesion.is_empty() { &replayed["trials"][0] } else { &replayed["lesion"]["trials"][0] };
         for key in ["steps", "fitness", "success"] {
-            assert_eq!(found[key], outcome[key], "{key}");
+            assert_eq!(reply[key], outcome[key], "{key}");
         }
         let about = &live["about"]["individuals"][0]["trials"][3];
-        let own = found["digests"].as_array().expect("digests");
+        let digests = reply["digests"].as_array().expect("digests");
         let stride = about["stride"].as_u64().expect("a number") as usize;
-        let kept: Vec<&Value> = own.iter().enumerate().filter(|(t, _)| (t + 1) % stride == 0).map(|(_, x)| x).collect();
-        let run: Vec<&Value> = about["digests"].as_array().expect("digests").iter().take(kept.len()).collect();
-        assert!(kept.len() > 50 && own.len() == found["steps"].as_u64().expect("steps") as usize);
-        assert_eq!(kept == run, lesion.is_empty());
+        let sampled: Vec<&Value> =
+            digests.iter().enumerate().filter(|(t, _)| (t + 1) % stride == 0).map(|(_, x)| x).collect();
+        let run: Vec<&Value> = about["digests"].as_array().expect("digests").iter().take(sampled.len()).collect();
+        assert!(sampled.len() > 50 && digests.len() == reply["steps"].as_u64().expect("steps") as usize);
+        assert_eq!(sampled == run, lesion.is_empty());
     }
 
-    // So are fresh trials those of a test, in parts or at once.
+    // New trials equal those of a test, in parts or at once.
     let tested = parsed(&ok(farsa(), &here, "test catcher --trials 40 --seed 2 --lesion sensor:rays --json"));
     for (case, lesion) in ["", "sensor:rays"].into_iter().enumerate() {
         let mut part = |first, count| {
@@ -101,8 +102,12 @@ fn an_agent_lives_as_it_is_replayed_and_tested() {
                 json!({ "do": "fresh", "individual": 0, "lesion": lesion, "seed": 2, "first": first, "count": count });
             asked(&mut session, &request)["successes"].as_u64().expect("a number")
         };
-        let found = [part(0, 40), part(0, 15) + part(15, 25)];
-        assert_eq!(found.map(Value::from), [tested["cases"][case]["successes"].clone(), found[0].into()], "{lesion}");
+        let counts = [part(0, 40), part(0, 15) + part(15, 25)];
+        assert_eq!(
+            counts.map(Value::from),
+            [tested["cases"][case]["successes"].clchange(), counts[0].into()],
+            "{lesion}"
+        );
     }
 
     let names = asked(&mut session, &json!({ "do": "names" }));
@@ -121,7 +126,7 @@ fn an_agent_lives_as_it_is_replayed_and_tested() {
 }
 
 #[test]
-fn generations_of_several_populations_live_side_by_side() {
+fn generations_of_several_populations_run_side_by_side() {
     let here = scratch("live-populations");
     ok(
         farsa(),
@@ -131,20 +136,23 @@ fn generations_of_several_populations_live_side_by_side() {
     ok(farsa(), &here, "live r --generations 2,0 --html live.html --quiet");
     let live = &data(&here.join("live.html"))["live"];
     let generations = live["about"]["individuals"].as_array().expect("individuals").iter();
-    assert_eq!(generations.map(|one| one["generation"].clone()).collect::<Vec<_>>(), [0, 2].map(Value::from));
+    assert_eq!(
+        generations.map(|individual| individual["generation"].clchange()).collect::<Vec<_>>(),
+        [0, 2].map(Value::from)
+    );
     let mut session = opened(live);
     for (place, generation) in [0, 2].into_iter().enumerate() {
         let request = json!({ "do": "film", "individual": place, "trial": { "number": 1 } });
-        let found = asked(&mut session, &request);
+        let reply = asked(&mut session, &request);
         let line = format!("replay r --generation {generation} --trial 1 --html {generation}.html --json");
         let replayed = parsed(&ok(farsa(), &here, &line));
-        assert_eq!(found["fitness"], replayed["fitness"]);
-        assert_eq!(found["film"]["data"], data(&here.join(format!("{generation}.html")))["episodes"][0]["data"]);
+        assert_eq!(reply["fitness"], replayed["fitness"]);
+        assert_eq!(reply["film"]["data"], data(&here.join(format!("{generation}.html")))["episodes"][0]["data"]);
     }
 }
 
 #[test]
-fn what_cannot_live_is_refused_and_writes_nothing() {
+fn runs_without_a_page_are_refused_and_write_nothing() {
     let here = scratch("live-refused");
     catcher(&here);
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
@@ -166,8 +174,8 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
         (farsa(), "live nowhere --html new.html", "there is no such directory"),
         (farsa(), "live catcher", "--html"),
     ] {
-        let said = say(program, &here, line);
-        assert!(said.code != Some(0) && said.err.contains(why), "{line}: {said:?}");
+        let output = say(program, &here, line);
+        assert!(output.code != Some(0) && output.err.contains(why), "{line}: {output:?}");
     }
     assert!(!here.join("new.html").exists());
     assert_eq!(fs::read(here.join("notes.html")).expect("the file"), b"mine");
@@ -179,7 +187,7 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
 }
 
 #[test]
-fn scripts_that_are_none_are_refused() {
+fn invalid_scripts_are_refused() {
     let laboratory = farsa_experiments::laboratory();
     let individual = r#"{"generation":0,"individual":0,"parameters":[],"opponents":[],"normalisation":null}"#;
     for (script, why) in [
@@ -204,18 +212,18 @@ fn evolved(live: &Value, generations: usize, parts: usize) -> Vec<Value> {
     let mut sessions: Vec<LiveSession> = (0..parts).map(|_| evolving(live)).collect();
     let generation = |_| {
         let shares = sessions.iter_mut().enumerate().map(|(part, session)| {
-            asked(session, &json!({ "do": "share", "part": part, "parts": parts }))["outcomes"].clone()
+            asked(session, &json!({ "do": "share", "part": part, "parts": parts }))["outcomes"].clchange()
         });
         let request = json!({ "do": "tell", "outcomes": shares.collect::<Vec<_>>() });
-        let told: Vec<Value> = sessions.iter_mut().map(|session| asked(session, &request)).collect();
-        assert!(told.iter().all(|other| *other == told[0] && other["error"].is_null()), "{told:?}");
-        told[0].clone()
+        let updates: Vec<Value> = sessions.iter_mut().map(|session| asked(session, &request)).collect();
+        assert!(updates.iter().all(|update| *update == updates[0] && update["error"].is_null()), "{updates:?}");
+        updates[0].clchange()
     };
     (0..generations).map(generation).collect()
 }
 
 #[test]
-fn evolution_goes_on_in_a_page_as_in_a_run() {
+fn evolution_continues_in_a_page_as_in_a_run() {
     let here = scratch("live-evolution");
     for (name, parts, line) in [
         ("one", 1, "double-pole --population 10 --set evolution.parents=2"),
@@ -243,7 +251,7 @@ fn evolution_goes_on_in_a_page_as_in_a_run() {
         ok(farsa(), &here, &format!("live {name} --html {name}.html --quiet"));
         let live = &data(&here.join(format!("{name}.html")))["live"];
         assert_eq!(live["about"]["standstill"], Value::Null, "{name}");
-        let found = evolved(live, 3, parts);
+        let updates = evolved(live, 3, parts);
         ok(farsa(), &here, &format!("run --resume {name} --generations 5 --quiet"));
         let log = fs::read_to_string(here.join(name).join("fitness.csv")).expect("the log");
         let rows: Vec<Vec<f64>> = log
@@ -252,19 +260,19 @@ fn evolution_goes_on_in_a_page_as_in_a_run() {
             .map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect())
             .collect();
         assert_eq!(live["about"]["history"][1], json!([1, rows[1][1], rows[1][2]]), "{name}");
-        for (row, told) in rows[2..].iter().zip(&found) {
-            let line = &told["line"];
-            let each =
-                line["each"].as_array().expect("populations").iter().flat_map(|one| one.as_array().expect("a row"));
-            let own = [&told["generation"]].into_iter().chain(line["row"].as_array().expect("a row"));
-            let own: Vec<&Value> = own.chain([&line["evaluations"], &line["failed"]]).chain(each).collect();
+        for (row, update) in rows[2..].iter().zip(&updates) {
+            let line = &update["line"];
+            let rest =
+                line["each"].as_array().expect("populations").iter().flat_map(|row| row.as_array().expect("a row"));
+            let common = [&update["generation"]].into_iter().chain(line["row"].as_array().expect("a row"));
+            let reported: Vec<&Value> = common.chain([&line["evaluations"], &line["failed"]]).chain(rest).collect();
             let run: Vec<Option<f64>> = row.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect();
-            assert_eq!(own.iter().map(|x| x.as_f64()).collect::<Vec<_>>(), run, "{name}");
+            assert_eq!(reported.iter().map(|x| x.as_f64()).collect::<Vec<_>>(), run, "{name}");
         }
 
-        // The champion, the best of all that was evolved there or of the last generation, lives in the page as it is replayed.
-        let champion = &found[2]["champions"][0];
-        let best = |found: usize, next: usize| if rows[next][1] > rows[found][1] { next } else { found };
+        // The champion is the best ever or that of the last generation. It runs in the page as it is replayed.
+        let champion = &updates[2]["champions"][0];
+        let best = |best: usize, next: usize| if rows[next][1] > rows[best][1] { next } else { best };
         let generation = if ["novel", "many"].contains(&name) { (2..5).reduce(best).unwrap_or(2) } else { 4 };
         assert_eq!(champion["generation"], generation, "{name}");
         let mut session = opened(live);
@@ -282,7 +290,7 @@ fn evolution_goes_on_in_a_page_as_in_a_run() {
 }
 
 #[test]
-fn evolution_that_cannot_go_on_says_why() {
+fn evolution_that_cannot_continue_gives_the_reason() {
     let here = scratch("live-standstill");
     catcher(&here);
     ok(farsa(), &here, "live catcher --html live.html --quiet");
@@ -296,24 +304,24 @@ fn evolution_that_cannot_go_on_says_why() {
     ok(farsa(), &here, "live r --html r.html --quiet");
     let live = &data(&here.join("r.html"))["live"];
     let mut session = evolving(live);
-    let half = asked(&mut session, &json!({ "do": "share", "part": 1, "parts": 2 }))["outcomes"].clone();
+    let half = asked(&mut session, &json!({ "do": "share", "part": 1, "parts": 2 }))["outcomes"].clchange();
     for (request, why) in [
         (json!({ "do": "share", "part": 2, "parts": 2 }), "part 2 of 2"),
         (json!({ "do": "share", "part": 0, "parts": 0 }), "part 0 of 0"),
         (json!({ "do": "tell", "outcomes": [] }), "not those of a whole generation"),
-        (json!({ "do": "tell", "outcomes": [half.clone()] }), "not those of a whole generation"),
-        (json!({ "do": "tell", "outcomes": [half.clone(), half] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clchange()] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clchange(), half] }), "not those of a whole generation"),
         (json!({ "do": "tell", "outcomes": ["AAEC"] }), "outcomes: "),
         (json!({ "do": "tell", "outcomes": ["-"] }), "request: "),
     ] {
         let error = asked(&mut session, &request)["error"].as_str().expect("an error").to_owned();
         assert!(error.contains(why), "{request}: {error}");
     }
-    // What was refused has changed nothing.
+    // The refused requests have changed nothing.
     let first = evolved(live, 1, 1);
-    let whole = asked(&mut session, &json!({ "do": "share", "part": 0, "parts": 1 }))["outcomes"].clone();
+    let whole = asked(&mut session, &json!({ "do": "share", "part": 0, "parts": 1 }))["outcomes"].clchange();
     assert_eq!(asked(&mut session, &json!({ "do": "tell", "outcomes": [whole] })), first[0]);
-    // A state that is none of the strategy's.
+    // A state of another strategy, and an invalid generation.
     for (key, to, why) in [("state", "AAAA", "the state of the run"), ("generation", "", "script: ")] {
         let mut script = standing(live);
         script["standing"][key] = to.into();
@@ -324,7 +332,7 @@ fn evolution_that_cannot_go_on_says_why() {
 }
 
 #[test]
-fn a_body_of_a_page_is_put_elsewhere() {
+fn a_body_of_a_page_is_moved() {
     let here = scratch("live-moves");
     let few = "--population 4 --set evolution.parents=2 --generations 1 --quiet";
     ok(farsa(), &here, &format!("run reach-grasp-lift {few} --out arm"));
@@ -343,26 +351,26 @@ fn a_body_of_a_page_is_put_elsewhere() {
         let whole = film(json!([]));
         let bodies = whole["film"]["bodies"].as_array().expect("bodies");
         let body = bodies.iter().position(|body| body == name).expect("the body");
-        let one = |body: usize| json!({ "step": 10, "body": body, "position": position, "rotation": ids });
-        let moved = film(json!([one(body)]));
+        let change = |body: usize| json!({ "step": 10, "body": body, "position": position, "rotation": ids });
+        let moved = film(json!([change(body)]));
         let first = |other: &Value| {
-            let both = |film: &Value, at: usize| film["digests"][at].clone();
+            let both = |film: &Value, at: usize| film["digests"][at].clchange();
             (0..20).position(|at| both(&whole, at) != both(other, at))
         };
-        // Whatever comes of it comes from that step on.
+        // All effects begin at that step.
         assert_eq!(first(&moved), Some(10), "{name}");
-        assert_eq!(film(json!([one(body)]))["digests"], moved["digests"]);
+        assert_eq!(film(json!([change(body)]))["digests"], moved["digests"]);
         assert!(!falls || moved["steps"] != whole["steps"] || moved["fitness"] != whole["fitness"]);
-        // After the end nothing is left to move, and a body on joints stays where it is.
+        // A change after the end has no effect, and a body on joints stays in its place.
         assert_eq!(
             film(json!([{ "step": 100_000, "body": body, "position": position, "rotation": ids }]))["digests"],
             whole["digests"]
         );
         if falls {
-            assert_eq!(film(json!([one(0)]))["digests"], whole["digests"]);
+            assert_eq!(film(json!([change(0)]))["digests"], whole["digests"]);
         }
         for (wrong, why) in [
-            (one(1000), "body 1000 of"),
+            (change(1000), "body 1000 of"),
             (json!({ "step": 1, "body": 0, "position": [0, 0, 1], "rotation": [0, 0, 0, 0] }), "turned by"),
             (json!({ "step": 1, "body": 0, "position": [0, 0, 1e39], "rotation": ids }), "a body at"),
         ] {
@@ -392,22 +400,23 @@ fn a_body_of_a_page_is_pushed() {
         asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "pushes": pushes }))
     };
     let whole = film(json!([]));
-    let bodies = whole["film"]["bodies"].as_array().expect("bodies").clone();
-    let one = |name: &str, steps: [u32; 2], force: f64| {
+    let bodies = whole["film"]["bodies"].as_array().expect("bodies").clchange();
+    let push = |name: &str, steps: [u32; 2], force: f64| {
         let body = bodies.iter().position(|body| body == name).expect("the body");
         json!({ "steps": steps, "body": body, "point": [0, 0, 0], "force": [0, 0, force] })
     };
     let first = |other: &Value| {
-        let both = |film: &Value, at: usize| film["digests"][at].clone();
+        let both = |film: &Value, at: usize| film["digests"][at].clchange();
         (0..40).position(|at| both(&whole, at) != both(other, at))
     };
-    // Whatever comes of it comes from its first step on, and bodies on joints are pushed as well as the sphere.
-    let pushed = film(json!([one("sphere", [10, 20], 5.0)]));
+    // All effects begin with the first step, and bodies on joints are pushed as well as the sphere.
+    let pushed = film(json!([change("sphere", [10, 20], 5.0)]));
     assert_eq!(first(&pushed), Some(10));
     assert!(pushed["film"]["name"].as_str().expect("a name").ends_with("; 1 pushed"));
-    assert_eq!(film(json!([one("sphere", [10, 20], 5.0)]))["digests"], pushed["digests"]);
-    assert_eq!(first(&film(json!([one("palm", [12, 13], 5.0)]))), Some(12));
-    for nothing in [one("sphere", [10, 10], 5.0), one("sphere", [10, 20], 0.0), one("sphere", [100_000, 200_000], 5.0)]
+    assert_eq!(film(json!([change("sphere", [10, 20], 5.0)]))["digests"], pushed["digests"]);
+    assert_eq!(first(&film(json!([change("palm", [12, 13], 5.0)]))), Some(12));
+    for nothing in
+        [change("sphere", [10, 10], 5.0), change("sphere", [10, 20], 0.0), change("sphere", [100_000, 200_000], 5.0)]
     {
         assert_eq!(film(json!([nothing]))["digests"], whole["digests"]);
     }
@@ -420,7 +429,7 @@ fn a_body_of_a_page_is_pushed() {
         let error = film(json!([wrong]))["error"].as_str().expect("an error").to_owned();
         assert!(error.contains(why), "{error}");
     }
-    // Wheels of arenas do what they are told: nothing pushes them.
+    // Wheels of arenas follow their commands exactly, so that forces have no effect.
     ok(farsa(), &here, &format!("run foraging {few} --set trial.steps=30 --out team"));
     ok(farsa(), &here, "live team --html team.html --quiet");
     let live = &data(&here.join("team.html"))["live"];
@@ -449,7 +458,7 @@ fn any_robot_of_a_team_is_recorded() {
         let (plain, first, last) = (film(Value::Null), film(json!(0)), film(json!(robots - 1)));
         assert_eq!(first["digests"], plain["digests"], "{name}: by default the first");
         assert_ne!(last["digests"], plain["digests"], "{name}: another robot sees something else");
-        // What is recorded changes nothing of what happens.
+        // The choice of the recorded robot has no effect on the episode.
         for other in [&first, &last] {
             for key in ["steps", "fitness", "success"] {
                 assert_eq!(other[key], plain[key], "{name}: {key}");

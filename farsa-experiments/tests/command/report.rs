@@ -1,11 +1,11 @@
-//! A report is about the runs that it names: the right numbers, the right commands, nothing overwritten.
+//! Reports have the numbers and commands of their runs, and overwrite nothing.
 
 use std::fs;
 use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-/// Two conditions with two seeds each, of different lengths; one run has no test.
+/// Two conditions with two seeds each, of different lengths. One run has no test.
 fn four_runs(here: &Path) {
     for (condition, seed, generations) in [("rough", 1, 4), ("rough", 2, 5), ("smooth", 1, 6), ("smooth", 2, 4)] {
         let run = format!("run cart --condition {condition} --seed {seed} --generations {generations}");
@@ -18,13 +18,13 @@ fn four_runs(here: &Path) {
 
 const FOUR: &str = "runs/cart-rough-1 runs/cart-rough-2 runs/cart-smooth-1 runs/cart-smooth-2";
 
-/// A column of a run's log.
+/// Reads a column of a run's log.
 fn log(here: &Path, run: &str, column: usize) -> Vec<f64> {
     let text = fs::read_to_string(here.join("runs").join(run).join("fitness.csv")).expect("the log");
     text.lines().skip(1).map(|line| line.split(',').nth(column).expect("a field").parse().expect("a number")).collect()
 }
 
-/// A number as the report has it: those of the cart are between 1 and 10.
+/// Formats a number like the report. Those of the cart are between 1 and 10.
 fn short(x: f64) -> String {
     format!("{x:.4}")
 }
@@ -33,8 +33,8 @@ fn short(x: f64) -> String {
 fn four_runs_on_a_page() {
     let here = scratch("report-four");
     four_runs(&here);
-    let said = ok(own(), &here, &format!("report {FOUR} --html page.html --md page.md"));
-    assert_eq!(said, "4 runs: page.html, page.md, page-fitness-1.svg, page-fitness-2.svg\n");
+    let output = ok(own(), &here, &format!("report {FOUR} --html page.html --md page.md"));
+    assert_eq!(output, "4 runs: page.html, page.md, page-fitness-1.svg, page-fitness-2.svg\n");
     let html = fs::read_to_string(here.join("page.html")).expect("the page");
     let md = fs::read_to_string(here.join("page.md")).expect("the page");
     assert_eq!(html.matches("<svg").count(), 2);
@@ -51,14 +51,14 @@ fn four_runs_on_a_page() {
         let quartiles = [0.75 * low + 0.25 * high, 0.25 * low + 0.75 * high].map(short);
         let expected = format!("{} ({} to {})", short(0.5 * low + 0.5 * high), quartiles[0], quartiles[1]);
         let row = md.lines().find(|line| line.starts_with(&format!("| {condition} | 2 | "))).expect("a row");
-        let found = row.split(" | ").nth(cell).expect("a cell");
-        assert_eq!(found, expected, "{row}");
+        let value = row.split(" | ").nth(cell).expect("a cell");
+        assert_eq!(value, expected, "{row}");
         assert!(html.contains(&format!(">{expected}<")), "{expected}");
     }
     assert!(md.contains("at generation 3, the last common one"));
-    // No comparison of tests, since one run has none; the other two are there.
+    // Only two comparisons, because a run without a test prevents that of the tests.
     assert_eq!(md.lines().filter(|line| line.starts_with("| rough | smooth | ")).count(), 2);
-    // What differs comes before what is the same.
+    // Differences precede the common results.
     assert!(md.contains("| cart.friction | 0.5 | 0.0 | 1/s |"), "{md}");
     assert!(md.find("### Differences") < md.find("### Fitness"));
     for line in [
@@ -82,7 +82,7 @@ fn four_runs_on_a_page() {
         assert_eq!(svg.matches("<polygon").count(), 2, "a band for each condition");
     }
 
-    // The same again makes the same bytes, and a command of the page makes the same run.
+    // A second report has the same bytes, and a command of the page repeats the run.
     for file in ["page.html", "page.md", "page-fitness-1.svg", "page-fitness-2.svg"] {
         fs::rename(here.join(file), here.join(format!("first-{file}"))).expect("the file");
     }
@@ -119,7 +119,7 @@ fn one_run_on_a_page() {
     }
     assert!(!html.contains("Do they differ?") && !html.contains("Differences"));
 
-    // The test of a champion that is no longer the last is called that.
+    // The test of an earlier champion is labeled as such.
     ok(own(), &here, "test runs/cart-rough-1 --trials 3 --quiet");
     ok(own(), &here, "run --resume runs/cart-rough-1 --generations 5 --quiet");
     ok(own(), &here, "report runs/cart-rough-1 --md later.md");
@@ -128,7 +128,7 @@ fn one_run_on_a_page() {
 }
 
 #[test]
-fn other_settings_are_another_group_and_twins_are_told() {
+fn other_settings_are_another_group_and_twins_are_reported() {
     let here = scratch("report-groups");
     for (name, arguments) in
         [("a", "--seed 1"), ("b", "--seed 2"), ("c", "--seed 1 --set cart.friction=0.75"), ("twin of a", "--seed 1")]
@@ -152,14 +152,14 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     let here = scratch("report-draw");
     let short = "run reach-grasp-lift --population 4 --set evolution.parents=2 --set trial.steps=10 --generations 1";
     ok(farsa(), &here, &format!("{short} --out arm --quiet"));
-    let said = ok(farsa(), &here, "draw arm --trial 1 --time 0.05 --camera top --size 320x200 --out moment.svg");
-    assert!(said.contains("trial 1, 0.05 s, camera top: 320x200"), "{said}");
+    let output = ok(farsa(), &here, "draw arm --trial 1 --time 0.05 --camera top --size 320x200 --out moment.svg");
+    assert!(output.contains("trial 1, 0.05 s, camera top: 320x200"), "{output}");
     assert!(fs::read_to_string(here.join("moment.svg")).expect("the picture").starts_with("<svg"));
     assert!(ok(farsa(), &here, "draw arm --size 64x48 --out end.png --quiet").is_empty());
     assert!(fs::read(here.join("end.png")).expect("the picture").starts_with(b"\x89PNG"));
-    // A sheet of a test's cases says what the test says.
-    let said = ok(farsa(), &here, "draw arm --protocol labels --trial 1 --seed 5 --size 120x90 --out cases.svg");
-    assert!(said.contains("trial 1, test seed 5: 3 cases"), "{said}");
+    // A sheet of a test's cases shows the outcomes of the test.
+    let output = ok(farsa(), &here, "draw arm --protocol labels --trial 1 --seed 5 --size 120x90 --out cases.svg");
+    assert!(output.contains("trial 1, test seed 5: 3 cases"), "{output}");
     ok(farsa(), &here, "test arm --protocol labels --trials 2 --seed 5 --quiet");
     let sheet = fs::read_to_string(here.join("cases.svg")).expect("the sheet");
     assert_eq!(sheet.matches("<svg").count(), 1 + 3);
@@ -178,7 +178,7 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
     for (program, arguments, words) in [
         (farsa(), "draw arm --out end.png", "end.png: there is one already"),
-        // Before a trial is looked for, which may take long.
+        // Refused before the search for a trial, which may be slow.
         (farsa(), "draw arm --trial 99 --out end.png", "end.png: there is one already"),
         (farsa(), "draw arm --protocol labls --out cases.svg", "there is one already"),
         (farsa(), "draw arm --out end.gif", "ends in .svg or .png"),
@@ -196,15 +196,15 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
         (farsa(), "replay arm --compare arm", "--html"),
         (own(), "draw cart --out new.svg", "have no bodies to draw"),
     ] {
-        let said = say(program, &here, arguments);
-        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{arguments}: {said:?}");
-        assert!(said.err.contains(words), "{arguments}: {said:?}");
+        let output = say(program, &here, arguments);
+        assert_eq!((output.code, output.out.as_str()), (Some(2), ""), "{arguments}: {output:?}");
+        assert!(output.err.contains(words), "{arguments}: {output:?}");
     }
     assert!(!here.join("new.svg").exists() && !here.join("new.html").exists());
 }
 
 #[test]
-fn what_cannot_be_reported_writes_nothing() {
+fn refused_reports_write_nothing() {
     let here = scratch("report-bad");
     ok(own(), &here, "run cart --generations 3 --out a --quiet");
     ok(own(), &here, "test a --trials 3 --quiet");
@@ -214,10 +214,10 @@ fn what_cannot_be_reported_writes_nothing() {
     fs::write(here.join("x-fitness-1.svg"), "mine").expect("a file");
     let refused = |arguments: &str, code: i32, words: &[&str]| {
         let before = content(&here);
-        let said = say(own(), &here, arguments);
-        assert_eq!((said.code, said.out.as_str()), (Some(code), ""), "{arguments}: {said:?}");
+        let output = say(own(), &here, arguments);
+        assert_eq!((output.code, output.out.as_str()), (Some(code), ""), "{arguments}: {output:?}");
         for word in words {
-            assert!(said.err.contains(word), "{arguments}: no {word:?} in {said:?}");
+            assert!(output.err.contains(word), "{arguments}: no {word:?} in {output:?}");
         }
         assert!(content(&here) == before, "{arguments} changed a file");
     };
@@ -239,16 +239,16 @@ fn what_cannot_be_reported_writes_nothing() {
         ("manifest.json", "{\"format\": 2}", "manifest.json: has format 2, this program reads format 1"),
     ] {
         let path = here.join("a").join(file);
-        let whole = fs::read(&path).expect("the file");
+        let intact = fs::read(&path).expect("the file");
         fs::write(&path, damaged).expect("the file");
         refused("report a --html new.html", 1, &[words]);
-        fs::write(&path, whole).expect("the file");
+        fs::write(&path, intact).expect("the file");
     }
-    // A log that was changed changes no report: the record has the numbers.
+    // A changed log has no effect on the report, which reads the record.
     ok(own(), &here, "report a --md new.md");
     let path = here.join("a/fitness.csv");
-    let whole = fs::read_to_string(&path).expect("the log");
-    fs::write(&path, whole.replacen("0,2.", "0,3.", 1).replacen("0,1.", "0,9.", 1)).expect("the log");
+    let intact = fs::read_to_string(&path).expect("the log");
+    fs::write(&path, intact.replacen("0,2.", "0,3.", 1).replacen("0,1.", "0,9.", 1)).expect("the log");
     ok(own(), &here, "report a --md again.md");
     let [new, again] = ["new.md", "again.md"].map(|file| fs::read_to_string(here.join(file)).expect("it"));
     assert_eq!(again.replace("again-", "new-").replace("again.md", "new.md"), new);
@@ -256,7 +256,7 @@ fn what_cannot_be_reported_writes_nothing() {
 }
 
 #[test]
-fn each_population_has_curves_and_columns_of_its_own() {
+fn each_population_has_its_curves_and_columns() {
     let here = scratch("report-populations");
     let short = "--generations 3 --population 4 --set evolution.parents=2 --set trial.steps=40 --set trial.count=2";
     for seed in [1, 2] {
@@ -266,7 +266,7 @@ fn each_population_has_curves_and_columns_of_its_own() {
     for title in ["predator-prey-1: predator", "predator-prey-1: prey"] {
         assert_eq!(picture.matches(&format!(">{title}<")).count(), 1, "{title}");
     }
-    // What the log has for each: best, mean and worst from column 6 on.
+    // The log has best, mean and worst of each population from column 6.
     let last = |column: usize| short_of(&log(&here, "predator-prey-1", column));
     ok(farsa(), &here, "report runs/predator-prey-1 --md one.md");
     let md = fs::read_to_string(here.join("one.md")).expect("the page");
@@ -280,13 +280,13 @@ fn each_population_has_curves_and_columns_of_its_own() {
         [cells[4], cells[5], cells[7], cells[8]],
         [last(6), last(7), last(9), last(10)].each_ref().map(String::as_str)
     );
-    let said = ok(farsa(), &here, "report runs/predator-prey-1 runs/predator-prey-2 --md two.md");
-    assert!(said.contains("two-fitness-4.svg") && !said.contains("two-fitness-5.svg"), "{said}");
+    let output = ok(farsa(), &here, "report runs/predator-prey-1 runs/predator-prey-2 --md two.md");
+    assert!(output.contains("two-fitness-4.svg") && !output.contains("two-fitness-5.svg"), "{output}");
     let md = fs::read_to_string(here.join("two.md")).expect("the page");
     assert!(md.contains("Best of the generation, predator. ") && md.contains("Mean of the generation, prey. "), "{md}");
     assert!(md.contains("| condition | runs | best, predator | mean, predator | best, prey | mean, prey |"), "{md}");
 
-    // Resumed, the picture shows what came before, too; a log of another form is refused.
+    // The picture of a resumed run includes its earlier part. A log of another form is refused.
     let before = fs::read(here.join("runs/predator-prey-2/fitness.svg")).expect("the picture");
     ok(farsa(), &here, &format!("run predator-prey --seed 3 {short} --quiet --out whole"));
     ok(
@@ -302,20 +302,20 @@ fn each_population_has_curves_and_columns_of_its_own() {
             "{file}"
         );
     }
-    let [whole, parts] =
+    let [uninterrupted, resumed] =
         ["whole", "parts"].map(|run| fs::read(here.join(run).join("fitness.svg")).expect("the picture"));
-    assert!(whole == parts && whole != before);
+    assert!(uninterrupted == resumed && uninterrupted != before);
     let path = here.join("parts/fitness.csv");
     let text = fs::read_to_string(&path).expect("the log");
     let six =
         text.lines().map(|line| line.splitn(7, ',').take(6).collect::<Vec<_>>().join(",") + "\n").collect::<String>();
     fs::write(&path, six).expect("the log");
-    let said = say(farsa(), &here, "run --resume parts --generations 3");
-    assert!(said.code == Some(0) && said.err.contains("fitness-changed-1.csv"), "{said:?}");
+    let output = say(farsa(), &here, "run --resume parts --generations 3");
+    assert!(output.code == Some(0) && output.err.contains("fitness-changed-1.csv"), "{output:?}");
     assert_eq!(fs::read_to_string(&path).expect("the log"), text);
 }
 
-/// The last number as the report has it.
+/// Formats the last number like the report.
 fn short_of(numbers: &[f64]) -> String {
     let x = *numbers.last().expect("a number");
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { short(x) }
@@ -336,7 +336,7 @@ fn conditions_are_compared_at_equal_evaluations_and_by_their_successes() {
     let best = |name: &str| [1, 2, 3, 4].map(|seed| log(&here, &format!("{name}-{seed}"), 1));
     let highest = |name: &str| best(name).map(|log| log.into_iter().fold(f64::NEG_INFINITY, f64::max));
     let (many, few) = (highest("many"), highest("few"));
-    // A fitness that some of the runs reach: the third of those with many individuals.
+    // A fitness that only some runs reach: the third of those with many individuals.
     let mut sorted = many;
     sorted.sort_by(f64::total_cmp);
     let threshold = sorted[1];
@@ -364,7 +364,7 @@ fn conditions_are_compared_at_equal_evaluations_and_by_their_successes() {
     let test = md.lines().find(|line| line.contains("| 3 of 4 |") || line.contains(" of 4 | 3 of 4 |")).expect("a row");
     assert!(test.contains(&format!("{} of 4", reached(few))), "{test}");
     assert!(md.contains(&format!("--md page.md --success-fitness {threshold}\n")), "the page's own command");
-    // The same again makes the same bytes.
+    // A second report has the same bytes.
     ok(own(), &here, &format!("{} --success-fitness {threshold} --md again.md", line.split(" --").next().expect("it")));
     let again = fs::read_to_string(here.join("again.md")).expect("the page");
     let again =
@@ -376,8 +376,8 @@ fn conditions_are_compared_at_equal_evaluations_and_by_their_successes() {
         ("--success-fitness inf", "not a number"),
         ("--success-fitness 1 --success-share 1", "cannot be used with"),
     ] {
-        let said = say(own(), &here, &format!("report runs/many-1 {arguments} --md new.md"));
-        assert!(said.code == Some(2) && said.err.contains(words), "{arguments}: {said:?}");
+        let output = say(own(), &here, &format!("report runs/many-1 {arguments} --md new.md"));
+        assert!(output.code == Some(2) && output.err.contains(words), "{arguments}: {output:?}");
     }
     assert!(!here.join("new.md").exists());
 }

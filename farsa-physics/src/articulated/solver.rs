@@ -250,8 +250,8 @@ impl<S: Scalar> Solver<'_, S> {
             velocity_at(simd, links[0], self.work, point.position),
             velocity_at(simd, links[1], self.work, point.position),
         );
-        // Speculative contact: the point counts when its predicted gap at the end of the step, gap + h v_n, is below
-        // the margin, so that a fast shape is stopped before it is inside. A separating velocity does not count,
+        // Speculative contact: the point counts when gap + h v_n, its predicted gap at the end of the step, is below
+        // the margin. A fast shape is then stopped before it is inside. A separating velocity does not count,
         // because contacts pushed by others may need the point all the same.
         let closing = dot(velocity, point.normal).min(zero);
         let mask = near & point.valid & (point.gap + h * closing).lt(margin);
@@ -284,8 +284,8 @@ impl<S: Scalar> Solver<'_, S> {
         let response =
             write_rows(simd, model, pair, self.work, self.roots, self.inverse_sqrt_inertia, load, &axes, rows);
 
-        // The normal law f = max(0, -k (gap + h v+) - d v+), with v+ the velocity after the step, as one row of impulses
-        // l = h f: where it pushes, v+ + l / (h r) + k gap / r = 0 with the rate r = h k + d. The second term is
+        // The normal law is f = max(0, -k (gap + h v+) - d v+), with v+ the velocity after the step. As a row of impulses
+        // l = h f it is v+ + l / (h r) + k gap / r = 0 where it pushes, with the rate r = h k + d. The second term is
         // `compliance`, the third `offset`. Implicit in v+, so that stiff contacts of light bodies gain no energy.
         // Above the surface only the spring at the end of the step counts, below it also the damper.
         let stiffness = h * S::splat(simd, pair.stiffness);

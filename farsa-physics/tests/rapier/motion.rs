@@ -27,8 +27,8 @@ fn start<W: Arrange + Handles<Body = BodyId, Joint = JointId>>(world: &mut W) {
     world.finish_placement();
 }
 
-/// Returns the largest difference of `joints` between rapier and the limit of our world (100 dynamics steps per control
-/// step), over a second under one command [rad], and the final one.
+/// Returns the largest and the final difference of `joints` between rapier and the limit of our world, over a second under
+/// one command [rad]. The limit has 100 dynamics steps per control step.
 fn joints_differ(joints: core::ops::Range<u16>, command: [f32; 2], options: Options) -> [f32; 2] {
     let robot = ghost(&scene());
     let fine = articulated::Options { substeps: 100, ..articulated::Options::default() };
@@ -120,8 +120,8 @@ fn rods() -> Robot {
     robot
 }
 
-/// Returns the hinges' angles after a second, released at 1.2 and 0.3 rad, by steps of this time in double precision: v
-/// += h a, q += h v with (M + h C) a = f. C is 0 for semi-implicit Euler. In rapier it is the sum of its
+/// Returns the hinges' angles a second after their release at 1.2 and 0.3 rad, in steps of `h` in double precision. A step
+/// is v += h a, q += h v with (M + h C) a = f. C is 0 for semi-implicit Euler. In rapier it is the sum of its
 /// `update_mass_matrix`, the change of the centrifugal forces with the speeds. That sum has half of the lower rod's
 /// rotation where the upper one's alone carries the hinge.
 fn swung(h: f64, coriolis: bool) -> [f64; 2] {
@@ -197,7 +197,7 @@ where
 
 /// A walker whose foot is lifted from the ground, or whose ground is taken away, must not be struck by what it stood on.
 #[test]
-fn what_is_put_elsewhere_keeps_its_speeds() {
+fn a_body_that_is_moved_keeps_its_speeds() {
     let mut robot = Robot::new("foot");
     let rail = Joint::prismatic("rail", [0.0, 0.0, 1.0], Pose::identity(), [-10.0, 10.0]);
     let ball = Shape::Sphere { radius: RADIUS };
