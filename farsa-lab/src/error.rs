@@ -98,7 +98,7 @@ impl Error {
         Self::unknown_name(place, what, name, nearest.map(|(_, valid)| valid), &few)
     }
 
-    /// Builds an error about an unknown name; `few` holds the valid names if none is near.
+    /// Builds an error about an unknown name. `few` holds the valid names if none is near.
     fn unknown_name(place: &str, what: &str, name: &str, nearest: Option<&str>, few: &[&str]) -> Self {
         let alternatives = match (nearest, few) {
             (None, []) => "there is none".into(),
@@ -214,7 +214,8 @@ impl From<farsa_view::Error> for Error {
 
 /// Returns the valid name with the smallest edit distance, and that distance in letters.
 ///
-/// Of equally near names one with this beginning wins. Case counts least. Of an overlong name the beginning is compared.
+/// Among equally near names, one that starts with the given text wins. Case counts least. Only the beginning of an
+/// overlong name is compared.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(usize, &'a str)> {
     let name: String = name.chars().take(MAX_SHOWN).collect();
     let lower = name.to_lowercase();
@@ -242,7 +243,7 @@ pub fn nearest_name<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) ->
     nearest(name, valid).map(|(_, valid)| valid)
 }
 
-/// Whether half of the longer name agrees, or one name contains the other.
+/// Returns true if half of the longer name agrees, or if one name contains the other.
 fn is_near(name: &str, valid: &str, letters: usize) -> bool {
     let [name, valid] = [name, valid].map(|text| text.chars().take(MAX_SHOWN).collect::<String>().to_lowercase());
     let longest = name.chars().count().max(valid.chars().count());

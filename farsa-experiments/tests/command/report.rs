@@ -24,7 +24,7 @@ fn log(here: &Path, run: &str, column: usize) -> Vec<f64> {
     text.lines().skip(1).map(|line| line.split(',').nth(column).expect("a field").parse().expect("a number")).collect()
 }
 
-/// Formats a number like the report. Those of the cart are between 1 and 10.
+/// Formats a number like the report. Fitness of the cart is between 1 and 10.
 fn short(x: f64) -> String {
     format!("{x:.4}")
 }

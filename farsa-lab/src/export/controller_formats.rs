@@ -24,15 +24,15 @@ pub(crate) fn rust(controller: &ControllerExport, whose: &str) -> Result<String,
         "//! {whose}: written by `farsa export controller --format rust`.
 {}
 {}
-/// What `farsa_nn::bytes::channel_hash` makes of the names below.
+/// The hash of the names below by `farsa_nn::bytes::channel_hash`.
 pub const CHANNELS: u64 = {:#018x};
 
-/// What the inputs are called.
+/// The names of the inputs.
 #[rustfmt::skip]
 pub const SENSORS: &[&str; {}] = &[
 {}];
 
-/// What the outputs are called.
+/// The names of the outputs.
 #[rustfmt::skip]
 pub const MOTORS: &[&str; {}] = &[
 {}];
@@ -165,7 +165,7 @@ pub const GROUPS: &[Group] = &["
                     f,
                     "];
 
-/// What a step works through.
+/// The blocks in the order of a step.
 #[rustfmt::skip]
 pub const BLOCKS: &[Block] = &["
                 )?;
