@@ -1,4 +1,4 @@
-//! The best individual that a search has found.
+//! Best individual that a search has found so far.
 
 use alloc::vec::Vec;
 
@@ -8,7 +8,7 @@ use crate::gene::Gene;
 use crate::population::Population;
 use crate::statistics::Statistics;
 
-/// The best individual of a search so far, with its genome.
+/// Best individual that a search has found so far, together with its genome.
 ///
 /// A strategy does not keep it. Where fitness is noisy, the best individual so far is also the luckiest. A search that
 /// needs it keeps it like this:
@@ -32,19 +32,19 @@ use crate::statistics::Statistics;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Champion<G = u16> {
-    /// Its generation.
+    /// Generation in which it was evaluated.
     pub generation: u32,
-    /// Its index in that generation.
+    /// Index of the individual in that generation.
     pub individual: usize,
-    /// Its fitness, in the experiment's own unit.
+    /// Fitness of the individual, in the unit that the experiment uses.
     pub fitness: Fitness,
-    /// Its genome \[genes\].
+    /// Genome of the individual \[genes\].
     pub genome: Vec<G>,
 }
 
 impl<G: Gene> Champion<G> {
-    /// Replaces the best so far by the best of a generation, if that is better, given the fitness \[individuals\] of its
-    /// population. Among equals the earliest stays.
+    /// Replaces the best individual so far if a generation contains a better one, given the fitness \[individuals\] of
+    /// its population. Note that an equally good individual does not replace an earlier one.
     ///
     /// # Errors
     /// [`EvoError::Shape`]. The best individual so far is then unchanged.

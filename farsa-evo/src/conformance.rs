@@ -1,4 +1,4 @@
-//! A check of the rules of a strategy, for your own strategies.
+//! A check that a strategy follows the rules. You can use this to test your own strategies.
 
 use alloc::format;
 use alloc::string::String;
@@ -15,7 +15,8 @@ use crate::scores::Scores;
 use crate::strategy::Member;
 use crate::strategy::{RecordKind, Strategy};
 
-/// Checks the rules of [`Strategy`] over the given number of generations. `fresh` must return the same strategy each time.
+/// Checks over the given number of generations that a strategy follows the rules of [`Strategy`]. Use this in the tests
+/// of a custom strategy. Note that `fresh` must return the same strategy each time.
 ///
 /// The check covers these rules:
 ///

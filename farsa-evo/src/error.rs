@@ -1,4 +1,4 @@
-//! Errors, by what the caller can do.
+//! Errors, grouped by how the caller can react to them.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,52 +9,52 @@ use crate::score_shape::ScoreShape;
 /// The largest number of genes of a population, 2^28 (512 MiB).
 pub(crate) const MAX_GENES: usize = 1 << 28;
 
-/// An error of this crate. Its variants differ in what the caller can do.
+/// An error of this crate. Variants are grouped by how you can react to them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EvoError {
-    /// A number of a configuration is out of its range.
+    /// A number in a configuration is out of its allowed range.
     OutOfRange {
-        /// Its name.
+        /// Name of the number.
         field: &'static str,
-        /// Its value.
+        /// Value that was given.
         value: f64,
-        /// The allowed values.
+        /// Values that are allowed.
         allowed: &'static str,
     },
-    /// Values of a configuration are impossible or do not fit together.
+    /// Some values of a configuration are impossible or do not fit together.
     Config {
-        /// The first of them to change.
+        /// Name of the first value that you should change.
         field: &'static str,
-        /// The message.
+        /// Message that explains the problem.
         why: String,
     },
-    /// The caller passed a wrong number of values.
+    /// The caller has passed a wrong number of values.
     Shape {
-        /// Required values.
+        /// Number of values that are required.
         expected: usize,
-        /// Passed values.
+        /// Number of values that were passed.
         found: usize,
-        /// The message.
+        /// Message that explains the problem.
         why: String,
     },
     /// A fitness is NaN.
     NanFitness,
     /// The generation counter has reached its last value, 2^32 - 1.
     LastGeneration,
-    /// There is no best individual, because no generation was evaluated or a saved search lacks it.
+    /// There is no best individual, since no generation was evaluated or a saved search lacks it.
     NoBest {
-        /// The current generation.
+        /// Number of the current generation.
         generation: u32,
     },
-    /// A saved state, or the entry of a record, is damaged or belongs to another configuration.
+    /// A saved state or an entry of a record is damaged, or it belongs to another configuration.
     State {
-        /// The message.
+        /// Message that explains the problem.
         why: String,
     },
     /// A record and a strategy do not fit together.
     Record {
-        /// The message.
+        /// Message that explains the problem.
         why: String,
     },
 }
@@ -149,7 +149,7 @@ impl EvoError {
         }
     }
 
-    /// Returns the error for a wrong number of fitness values, for custom strategies.
+    /// Creates the error for a wrong number of fitness values. Use this in custom strategies.
     pub fn fitness_count(expected: usize, found: usize) -> Self {
         Self::Shape { expected, found, why: format!("{found} fitness values for {expected} individuals") }
     }
@@ -198,12 +198,12 @@ impl EvoError {
         Self::State { why: format!("individual {individual} selected twice") }
     }
 
-    /// Returns the error of a saved state with a wrong number of bytes, for custom strategies.
+    /// Creates the error for a saved state with a wrong number of bytes. Use this in custom strategies.
     pub fn state_length(expected: usize, found: usize) -> Self {
         Self::State { why: format!("a saved state of {found} bytes where {expected} are expected") }
     }
 
-    /// Returns the error of a saved state with an impossible number, for custom strategies.
+    /// Creates the error for a saved state with an impossible number. Use this in custom strategies.
     pub fn state_content(what: &'static str, found: u64) -> Self {
         Self::State { why: format!("{found} is not {what} in a saved state") }
     }

@@ -1,11 +1,11 @@
-//! Fitness that can always be compared.
+//! A fitness value that can always be compared.
 
 use alloc::vec::Vec;
 use core::cmp::{Ordering, Reverse};
 
 use crate::error::EvoError;
 
-/// The result of an evaluation, in the experiment's own unit. Larger is better, and it is never NaN.
+/// Result of an evaluation, in whatever unit the experiment uses. Larger is better, and the value is never NaN.
 ///
 /// It is a total order, so all pairs can be compared. Minus zero is stored as zero, so equal values have equal bits. Under
 /// the feature `serde` it is an optional number, absent for a failed evaluation, because text formats such as JSON have no
@@ -16,16 +16,17 @@ use crate::error::EvoError;
 pub struct Fitness(f64);
 
 impl Fitness {
-    /// The fitness of a failed evaluation, minus infinity: below every other.
+    /// Fitness of a failed evaluation. It is minus infinity, so it ranks below every other fitness.
     pub const WORST: Self = Self(f64::NEG_INFINITY);
 
-    /// The fitness of this value, none for NaN.
+    /// Creates a fitness from a value, or returns `None` if the value is NaN.
     pub const fn new(value: f64) -> Option<Self> {
         // Adding zero turns minus zero into zero and changes nothing else.
         if value.is_nan() { None } else { Some(Self(value + 0.0)) }
     }
 
-    /// The fitness of this value, [`Fitness::WORST`] for NaN: an evaluation whose arithmetic broke down has failed.
+    /// Creates a fitness from a value, where NaN becomes [`Fitness::WORST`]. Use this if an evaluation whose arithmetic
+    /// broke down should count as failed.
     pub const fn nan_as_failed(value: f64) -> Self {
         match Self::new(value) {
             Some(fitness) => fitness,
@@ -33,12 +34,13 @@ impl Fitness {
         }
     }
 
-    /// The value, minus infinity for a failed evaluation.
+    /// Gets the value. For a failed evaluation this is minus infinity.
     pub const fn get(self) -> f64 {
         self.0
     }
 
-    /// Returns the indices of individuals by fitness, best first, equals by index.
+    /// Sorts individuals by fitness and returns their indices, best first. If two individuals are equally good, the one
+    /// with the lower index comes first.
     ///
     /// ```
     /// use farsa_evo::Fitness;
@@ -52,7 +54,7 @@ impl Fitness {
         order
     }
 
-    /// Returns true for [`Fitness::WORST`].
+    /// Checks whether the evaluation failed, that is, whether this is [`Fitness::WORST`].
     pub const fn is_failed(self) -> bool {
         self.0 == f64::NEG_INFINITY
     }
@@ -76,7 +78,7 @@ impl PartialOrd for Fitness {
 impl TryFrom<f64> for Fitness {
     type Error = EvoError;
 
-    /// The fitness of this value.
+    /// Converts a value that must not be NaN.
     ///
     /// # Errors
     /// [`EvoError::NanFitness`].

@@ -5,13 +5,14 @@ use core::fmt::Debug;
 
 /// A gene, either an integer of up to 16 bits, which encodes a value of a range, or a real number.
 pub trait Gene: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
-    /// Bytes of a gene that is saved.
+    /// Number of bytes that a saved gene takes.
     const BYTES: usize;
 
-    /// Appends the gene, little-endian.
+    /// Appends the gene to `bytes` in little-endian order.
     fn push_bytes(self, bytes: &mut Vec<u8>);
 
-    /// Returns the gene of these bytes, or `None` if they are not [`BYTES`](Self::BYTES) or not a gene.
+    /// Decodes a gene from exactly [`BYTES`](Self::BYTES) bytes. If the length is wrong or the bytes are not a valid
+    /// gene, this returns `None`.
     fn from_bytes(bytes: &[u8]) -> Option<Self>;
 }
 

@@ -1,4 +1,4 @@
-//! The genomes of one generation.
+//! Genomes of one generation.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,7 +9,7 @@ use farsa_num::{Digest, ln};
 use crate::error::{EvoError, MAX_GENES};
 use crate::gene::Gene;
 
-/// The genomes of one generation, one after the other in one piece of memory [individuals x genes].
+/// Genomes of one generation, stored one after the other in a single piece of memory [individuals x genes].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Population<G = u16> {
     genome_len: usize,
@@ -17,8 +17,9 @@ pub struct Population<G = u16> {
 }
 
 impl Population {
-    /// The largest number of genes of a population, 2^28 (512 MiB of integer genes, 2 GiB of reals). A damaged
-    /// configuration is therefore an error before memory is allocated.
+    /// Largest number of genes that a population can have. This is 2^28, which takes 512 MiB for integer genes and 2
+    /// GiB for reals. Because of this limit, a damaged configuration results in an error before any memory is
+    /// allocated.
     pub const MAX_GENES: usize = MAX_GENES;
 
     /// The default number of individuals for `genes` real genes, 4 + 3 ln n rounded down.
@@ -44,7 +45,7 @@ impl Population {
 }
 
 impl<G: Gene> Population<G> {
-    /// `individuals` genomes of `genome_len` genes, all zero.
+    /// Creates a population with the given number of `individuals` and `genome_len` genes each. All genes are zero.
     ///
     /// # Errors
     /// [`EvoError::Config`].
@@ -53,32 +54,33 @@ impl<G: Gene> Population<G> {
         Ok(Self { genome_len, genes: vec![G::default(); individuals * genome_len] })
     }
 
-    /// Number of individuals.
+    /// Number of individuals in the population.
     pub fn len(&self) -> usize {
         self.genes.len() / self.genome_len
     }
 
-    /// Returns false, because a population has individuals.
+    /// Checks whether the population is empty. Note that this is always false, since a population has at least one
+    /// individual.
     pub fn is_empty(&self) -> bool {
         self.genes.is_empty()
     }
 
-    /// Number of genes of each individual.
+    /// Number of genes in each genome.
     pub fn genome_len(&self) -> usize {
         self.genome_len
     }
 
-    /// The genome \[genes\] of one individual, none beyond the last.
+    /// Gets the genome \[genes\] of an individual, or `None` if the index is out of range.
     pub fn get(&self, individual: usize) -> Option<&[G]> {
         self.iter().nth(individual)
     }
 
-    /// The genomes \[genes\], individual after individual.
+    /// An iterator over the genomes \[genes\] in the order of the individuals.
     pub fn iter(&self) -> ChunksExact<'_, G> {
         self.genes.chunks_exact(self.genome_len)
     }
 
-    /// The genomes \[genes\], to be changed.
+    /// An iterator over the genomes \[genes\] that allows you to change them.
     pub fn iter_mut(&mut self) -> ChunksExactMut<'_, G> {
         self.genes.chunks_exact_mut(self.genome_len)
     }
@@ -88,12 +90,12 @@ impl<G: Gene> Population<G> {
         &mut self.genes
     }
 
-    /// All genes [individuals x genes].
+    /// Gets all genes as one slice [individuals x genes].
     pub fn as_slice(&self) -> &[G] {
         &self.genes
     }
 
-    /// The [`Digest`] of all genes as little-endian bytes, to notice that two populations differ.
+    /// Computes the [`Digest`] of all genes as little-endian bytes. Use this to notice that two populations differ.
     pub fn digest(&self) -> u64 {
         let (mut digest, mut bytes) = (Digest::new(), Vec::with_capacity(G::BYTES));
         for gene in &self.genes {

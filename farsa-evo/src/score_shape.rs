@@ -1,28 +1,28 @@
-//! The number of values of an evaluation.
+//! Number of values that an evaluation returns.
 
 use core::fmt;
 
-/// The number of objectives and measures of each individual.
+/// Number of objectives and measures that each individual has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ScoreShape {
-    /// Number of objectives m, at least 1. The first is the fitness of logs and champions.
+    /// Number of objectives m, at least 1. The first of them is used as fitness in logs and for champions.
     pub objectives: usize,
-    /// Number of measures d of the behavior.
+    /// Number of measures d that describe the behavior.
     #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
     pub measures: usize,
 }
 
 impl ScoreShape {
-    /// One objective and no measures, for [`Strategy::tell`](crate::Strategy::tell).
+    /// A single objective without measures. This is the shape that [`Strategy::tell`](crate::Strategy::tell) uses.
     pub const FITNESS: Self = Self { objectives: 1, measures: 0 };
 
-    /// Returns the shape of the given numbers of objectives and measures.
+    /// Creates a shape with the given numbers of objectives and measures.
     pub const fn new(objectives: usize, measures: usize) -> Self {
         Self { objectives, measures }
     }
 
-    /// Numbers of one individual.
+    /// Number of values of one individual, which is m + d.
     pub const fn width(self) -> usize {
         self.objectives.saturating_add(self.measures)
     }

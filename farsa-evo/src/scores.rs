@@ -1,4 +1,4 @@
-//! Objectives and measures of evaluations.
+//! Objectives and measures of an evaluation.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::fitness::Fitness;
 use crate::score_shape::ScoreShape;
 
 impl ScoreShape {
-    /// Refuses another shape than this one.
+    /// Checks that another shape is the same as this one.
     ///
     /// # Errors
     /// [`EvoError::Shape`].
@@ -20,11 +20,11 @@ impl ScoreShape {
     }
 }
 
-/// The objectives and the measures of each individual of a generation, row after row.
+/// Objectives and measures of each individual of a generation, stored row after row.
 ///
-/// Objectives are [`Fitness`]: larger is better, never NaN, minus infinity where the evaluation failed. Descriptor values are
-/// finite. An evaluation that broke one of these rules has failed as a whole: its objectives are minus infinity and its
-/// measures is zero.
+/// Objectives follow the rules of [`Fitness`], so they are never NaN and larger is better. They are minus infinity if
+/// the evaluation failed. Measures are always finite. If an evaluation breaks one of these rules, it has failed as a
+/// whole. In that case all its objectives become minus infinity and its measures become zero.
 ///
 /// ```
 /// use farsa_evo::{ScoreShape, Scores};
@@ -49,8 +49,8 @@ pub struct Scores {
 }
 
 impl Scores {
-    /// Builds scores of this shape from the objectives and then the measures of each individual [individuals x (m + d)]. A
-    /// NaN, an infinite measure or an objective of minus infinity is a failed evaluation.
+    /// Creates scores of this shape from the objectives and then the measures of each individual [individuals x (m +
+    /// d)]. If a row contains a NaN, an infinite measure or an objective of minus infinity, its evaluation has failed.
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`] for a shape without objectives, [`EvoError::Shape`] for a last row that is not whole.
@@ -82,7 +82,8 @@ impl Scores {
         Ok(Self { shape, values })
     }
 
-    /// The same where no number may be NaN.
+    /// Creates scores like [`nan_as_failed`](Self::nan_as_failed), but treats a NaN as an error. Use this if a NaN
+    /// would be a bug in your evaluation.
     ///
     /// # Errors
     /// [`EvoError::NanFitness`], and those of [`nan_as_failed`](Self::nan_as_failed).
@@ -93,12 +94,12 @@ impl Scores {
         Self::nan_as_failed(shape, values)
     }
 
-    /// Scores of one objective, the fitness \[individuals\].
+    /// Creates scores with a single objective from the fitness \[individuals\].
     pub fn from_fitness(fitness: &[Fitness]) -> Self {
         Self { shape: ScoreShape::FITNESS, values: fitness.iter().map(|fitness| fitness.get()).collect() }
     }
 
-    /// The number of objectives and measures of each individual.
+    /// Number of objectives and measures that each individual has.
     pub fn shape(&self) -> ScoreShape {
         self.shape
     }
@@ -108,38 +109,41 @@ impl Scores {
         self.values.len() / self.shape.width().max(1)
     }
 
-    /// Returns true if there are no individuals.
+    /// Checks whether there are no individuals.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// All numbers [individuals x (m + d)].
+    /// Gets all numbers as one slice [individuals x (m + d)].
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The objectives \[m\] of an individual, minus infinity where its evaluation failed. Empty beyond the last individual.
+    /// Gets the objectives \[m\] of an individual, which are minus infinity if its evaluation failed. If the index is
+    /// out of range, the slice is empty.
     pub fn objectives(&self, individual: usize) -> &[f64] {
         self.row(individual).0
     }
 
-    /// The measures \[d\] of an individual, zero where its evaluation failed. Empty beyond the last individual.
+    /// Gets the measures \[d\] of an individual, which are zero if its evaluation failed. If the index is out of range,
+    /// the slice is empty.
     pub fn measures(&self, individual: usize) -> &[f64] {
         self.row(individual).1
     }
 
-    /// Returns true if the evaluation of an individual failed, and false for an index beyond the last.
+    /// Checks whether the evaluation of an individual failed. If the index is out of range, this returns false.
     pub fn is_failed(&self, individual: usize) -> bool {
         self.objectives(individual).first() == Some(&f64::NEG_INFINITY)
     }
 
-    /// The first objective \[individuals\]: what logs and champions go by.
+    /// Collects the first objective of every individual \[individuals\]. This is the fitness that logs and champions
+    /// use.
     pub fn fitness(&self) -> Vec<Fitness> {
         let rows = self.values.chunks_exact(self.shape.width().max(1));
         rows.map(|row| row.first().map_or(Fitness::WORST, |x| Fitness::nan_as_failed(*x))).collect()
     }
 
-    /// Checks the shape of the scores and the number of individuals.
+    /// Checks that the scores have the given shape and number of individuals.
     ///
     /// # Errors
     /// [`EvoError::Shape`].

@@ -1,4 +1,4 @@
-//! The frame that searches of one population share: configuration, seed, generation and genomes.
+//! A generic search with one population, which many strategies of this crate are built on.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -12,7 +12,7 @@ use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_generation};
 
-/// The configuration, the seed and the generation for which an algorithm makes genomes.
+/// Configuration, seed and generation for which an algorithm makes genomes.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a, C> {
     pub(crate) config: &'a C,
@@ -41,48 +41,52 @@ pub(crate) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
 /// A row of numbers that is restored, with its name in an error and its range.
 pub(crate) type Row<'r> = (&'r mut [f64], &'static str, [f64; 2]);
 
-/// An algorithm of a [`Search`]: its state, which changes from generation to generation, without the genomes.
+/// An algorithm that can be run by a [`Search`]. It holds the state that changes from generation to generation, except
+/// for the genomes.
 pub trait Algorithm: Clone + fmt::Debug + PartialEq {
-    /// The type of a gene.
+    /// Type of a gene.
     type Gene: Gene;
-    /// The configuration.
+    /// Type of the configuration.
     type Config: Clone + fmt::Debug + PartialEq;
-    /// True if individuals have parents.
+    /// Set this to true if individuals have parents.
     const HAS_PARENTS: bool = false;
 
-    /// Checks the configuration and returns the first state with its genomes, which [`draw`](Self::draw) may change.
+    /// Checks the configuration and creates the first state along with its genomes. Note that [`draw`](Self::draw) may
+    /// still change the genomes.
     ///
     /// # Errors
     /// The first wrong number.
     fn start(step: &Step<'_, Self::Config>) -> Result<(Self, Population<Self::Gene>), EvoError>;
 
-    /// Takes the fitness \[individuals\] of the previous genomes and replaces them, unless [`draw`](Self::draw) does.
+    /// Takes the fitness \[individuals\] of the previous genomes and replaces them. An algorithm can also leave the
+    /// genomes to [`draw`](Self::draw).
     fn advance(&mut self, step: &Step<'_, Self::Config>, fitness: &[Fitness], genomes: &mut Population<Self::Gene>);
 
-    /// Draws the genomes of an algorithm whose genomes follow from its state. By default it leaves them unchanged.
+    /// Draws the genomes, for algorithms whose genomes follow from their state. By default this leaves them unchanged.
     fn draw(&mut self, _step: &Step<'_, Self::Config>, _genomes: &mut Population<Self::Gene>) {}
 
-    /// The numbers of a state that has no others.
+    /// Numbers that make up the state, row by row. Algorithms whose state has other parts override [`save`](Self::save)
+    /// and [`restore`](Self::restore) instead.
     fn rows(&self) -> Vec<&[f64]> {
         Vec::new()
     }
 
-    /// The same rows, to be restored.
+    /// Mutable access to the rows of [`rows`](Self::rows). This is used to restore them.
     fn rows_mut(&mut self) -> Vec<Row<'_>> {
         Vec::new()
     }
 
-    /// Bytes of a state that is saved at a step, given the number of genes of all individuals.
+    /// Computes how many bytes a state saved at this step takes, given the number of genes of all individuals.
     fn state_length(&self, _step: &Step<'_, Self::Config>, _genes: usize) -> usize {
         self.rows().iter().map(|row| 8 * row.len()).sum()
     }
 
-    /// Appends the state, with the genomes if they do not follow from it.
+    /// Appends the state to `saved`. If the genomes do not follow from the state, they have to be saved as well.
     fn save(&self, _config: &Self::Config, _genomes: &Population<Self::Gene>, saved: &mut Vec<u8>) {
         self.rows().into_iter().for_each(|row| push_reals(saved, row));
     }
 
-    /// Restores a state. On error the state is incomplete.
+    /// Restores a saved state. If this fails, the state may be incomplete.
     ///
     /// # Errors
     /// [`EvoError::State`].
@@ -95,28 +99,28 @@ pub trait Algorithm: Clone + fmt::Debug + PartialEq {
         self.rows_mut().into_iter().try_for_each(|(row, what, range)| reader.row(row, what, range))
     }
 
-    /// The content of a record that rebuilds a generation.
+    /// Determines what a record has to store so that it can rebuild a generation.
     fn record_kind(_config: &Self::Config) -> RecordKind {
         RecordKind::Values
     }
 
-    /// Numbers about the latest generation.
+    /// Numbers that describe the latest generation. The default is an empty list.
     fn diagnostics(&self, _config: &Self::Config) -> Vec<f64> {
         Vec::new()
     }
 
-    /// The parents of an individual, as indices in the previous generation.
+    /// Finds the parents of an individual, as indices in the previous generation.
     fn parents_of(&self, _step: &Step<'_, Self::Config>, _individual: usize) -> Vec<usize> {
         Vec::new()
     }
 
-    /// The largest number of generations between two states of a record.
+    /// Largest number of generations between two states of a record.
     fn snapshot_interval(_genomes: &Population<Self::Gene>) -> u32 {
         u32::MAX
     }
 }
 
-/// A search by an algorithm `A`, with its configuration, seed, generation and genomes.
+/// A search that runs an algorithm `A` on a single population.
 ///
 /// Use it by the names of its kinds, such as [`RealGa`](crate::real::RealGa), [`Snes`](crate::gradient::Snes) and
 /// [`TruncationGa`](crate::words::TruncationGa).
@@ -130,7 +134,7 @@ pub struct Search<A: Algorithm> {
 }
 
 impl<A: Algorithm> Search<A> {
-    /// Starts a search at its first generation.
+    /// Creates a new search at its first generation.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first wrong number of the configuration.
@@ -141,12 +145,12 @@ impl<A: Algorithm> Search<A> {
         Ok(Self { config, seed, generation: 0, state, population })
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &A::Config {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }

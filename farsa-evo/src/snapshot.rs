@@ -1,4 +1,4 @@
-//! The state of a strategy as bytes, and how it is read back.
+//! Saved states of strategies.
 
 use alloc::vec::Vec;
 
@@ -6,13 +6,14 @@ use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
 
-/// The ability to resume from a saved state without replaying earlier generations.
+/// A strategy that can resume from a saved state, without replaying earlier generations.
 pub trait Snapshot {
-    /// Returns everything that changes from generation to generation, as bytes. Configuration and seed are not part of it.
+    /// Saves everything that changes from generation to generation as bytes. Note that this does not include the
+    /// configuration and the seed.
     fn save(&self) -> Vec<u8>;
 
-    /// Restores a state that a strategy of the same configuration and seed has saved. [`save`](Self::save) then returns the
-    /// same bytes.
+    /// Restores a state that was saved by a strategy with the same configuration and seed. After that,
+    /// [`save`](Self::save) returns the same bytes.
     ///
     /// # Errors
     /// [`EvoError::State`]. The strategy is then unchanged.
@@ -32,7 +33,7 @@ pub(crate) fn between_states(population: &Population<f64>) -> u32 {
     u32::try_from(20_000_000 / genes).unwrap_or(u32::MAX).max(1)
 }
 
-/// Reads a state from its front, little-endian.
+/// A reader that decodes a state from front to back, in little-endian order.
 pub struct StateReader<'s> {
     rest: &'s [u8],
     total: usize,

@@ -1,8 +1,8 @@
-//! The summary of a generation for a log.
+//! A summary of each generation, for logs.
 
 use crate::fitness::Fitness;
 
-/// The summary of one generation's fitness, in the experiment's own unit.
+/// A summary of the fitness of one generation, in the unit that the experiment uses.
 ///
 /// Failed evaluations count in [`Statistics::failed`] only. When all failed, best, mean and worst are minus infinity.
 ///
@@ -16,20 +16,21 @@ use crate::fitness::Fitness;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
-    /// Index of the best individual, the lowest among equals.
+    /// Index of the best individual. If there are several, this is the lowest index.
     pub best_index: usize,
-    /// Largest fitness.
+    /// Largest fitness of the generation.
     pub best: f64,
-    /// Mean over the evaluations that did not fail, summed in the order of the individuals.
+    /// Mean over the evaluations that did not fail. Values are summed in the order of the individuals, so the result is
+    /// reproducible.
     pub mean: f64,
-    /// Smallest fitness of an evaluation that did not fail.
+    /// Smallest fitness, not counting failed evaluations.
     pub worst: f64,
-    /// Number of failed evaluations.
+    /// Number of evaluations that failed.
     pub failed: usize,
 }
 
 impl Statistics {
-    /// Summarizes `fitness` \[individuals\], or returns `None` when it is empty.
+    /// Summarizes `fitness` \[individuals\]. If it is empty, this returns `None`.
     pub fn from_fitness(fitness: &[Fitness]) -> Option<Self> {
         let mut best = *fitness.first()?;
         let mut worst = Fitness::WORST;

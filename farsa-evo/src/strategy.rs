@@ -1,4 +1,4 @@
-//! The interface of all search strategies.
+//! Interface that all search strategies implement.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,16 +13,17 @@ use crate::scores::Scores;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
 
-/// The content of a record that rebuilds a generation, see [`Strategy::record_kind`].
+/// Content that a record needs in order to rebuild a generation, see [`Strategy::record_kind`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum RecordKind {
-    /// The order of the individuals, best first, equals by index: for strategies that depend on nothing else.
+    /// Only the order of the individuals, best first, with ties broken by index. Use this if the strategy depends on
+    /// nothing else.
     Order,
-    /// The values of fitness, or all numbers of the scores.
+    /// Fitness values, or all numbers of the scores if the strategy requires scores.
     Values,
-    /// The genomes, for strategies that are too slow to replay.
+    /// Whole genomes. This is for strategies that are too slow to replay.
     Genomes,
 }
 
@@ -37,26 +38,29 @@ pub enum RecordKind {
 /// fitness. A strategy with several objectives, or with measures, returns another [`score_shape`](Strategy::score_shape)
 /// and takes [`Scores`] in [`tell_scores`](Strategy::tell_scores). Its fitness in logs is the first objective.
 pub trait Strategy<G: Gene = u16> {
-    /// The number of the generation that waits for its fitness, from 0.
+    /// Gets the number of the generation that is waiting for its fitness, starting at 0.
     fn generation(&self) -> u32;
 
-    /// The genomes of the current generation [individuals x genes], those of one population after the other.
+    /// Gets the genomes to evaluate in the current generation [individuals x genes]. If there are several populations,
+    /// their genomes follow one another. Calling this again before [`tell`](Strategy::tell) returns the same genomes.
     fn ask(&self) -> &Population<G>;
 
-    /// Takes the fitness \[individuals\] of the current generation and makes the next one.
+    /// Takes the fitness \[individuals\] of the current generation and advances to the next one.
     ///
     /// # Errors
     /// [`EvoError::Shape`] for a wrong number of values, or if the strategy requires scores. [`EvoError::LastGeneration`]. The
     /// strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
-    /// The number of objectives and measures that it requires of each individual, by default one objective.
+    /// Number of objectives and measures that the strategy requires for each individual. By default this is a single
+    /// objective.
     fn score_shape(&self) -> ScoreShape {
         ScoreShape::FITNESS
     }
 
-    /// Takes the scores of the current generation, which have the shape [`score_shape`](Strategy::score_shape), and makes
-    /// the next one. Scores of one objective are passed on as fitness.
+    /// Takes the scores of the current generation, which must have the shape [`score_shape`](Strategy::score_shape),
+    /// and advances to the next one. By default, scores with a single objective are passed on to
+    /// [`tell`](Strategy::tell) as fitness.
     ///
     /// # Errors
     /// [`EvoError::Shape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
@@ -66,51 +70,54 @@ pub trait Strategy<G: Gene = u16> {
         self.tell(&scores.fitness())
     }
 
-    /// Number of populations, each of as many individuals.
+    /// Number of populations, which all have the same size.
     fn populations(&self) -> usize {
         1
     }
 
-    /// The content of a record that rebuilds a generation.
+    /// Determines what a record has to store so that it can rebuild a generation.
     fn record_kind(&self) -> RecordKind {
         RecordKind::Values
     }
 
-    /// Returns the fitness \[individuals\] by which individuals are ranked, given the fitness of the evaluation or its
-    /// first objective.
+    /// Computes the fitness \[individuals\] by which individuals are ranked, given the fitness of the evaluation or its
+    /// first objective. By default the fitness is used as it is.
     fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
         fitness.to_vec()
     }
 
-    /// Returns the best individual of each population, counted through all populations, given the fitness of
-    /// [`ranked_by`](Strategy::ranked_by) \[individuals\]. The lower index wins among equals.
+    /// Finds the best individual of each population, given the fitness returned by [`ranked_by`](Strategy::ranked_by)
+    /// \[individuals\]. Indices count through all populations. If several individuals are equally good, the one with
+    /// the lowest index wins.
     fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
         let size = (ranked_by.len() / self.populations().max(1)).max(1);
         let best = |own| Statistics::from_fitness(own).map_or(0, |summary| summary.best_index);
         ranked_by.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
     }
 
-    /// The ability to save and restore the state. A strategy without it resumes by replaying its record.
+    /// Gives access to saving and restoring the state. If this returns `None`, the strategy can only be resumed by
+    /// replaying its record.
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
         None
     }
 
-    /// The parents of individuals, for strategies that have them.
+    /// Gives access to the parents of individuals. It is `None` for strategies without parents.
     fn genealogy(&self) -> Option<&dyn Genealogy> {
         None
     }
 
-    /// The opponents of each individual, for strategies that choose them.
+    /// Gives access to the opponents of each individual. It is `None` unless the strategy chooses opponents itself.
     fn opponents(&self) -> Option<&dyn Opponents<G>> {
         None
     }
 
-    /// The individuals that are kept beyond a generation, for strategies whose result is more than a champion.
+    /// Gives access to the individuals that are kept beyond a generation, such as an archive. Use this if the result of
+    /// a strategy is more than a champion.
     fn collection(&self) -> Option<&dyn Collection> {
         None
     }
 
-    /// Returns true if the champion of a search is the best individual of all generations instead of the last one. This
+    /// Checks whether the champion of a search is the best individual of all generations instead of the last one. This
     /// holds for strategies whose generations do not improve on earlier ones, such as an archive or random search.
     ///
     /// By default where something is [kept](Strategy::collection).
@@ -118,12 +125,14 @@ pub trait Strategy<G: Gene = u16> {
         self.collection().is_some()
     }
 
-    /// Numbers about the latest generation, such as a step size. Their count never changes, and they are empty by default.
+    /// Numbers that describe the latest generation, such as a step size. Their count never changes during a search. The
+    /// default is an empty list.
     fn diagnostics(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Takes plain values \[individuals\]. A NaN is a failed evaluation.
+    /// Takes plain values \[individuals\] instead of [`Fitness`]. This is a shorthand for [`tell`](Strategy::tell) in
+    /// which a NaN becomes a failed evaluation.
     ///
     /// # Errors
     /// The errors of [`tell`](Strategy::tell).
@@ -132,8 +141,9 @@ pub trait Strategy<G: Gene = u16> {
         self.tell(&fitness)
     }
 
-    /// Evaluates the given number of generations and returns the best individual by the first objective. `judge` writes the
-    /// objectives and then the measures of a genome \[genes\] into a row [m + d] of zeros. A NaN is a failed evaluation.
+    /// Evaluates the given number of generations and returns the best individual by the first objective. For each
+    /// genome \[genes\], `judge` gets a row [m + d] of zeros and writes the objectives and then the measures into it.
+    /// If it writes a NaN, the evaluation has failed.
     ///
     /// # Errors
     /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
@@ -152,8 +162,8 @@ pub trait Strategy<G: Gene = u16> {
         champion.ok_or(EvoError::NoBest { generation: self.generation() })
     }
 
-    /// Evaluates the given number of generations and returns the best individual. `evaluate` returns the fitness of a
-    /// genome \[genes\], and a NaN is a failed evaluation.
+    /// Evaluates the given number of generations and returns the best individual. This is the simplest way to run a
+    /// search with a single objective. If `evaluate` returns NaN for a genome \[genes\], that evaluation has failed.
     ///
     /// ```
     /// use farsa_evo::Strategy;
@@ -177,48 +187,50 @@ pub trait Strategy<G: Gene = u16> {
     }
 }
 
-/// The ability to report the parents of individuals.
+/// A strategy that can report the parents of its individuals.
 pub trait Genealogy {
-    /// Returns the parents of an individual of the current generation, as indices in the previous one. Empty in generation
-    /// 0, for an individual without parents and beyond the last individual.
+    /// Finds the parents of an individual of the current generation, as indices in the previous one. If the individual
+    /// has no parents or does not exist, the list is empty. This is also the case in generation 0.
     fn parents_of(&self, individual: usize) -> Vec<usize>;
 }
 
-/// The ability to choose the opponents of each individual, see [`Strategy::opponents`](crate::Strategy::opponents). It is
-/// for strategies of several populations that depend on the fitness against each opponent.
+/// A strategy that chooses the opponents of each individual, see [`Strategy::opponents`](crate::Strategy::opponents).
+/// Use this for strategies with several populations that depend on the fitness against each opponent.
 ///
 /// The scores of such a strategy have 1 + m objectives for m opponents. The first is the fitness of all trials, the others
 /// are the fitness of the trials against each opponent. In trial `t` the opponent is number `t` modulo m, so at least m
 /// trials are required.
 pub trait Opponents<G: Gene = u16> {
-    /// Number of opponents m of each individual in a generation, at least 1.
+    /// Number of opponents m that each individual has in a generation. This is always at least 1.
     fn count(&self) -> usize;
 
-    /// Returns the genomes of an individual's opponent of the given number, one of each other population in their order.
-    /// Individuals are counted through all populations, opponents from 0 to m - 1. Empty beyond the last of either.
+    /// Gets the genomes that form one opponent of an individual, one genome from each other population in their order.
+    /// Individuals are counted through all populations and opponents from 0 to m - 1. If either number is out of range,
+    /// the list is empty.
     fn opponents_of(&self, individual: usize, opponent: usize) -> Vec<&[G]>;
 }
 
-/// An individual that a strategy keeps: an elite of an archive, or a member of a front.
+/// An individual that a strategy keeps, either an elite of an archive or a member of a front.
 ///
 /// Where it comes from, its generation and index, is enough to find its genes in a [`Record`](crate::Record).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member<'a> {
-    /// The number of its cell, where there are cells.
+    /// Number of its cell, if the collection is divided into cells.
     pub cell: Option<usize>,
-    /// Its objectives \[m\], in the experiment's own units.
+    /// Its objectives \[m\], in the units that the experiment uses.
     pub objectives: &'a [f64],
     /// Its measures \[d\].
     pub measures: &'a [f64],
-    /// The generation in which it was evaluated.
+    /// Generation in which it was evaluated.
     pub generation: u32,
     /// Its index in that generation, counted through all populations.
     pub individual: usize,
 }
 
-/// The ability to keep individuals beyond their generation: an archive of elites, or the front of several objectives.
+/// A strategy that keeps individuals beyond their generation, such as an archive of elites or the front of several
+/// objectives.
 pub trait Collection {
-    /// All members, in arbitrary order.
+    /// Gets all members. Note that their order is arbitrary.
     fn members(&self) -> Vec<Member<'_>>;
 }
 

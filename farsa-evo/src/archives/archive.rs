@@ -1,4 +1,4 @@
-//! The elite of each cell.
+//! An archive that keeps the best individual of each cell.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,7 +13,8 @@ use crate::strategy::Member;
 /// The slot of a cell without an elite.
 const EMPTY: u32 = u32::MAX;
 
-/// An archive: of each cell the best individual that was found, its elite.
+/// An archive that keeps the best individual found so far for each cell. This individual is called the elite of the
+/// cell.
 ///
 /// ```
 /// use farsa_evo::archives::{Addition, Archive, GridCells};
@@ -43,39 +44,39 @@ pub struct Archive<C> {
     origins: Vec<[u32; 2]>,
 }
 
-/// The result of an addition to an archive.
+/// Result of adding an individual to an archive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Addition {
-    /// The first of its cell.
+    /// It is the first individual of its cell.
     New,
-    /// Better than the elite of its cell, whose place it has.
+    /// It is better than the elite of its cell and has replaced it.
     Better {
-        /// The difference of their objectives.
+        /// Difference between the new and the previous objective.
         by: f64,
     },
-    /// Not better, or a failed evaluation.
+    /// It was not added, since it is not better than the elite or its evaluation failed.
     None,
 }
 
-/// The best individual of a cell.
+/// Best individual of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elite<'a> {
-    /// The number of its cell.
+    /// Number of the cell.
     pub cell: usize,
-    /// Its genes \[genes\].
+    /// Genes of the individual \[genes\].
     pub genes: &'a [f64],
-    /// Its objective, in the experiment's own unit.
+    /// Objective of the individual, in the unit that the experiment uses.
     pub objective: f64,
-    /// Its measures \[d\].
+    /// Measures of the individual \[d\].
     pub measures: &'a [f64],
-    /// Its generation, 0 if it was added by hand.
+    /// Generation in which it was evaluated. This is 0 if you added it with [`Archive::add`].
     pub generation: u32,
-    /// Its index in that generation, 0 if it was added by hand.
+    /// Index in that generation. This is 0 if you added it with [`Archive::add`].
     pub individual: usize,
 }
 
 impl<C: Cells> Archive<C> {
-    /// Builds an empty archive of genomes with the given number of genes.
+    /// Creates an empty archive for genomes with the given number of genes.
     ///
     /// # Errors
     /// [`EvoError::Config`] for no genes, no cells, or more genes or measures of all cells than [`Population::MAX_GENES`].
@@ -87,38 +88,39 @@ impl<C: Cells> Archive<C> {
         Ok(Self { cells, genes, slots, filled, genomes, objectives, measures: Vec::new(), origins: Vec::new() })
     }
 
-    /// The cells.
+    /// Gets the division into cells.
     pub fn cells(&self) -> &C {
         &self.cells
     }
 
-    /// Number of elites.
+    /// Number of elites in the archive.
     pub fn len(&self) -> usize {
         self.filled.len()
     }
 
-    /// Returns true if there are no elites.
+    /// Checks whether the archive has no elites.
     pub fn is_empty(&self) -> bool {
         self.filled.is_empty()
     }
 
-    /// The elite of a cell, if it has one.
+    /// Gets the elite of a cell, or `None` if the cell is still empty.
     pub fn elite(&self, cell: usize) -> Option<Elite<'_>> {
         self.slots.get(cell).and_then(|slot| self.slot(*slot as usize))
     }
 
-    /// All elites, in the order in which their cells were filled.
+    /// An iterator over all elites, in the order in which their cells were filled.
     pub fn elites(&self) -> impl Iterator<Item = Elite<'_>> {
         (0..self.len()).filter_map(|slot| self.slot(slot))
     }
 
-    /// The sum of the objectives, which is the QD score where none is negative.
+    /// Computes the sum of all objectives. If none of them is negative, this is the QD score.
     pub fn sum(&self) -> f64 {
         self.objectives.iter().sum()
     }
 
-    /// Adds an individual with these genes \[genes\] and measures \[d\] if it is the first of its cell or better than its
-    /// elite. An objective of NaN or minus infinity, or measures that are not finite, are not added.
+    /// Adds an individual with these genes \[genes\] and measures \[d\], provided that it is the first of its cell or
+    /// better than the elite. An individual is never added if its objective is NaN or minus infinity, or if its
+    /// measures are not finite.
     ///
     /// # Errors
     /// [`EvoError::Shape`] for another number of genes or measures.

@@ -45,8 +45,8 @@ pub struct CvtCells {
 }
 
 impl CvtCells {
-    /// Builds the given number of cells over these ranges \[d\], low to high, from the given number of points. There must
-    /// be at least as many points as cells, and ten for each cell are enough.
+    /// Builds the given number of cells over these ranges \[d\], from low to high. You need at least as many points as
+    /// cells, and ten points for each cell are usually enough.
     ///
     /// # Errors
     /// [`EvoError::Config`] for no ranges, no cells or too many, [`EvoError::OutOfRange`] for other numbers.
@@ -61,7 +61,8 @@ impl CvtCells {
         Self::from_centroids(k_means(first, drawn.as_slice(), bounds.len()), bounds.len())
     }
 
-    /// The cells of these centroids [cells x d], each coordinate of magnitude up to 10^100.
+    /// Creates cells from existing centroids [cells x d]. Use this to reuse a tessellation. Each coordinate can have a
+    /// magnitude of up to 10^100.
     ///
     /// # Errors
     /// [`EvoError::Config`] for d = 0, no centroids or too many. [`EvoError::Shape`] for an incomplete last one.
@@ -79,7 +80,7 @@ impl CvtCells {
         Ok(Self { d, centroids, nearest })
     }
 
-    /// The centroids [cells x d].
+    /// Gets the centroids [cells x d].
     pub fn centroids(&self) -> &[f64] {
         &self.centroids
     }

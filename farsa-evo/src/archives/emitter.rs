@@ -13,15 +13,15 @@ use crate::error::{EvoError, check_range, check_setting, check_share};
 pub enum Emitter {
     /// An elite plus normal numbers, the random variation of \[Mouret2015\]. The source does not give its kind.
     Gaussian {
-        /// Individuals of a generation, at least 1.
+        /// Number of individuals in a generation, at least 1.
         batch: usize,
-        /// The standard deviation as a share of each gene's range, 0 to 1.
+        /// Standard deviation as a share of each gene's range, 0 to 1.
         sigma: f64,
     },
     /// An elite plus normal numbers, plus a normal number times the difference to another elite. It is the directional
     /// variation of \[Mouret2018\], where the deviations are 0.01 and 0.2 and the range of genes is 1.
     IsoLine {
-        /// Individuals of a generation, at least 1.
+        /// Number of individuals in a generation, at least 1.
         batch: usize,
         /// The standard deviation as a share of each gene's range `sigma_1`, 0 to 1.
         iso_sigma: f64,
@@ -34,17 +34,17 @@ pub enum Emitter {
     /// hundred times and then put at the bounds (the source has none). It also starts again where the distribution has
     /// collapsed.
     Improvement {
-        /// Individuals of a generation, at least 2.
+        /// Number of individuals in a generation, at least 2.
         batch: usize,
-        /// The first mean \[genes\], within the bounds.
+        /// Initial mean \[genes\], which must be within the bounds.
         mean: Vec<f64>,
-        /// The step size at every start, 1e-100 to 1e100, in the unit of the genes.
+        /// Step size that every start begins with, 1e-100 to 1e100, in the unit of the genes.
         sigma: f64,
     },
 }
 
 impl Emitter {
-    /// Individuals of a generation.
+    /// Number of individuals that this emitter makes in a generation.
     pub fn batch(&self) -> usize {
         let (Self::Gaussian { batch, .. } | Self::IsoLine { batch, .. } | Self::Improvement { batch, .. }) = self;
         *batch

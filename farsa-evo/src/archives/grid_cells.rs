@@ -11,10 +11,10 @@ pub trait Cells {
     /// Number of cells.
     fn cells(&self) -> usize;
 
-    /// Number of values d of a measures.
+    /// Number of measures d.
     fn measures(&self) -> usize;
 
-    /// The number of the cell, from 0, of a finite measures \[d\].
+    /// Finds the cell that the measures \[d\] belong to. Cells are numbered from 0, and the measures must be finite.
     fn cell(&self, measures: &[f64]) -> usize;
 }
 
@@ -43,7 +43,8 @@ pub struct GridCells {
 }
 
 impl GridCells {
-    /// Builds a grid over these ranges \[d\], low to high, with the given number of parts of each \[d\].
+    /// Creates a grid over the given ranges \[d\], from low to high. Each range is divided into the given number of
+    /// parts \[d\].
     ///
     /// # Errors
     /// [`EvoError::Config`] for no ranges or too many cells, [`EvoError::OutOfRange`] for other numbers.
@@ -61,12 +62,12 @@ impl GridCells {
         Ok(Self { bounds, parts })
     }
 
-    /// The range of each measure \[d\].
+    /// Range of each measure \[d\].
     pub fn bounds(&self) -> &[[f64; 2]] {
         &self.bounds
     }
 
-    /// The parts of each range \[d\].
+    /// Number of parts that each range is divided into \[d\].
     pub fn parts(&self) -> &[usize] {
         &self.parts
     }

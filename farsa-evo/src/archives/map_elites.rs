@@ -18,37 +18,38 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Collection, Genealogy, Member, Strategy, next_scored};
 
-/// The configuration of [`MapElites`](crate::archives::MapElites) except its cells.
+/// Configuration of [`MapElites`](crate::archives::MapElites), except for the cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapElitesConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene, except for the improvement
-    /// emitter, which needs a range.
+    /// Range of each gene \[genes\] from low to high, within -1e100 to 1e100. You can freeze a gene by giving it equal
+    /// ends. Note that this does not work with the improvement emitter, which needs a range.
     pub bounds: Vec<[f64; 2]>,
-    /// The emitters, which make the individuals of a generation in this order.
+    /// Emitters that make the individuals of a generation, in this order.
     pub emitters: Vec<Emitter>,
 }
 
 impl MapElitesConfig {
-    /// 100 individuals of the iso-line emitter with the deviations of \[Mouret2018\]. The number is ours.
+    /// Creates a configuration with 100 individuals of the iso-line emitter and the deviations of \[Mouret2018\]. The
+    /// number of individuals is our choice.
     pub fn new(bounds: Vec<[f64; 2]>) -> Self {
         Self { bounds, emitters: Vec::from([Emitter::IsoLine { batch: 100, iso_sigma: 0.01, line_sigma: 0.2 }]) }
     }
 
-    /// CMA-ME with the given number of improvement emitters of \[Fontaine2020\]. All start in the middle of the bounds,
-    /// each with a batch of individuals and a step size in the unit of the genes.
+    /// Creates a configuration of CMA-ME with the given number of improvement emitters of \[Fontaine2020\]. All of them
+    /// start in the middle of the bounds, with the given batch of individuals and a step size in the unit of the genes.
     pub fn cma_me(bounds: Vec<[f64; 2]>, emitters: usize, batch: usize, sigma: f64) -> Self {
         let mean: Vec<f64> = bounds.iter().map(|[low, high]| 0.5 * (low + high)).collect();
         let emitters = (0..emitters).map(|_| Emitter::Improvement { batch, mean: mean.clone(), sigma }).collect();
         Self { bounds, emitters }
     }
 
-    /// Individuals of a generation.
+    /// Number of individuals in a generation, summed over all emitters.
     pub fn population(&self) -> usize {
         self.emitters.iter().fold(0, |sum: usize, emitter| sum.saturating_add(emitter.batch()))
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] for no emitters or wrong sizes, [`EvoError::OutOfRange`] for other numbers.
@@ -107,7 +108,7 @@ pub struct MapElites<C> {
 }
 
 impl<C: Cells + Clone> MapElites<C> {
-    /// A search with an empty archive of these cells, at its first generation.
+    /// Creates a new search with an empty archive of these cells.
     ///
     /// # Errors
     /// The errors of [`MapElitesConfig::validate`] and of [`Archive::new`].
@@ -126,22 +127,23 @@ impl<C: Cells + Clone> MapElites<C> {
         Ok(search)
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &MapElitesConfig {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The archive.
+    /// Gets the archive, which is the main result of this search.
     pub fn archive(&self) -> &Archive<C> {
         &self.archive
     }
 
-    /// Bytes of the largest state that it [saves](Snapshot::save), with an elite in every cell.
+    /// Computes how many bytes a [saved](Snapshot::save) state can take at most. This is the size when every cell has
+    /// an elite.
     pub fn largest_state(&self) -> usize {
         self.state_length(self.archive.cells().cells())
     }

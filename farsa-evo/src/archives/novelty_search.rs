@@ -14,49 +14,54 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Genealogy, RecordKind, Strategy, next_scored};
 
-/// The configuration of a [`NoveltySearch`](crate::archives::NoveltySearch) except its inner strategy.
+/// Configuration of a [`NoveltySearch`](crate::archives::NoveltySearch), except for its inner strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoveltyConfig {
-    /// Number of values d of a measures, 1 to 1000.
+    /// Number of measures d that describe a behavior, 1 to 1000.
     #[cfg_attr(feature = "serde", serde(rename = "descriptors"))]
     pub measures: usize,
-    /// Number k of nearest behaviors whose mean distance is the novelty, 1 or more. 15 in the source.
+    /// Number of nearest behaviors k that the novelty is averaged over. This must be at least 1, and the source uses
+    /// 15.
     #[cfg_attr(feature = "serde", serde(rename = "neighbours"))]
     pub neighbors: usize,
-    /// The rule for additions to the archive.
+    /// Rule that decides which behaviors enter the archive.
     pub archive: ArchiveRule,
 }
 
-/// The rule for additions to the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
+/// Rule that decides which behaviors enter the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ArchiveRule {
-    /// Each with this probability, 0 to 1, whatever its novelty.
+    /// Every behavior enters with the same probability, regardless of its novelty.
     Random {
-        /// The probability.
+        /// Probability of an addition, 0 to 1.
         rate: f64,
     },
     /// Behaviors whose novelty is above a threshold, in the unit of the measures. The threshold is multiplied by 1.2 after
     /// a generation with more than `most` additions. It is multiplied by 0.95 after `patience` generations without
     /// additions. It stays between 1e-100 and 1e100.
     Threshold {
-        /// The first threshold, 1e-100 to 1e100.
+        /// Initial threshold, 1e-100 to 1e100.
         first: f64,
-        /// The largest number of additions of a generation that does not raise it. 4 in the program of the source.
+        /// Largest number of additions in a generation that does not raise the threshold. The program of the source
+        /// uses 4.
         most: usize,
-        /// The number of generations without additions that lowers it, 1 or more. 10 in the program of the source.
+        /// Number of generations without additions after which the threshold is lowered. This must be at least 1, and
+        /// the program of the source uses 10.
         patience: u32,
     },
 }
 
 impl NoveltyConfig {
-    /// 15 neighbors \[Lehman2011\]. Each behavior enters the archive with probability 0.02, which is ours.
+    /// Creates a configuration with 15 neighbors as in \[Lehman2011\]. Each behavior enters the archive with a
+    /// probability of 0.02, which is our choice.
     pub const fn new(measures: usize) -> Self {
         Self { measures, neighbors: 15, archive: ArchiveRule::Random { rate: 0.02 } }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges. You usually don't need to call this, since
+    /// [`NoveltySearch::new`] does it for you.
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`].
@@ -123,7 +128,7 @@ pub struct NoveltySearch<S> {
 }
 
 impl<S> NoveltySearch<S> {
-    /// A search that drives a strategy, with an empty archive.
+    /// Creates a search around an inner strategy. The archive is empty at first.
     ///
     /// # Errors
     /// The errors of [`NoveltyConfig::validate`]. [`EvoError::Record`] or [`EvoError::Shape`] for an inner
@@ -145,7 +150,8 @@ impl<S> NoveltySearch<S> {
         Ok(Self { config, seed, inner, units, archive: Vec::new(), threshold, idle: 0, novelty: Vec::new() })
     }
 
-    /// The same where each measure is divided by a unit \[d\], such as its range, before distances are taken.
+    /// Sets a unit for each measure \[d\], such as its range. Measures are divided by their units before distances are
+    /// taken, which is useful if their scales differ.
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`] for another number of units, or one outside 1e-100 to 1e100. [`EvoError::Record`] after
@@ -165,33 +171,34 @@ impl<S> NoveltySearch<S> {
         Ok(Self { units: units.to_vec(), ..self })
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &NoveltyConfig {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The strategy that is driven.
+    /// Gets the inner strategy that this search drives.
     pub fn inner(&self) -> &S {
         &self.inner
     }
 
-    /// The archive [behaviors x d], in the units of each measure.
+    /// Gets the behaviors in the archive [behaviors x d]. Note that they are divided by the units of the measures.
     pub fn archive(&self) -> &[f64] {
         &self.archive
     }
 
-    /// The threshold of novelty of the archive, in the unit of the measures, if it has one.
+    /// Gets the current threshold of novelty, in the unit of the measures. If behaviors enter the archive by chance,
+    /// this returns `None`.
     pub fn threshold(&self) -> Option<f64> {
         matches!(self.config.archive, ArchiveRule::Threshold { .. }).then_some(self.threshold)
     }
 
-    /// The novelty \[individuals\] of the latest reported generation, in the unit of the measures. Empty in generation 0
-    /// and after a state was restored.
+    /// Novelty \[individuals\] of the latest reported generation, in the unit of the measures. This is empty in
+    /// generation 0 and after a state was restored.
     pub fn novelty(&self) -> &[Fitness] {
         &self.novelty
     }

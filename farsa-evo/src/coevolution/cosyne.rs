@@ -27,7 +27,7 @@ pub enum Permutation {
     ByFitness,
 }
 
-/// The configuration of [`Cosyne`].
+/// Configuration of [`Cosyne`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CosyneConfig {
@@ -42,7 +42,7 @@ pub struct CosyneConfig {
     pub offspring: usize,
     /// Weights begin uniform between minus and plus this, 0 to 1e100.
     pub range: f64,
-    /// The probability, 0 to 1, that a weight of an offspring is mutated.
+    /// Probability (0 to 1) that a weight of an offspring is mutated.
     pub mutation_rate: f64,
     /// The scale of the Cauchy distribution that mutation adds, in the unit of the genes: half of all mutations are smaller. 0
     /// to 1e100.
@@ -75,7 +75,7 @@ impl CosyneConfig {
         self.segments.iter().fold(0, |sum: usize, segment| sum.saturating_add(*segment))
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -129,7 +129,7 @@ const PERMUTATION: u32 = 1;
 /// ```
 pub type Cosyne = Search<CosyneOrigins>;
 
-/// The state of [`Cosyne`].
+/// Internal state of [`Cosyne`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct CosyneOrigins {
     /// The place of each gene in the previous generation [individuals x genes]. Empty in generation 0.

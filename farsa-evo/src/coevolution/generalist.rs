@@ -143,12 +143,12 @@ impl GeneralistCoevolution {
         Ok(Self { config, mutation, seed, generation: 0, sides, population })
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &GeneralistConfig {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }

@@ -4,7 +4,7 @@ use crate::error::{EvoError, check_setting};
 use crate::population::Population;
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits};
 
-/// The configuration of [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution).
+/// Configuration of [`GeneralistCoevolution`](crate::coevolution::GeneralistCoevolution).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GeneralistConfig {
@@ -36,7 +36,7 @@ impl GeneralistConfig {
         Self { genes, gene_bits, members, newcomers, opponents, iterations, mutation_rate, mutation }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].

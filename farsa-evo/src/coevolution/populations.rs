@@ -94,7 +94,7 @@ impl Populations<TruncationGa, u16> {
         self.members.iter().map(TruncationGa::config)
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.members.first().map_or(0, TruncationGa::seed)
     }

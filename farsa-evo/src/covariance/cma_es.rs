@@ -96,7 +96,8 @@ pub struct CmaEs<C: Covariance = Full> {
 }
 
 impl CmaEs {
-    /// Starts a search with a full covariance matrix.
+    /// Creates a new search with a full covariance matrix. For other kinds of matrices, use
+    /// [`with_covariance`](Self::with_covariance).
     ///
     /// # Errors
     /// The errors of [`CmaEsConfig::validate`].
@@ -106,7 +107,7 @@ impl CmaEs {
 }
 
 impl<C: Covariance> CmaEs<C> {
-    /// Starts a search with the covariance matrix of the type.
+    /// Creates a new search whose kind of covariance matrix is given by the type.
     ///
     /// # Errors
     /// The errors of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`](crate::covariance::SeparableCmaEsConfig::validate).
@@ -119,40 +120,44 @@ impl<C: Covariance> CmaEs<C> {
         Ok(Self { config, seed, generation: 0, distribution, population })
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &C::Config {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The mean m \[genes\] of the current generation's distribution, the best estimate where fitness is noisy.
+    /// Gets the mean m \[genes\] of the distribution that the current generation is drawn from. If fitness is noisy,
+    /// this is a better result than the champion.
     pub fn mean(&self) -> &[f64] {
         &self.distribution.mean
     }
 
-    /// The step size sigma.
+    /// Gets the current step size sigma.
     pub fn sigma(&self) -> f64 {
         self.distribution.sigma
     }
 
-    /// The covariance matrix C [genes x genes] after the latest update. Individuals are drawn with sigma^2 C.
+    /// Computes the covariance matrix C [genes x genes] after the latest update. Note that individuals are drawn with
+    /// sigma^2 C.
     pub fn covariance(&self) -> Vec<f64> {
         self.distribution.covariance.matrix()
     }
 
-    /// The ratio of the longest to the shortest axis of the distribution. For [`Cholesky`] it is the ratio of the largest to the
-    /// smallest number on the factor's diagonal, a lower bound of the ratio of the axes.
+    /// Computes the ratio of the longest to the shortest axis of the distribution. For [`Cholesky`], this is the ratio
+    /// of the largest to the smallest number on the diagonal of the factor. That is only a lower bound of the ratio of
+    /// the axes.
     pub fn axis_ratio(&self) -> f64 {
         self.distribution.axis_ratio()
     }
 }
 
 impl SeparableCmaEs {
-    /// The variances \[genes\], the diagonal of C. Individuals are drawn with sigma^2 times them.
+    /// Gets the variance of each gene \[genes\], which is the diagonal of C. Note that individuals are drawn with
+    /// sigma^2 times these.
     pub fn variances(&self) -> &[f64] {
         &self.distribution.covariance.variances
     }

@@ -9,50 +9,52 @@ use crate::population::Population;
 /// The limits of a step size.
 pub(crate) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
 
-/// A configuration from which a search of one normal distribution starts.
+/// A configuration that a search with one normal distribution can start from.
 pub trait Start: Clone + core::fmt::Debug + PartialEq {
-    /// The initial mean and step size, and the number of individuals.
+    /// Gets the initial mean, the initial step size and the number of individuals.
     fn start(&self) -> (&[f64], f64, usize);
 
-    /// Weights and learning rates.
+    /// Computes weights and learning rates.
     fn coefficients(&self) -> Coefficients;
 
-    /// Checks every number.
+    /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
     /// An error that names the first wrong number.
     fn check(&self) -> Result<(), EvoError>;
 }
 
-/// The configuration of [`CmaEs`](crate::covariance::CmaEs).
+/// Configuration of [`CmaEs`](crate::covariance::CmaEs).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CmaEsConfig {
-    /// The initial mean m, a number for each gene, of magnitude up to 10^100.
+    /// Initial mean m with a number for each gene. Each can have a magnitude of up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes. About a third of the distance to the
-    /// optimum in each gene is a good choice.
+    /// Initial step size sigma, 10^-100 to 10^100, in the unit of the genes. If you don't have a better guess, use
+    /// about a third of the distance to the optimum in each gene.
     pub sigma: f64,
-    /// Number of individuals lambda, at least 2. \[Hansen2016\] eq. 48.
+    /// Number of individuals lambda in each generation, at least 2. The default is that of \[Hansen2016\] eq. 48.
     pub population: usize,
-    /// Negative weights for the worse half. \[Hansen2016\] eq. 53.
+    /// Set this to true to use negative weights for the worse half of the individuals, \[Hansen2016\] eq. 53.
     pub active: bool,
-    /// The rate of the rank-one update `c_1`, 0 to 1, if not that of \[Hansen2016\] eq. 57.
+    /// Rate of the rank-one update `c_1`, 0 to 1. If this is `None`, the rate of \[Hansen2016\] eq. 57 is used.
     pub rank_one_rate: Option<f64>,
-    /// The rate of the rank-mu update `c_mu`, 0 to 1 - `c_1`, if not that of \[Hansen2016\] eq. 58.
+    /// Rate of the rank-mu update `c_mu`, 0 to 1 - `c_1`. If this is `None`, the rate of \[Hansen2016\] eq. 58 is used.
     pub rank_mu_rate: Option<f64>,
-    /// The damping of the step size `d_sigma`, 0.001 to 1000, if not that of \[Hansen2016\] eq. 55.
+    /// Damping of the step size `d_sigma`, 0.001 to 1000. If this is `None`, the damping of \[Hansen2016\] eq. 55 is
+    /// used.
     pub damping: Option<f64>,
 }
 
 impl CmaEsConfig {
-    /// The defaults of \[Hansen2016\] table 1 for n genes: 4 + 3 ln n individuals, rounded down, and negative weights.
+    /// Creates a configuration with the defaults of \[Hansen2016\] table 1. For n genes it has 4 + 3 ln n individuals,
+    /// rounded down, and it uses negative weights.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let population = Population::default_size(mean.len());
         Self { mean, sigma, population, active: true, rank_one_rate: None, rank_mu_rate: None, damping: None }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] for no genes, no individuals, or more genes of a population or elements of the covariance matrix
@@ -90,27 +92,28 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
     mean.iter().try_for_each(|&x| check_range("mean", x, [-1e100, 1e100], "-1e100 to 1e100"))
 }
 
-/// The configuration of [`SeparableCmaEs`](crate::covariance::SeparableCmaEs).
+/// Configuration of [`SeparableCmaEs`](crate::covariance::SeparableCmaEs).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeparableCmaEsConfig {
-    /// The initial mean m, a number for each gene, of magnitude up to 10^100.
+    /// Initial mean m with a number for each gene. Each can have a magnitude of up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes. About a third of the distance to the
-    /// optimum in each gene is a good choice.
+    /// Initial step size sigma, 10^-100 to 10^100, in the unit of the genes. If you don't have a better guess, use
+    /// about a third of the distance to the optimum in each gene.
     pub sigma: f64,
-    /// Number of individuals lambda, at least 2.
+    /// Number of individuals lambda in each generation, at least 2.
     pub population: usize,
 }
 
 impl SeparableCmaEsConfig {
-    /// The defaults of \[Ros2008\] for n genes: 4 + 3 ln n individuals, rounded down.
+    /// Creates a configuration with the defaults of \[Ros2008\]. For n genes it has 4 + 3 ln n individuals, rounded
+    /// down.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let population = Population::default_size(mean.len());
         Self { mean, sigma, population }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].

@@ -19,7 +19,7 @@ use crate::strategy::{Strategy, next_generation};
 /// The most individuals of a run, in blocks: nine doublings.
 const MOST_BLOCKS: u32 = 1 << 9;
 
-/// The population sizes of the runs of [`CmaEsRestarts`].
+/// Determines the population sizes of the runs of [`CmaEsRestarts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -30,26 +30,27 @@ pub enum RestartSchedule {
     Bipop,
 }
 
-/// The configuration of [`CmaEsRestarts`].
+/// Configuration of [`CmaEsRestarts`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CmaEsRestartsConfig {
-    /// The first run. Its number of individuals is that of each generation.
+    /// Configuration of the first run. Its number of individuals is also that of every generation.
     pub first: CmaEsConfig,
-    /// The population sizes of later runs.
+    /// Determines the population sizes of later runs.
     pub schedule: RestartSchedule,
     /// The largest distance of the first mean to those of later runs, in each gene and in its unit, 0 to 10^100.
     pub spread: f64,
 }
 
 impl CmaEsRestartsConfig {
-    /// A schedule of runs whose means lie at most twice the first step size from the first mean, as in \[Hansen2009\].
+    /// Creates a schedule of runs. As in \[Hansen2009\], their means are at most twice the initial step size away from
+    /// the first mean.
     pub fn new(first: CmaEsConfig, schedule: RestartSchedule) -> Self {
         let spread = 2.0 * first.sigma;
         Self { first, schedule, spread }
     }
 
-    /// Checks every number.
+    /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
     /// The errors of [`CmaEsConfig::validate`]. [`EvoError::Config`] if the largest run, of 512 times as many individuals
@@ -131,7 +132,7 @@ pub struct CmaEsRestarts {
 }
 
 impl CmaEsRestarts {
-    /// A search at the first generation of its first run.
+    /// Creates a new search at the first generation of its first run.
     ///
     /// # Errors
     /// The errors of [`CmaEsRestartsConfig::validate`].
@@ -150,27 +151,28 @@ impl CmaEsRestarts {
         Ok(search)
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &CmaEsRestartsConfig {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The number of the current run, from 0.
+    /// Gets the number of the current run, starting at 0.
     pub fn run(&self) -> u32 {
         self.run.number
     }
 
-    /// The individuals of a generation of the current run.
+    /// Number of individuals in a generation of the current run. Note that this can be larger than the number of
+    /// genomes in a generation of this strategy.
     pub fn individuals(&self) -> usize {
         self.points.len()
     }
 
-    /// The step size sigma.
+    /// Gets the step size sigma of the current run.
     pub fn sigma(&self) -> f64 {
         self.distribution.sigma
     }

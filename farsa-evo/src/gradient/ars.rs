@@ -13,7 +13,7 @@ use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::search::{Algorithm, Row, Search, Step};
 
-/// The configuration of [`Ars`].
+/// Configuration of [`Ars`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ArsConfig {
@@ -36,7 +36,7 @@ impl ArsConfig {
         Self { mean, directions, top_directions: directions, step_size: 0.02, noise: 0.03 }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -79,14 +79,14 @@ impl ArsConfig {
 /// Euclidean lengths of the latest step and of the point.
 pub type Ars = Search<ArsState>;
 
-/// The state of [`Ars`].
+/// Internal state of [`Ars`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArsState {
     samples: Mirrored,
 }
 
 impl Ars {
-    /// The point \[genes\] around which the individuals lie.
+    /// Gets the point \[genes\] around which the individuals are placed.
     pub fn mean(&self) -> &[f64] {
         &self.state.samples.mean
     }

@@ -13,7 +13,7 @@ use crate::population::Population;
 use crate::search::{Algorithm, Row, Search, Step};
 use crate::strategy::RecordKind;
 
-/// The configuration of [`OpenAiEs`].
+/// Configuration of [`OpenAiEs`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OpenAiEsConfig {
@@ -40,7 +40,7 @@ impl OpenAiEsConfig {
         Self { mean, pairs, sigma, learning_rate: 0.01, weight_decay, optimizer: Optimizer::ADAM }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -81,7 +81,7 @@ impl OpenAiEsConfig {
 /// Euclidean lengths of the latest step and of the point.
 pub type OpenAiEs = Search<OpenAiEsState>;
 
-/// The state of [`OpenAiEs`].
+/// Internal state of [`OpenAiEs`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenAiEsState {
     memory: Memory,
@@ -89,7 +89,7 @@ pub struct OpenAiEsState {
 }
 
 impl OpenAiEs {
-    /// The point \[genes\] around which the individuals lie.
+    /// Gets the point \[genes\] around which the individuals are placed.
     pub fn mean(&self) -> &[f64] {
         &self.state.samples.mean
     }

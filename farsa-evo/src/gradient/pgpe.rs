@@ -27,13 +27,13 @@ pub enum PgpeFitness {
     Raw,
 }
 
-/// The configuration of [`Pgpe`].
+/// Configuration of [`Pgpe`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PgpeConfig {
     /// The center (x, or mu) of the first generation \[genes\], within 1e100 of zero.
     pub mean: Vec<f64>,
-    /// The standard deviation (sigma) of every gene of the first generation, 1e-100 to 1e100.
+    /// Initial standard deviation (sigma) of every gene, 1e-100 to 1e100.
     pub sigma: f64,
     /// Number of symmetric pairs: a generation has twice as many individuals (lambda).
     pub pairs: usize,
@@ -70,7 +70,7 @@ impl PgpeConfig {
         }
     }
 
-    /// Checks every number.
+    /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -114,7 +114,7 @@ impl PgpeConfig {
 /// the center and the smallest and the largest standard deviation.
 pub type Pgpe = Search<PgpeState>;
 
-/// The state of [`Pgpe`].
+/// Internal state of [`Pgpe`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PgpeState {
     mean: Vec<f64>,
@@ -130,7 +130,7 @@ impl Pgpe {
         &self.state.mean
     }
 
-    /// The standard deviations \[genes\] of the generation that waits for its fitness.
+    /// Gets the standard deviations \[genes\] of the distribution that the current generation is drawn from.
     pub fn sigmas(&self) -> &[f64] {
         &self.state.sigmas
     }

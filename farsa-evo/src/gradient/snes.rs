@@ -13,13 +13,13 @@ use crate::population::Population;
 use crate::search::{Algorithm, Row, Search, Step};
 use crate::strategy::RecordKind;
 
-/// The configuration of [`Snes`].
+/// Configuration of [`Snes`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SnesConfig {
-    /// The mean (mu) of the first generation \[genes\], within 1e100 of zero.
+    /// Initial mean (mu) \[genes\], within 1e100 of zero.
     pub mean: Vec<f64>,
-    /// The standard deviation (sigma) of every gene of the first generation, 1e-100 to 1e100.
+    /// Initial standard deviation (sigma) of every gene, 1e-100 to 1e100.
     pub sigma: f64,
     /// Number of individuals of a generation (lambda), at least 2.
     pub population: usize,
@@ -43,7 +43,7 @@ impl SnesConfig {
         }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -81,7 +81,7 @@ impl SnesConfig {
 /// [`diagnostics`](crate::Strategy::diagnostics) are the smallest and the largest standard deviation.
 pub type Snes = Search<SnesState>;
 
-/// The state of [`Snes`].
+/// Internal state of [`Snes`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SnesState {
     utilities: Vec<f64>,
@@ -90,12 +90,12 @@ pub struct SnesState {
 }
 
 impl Snes {
-    /// The mean \[genes\] of the generation that waits for its fitness.
+    /// Gets the mean \[genes\] of the distribution that the current generation is drawn from.
     pub fn mean(&self) -> &[f64] {
         &self.state.mean
     }
 
-    /// The standard deviations \[genes\] of the generation that waits for its fitness.
+    /// Gets the standard deviations \[genes\] of the distribution that the current generation is drawn from.
     pub fn sigmas(&self) -> &[f64] {
         &self.state.sigmas
     }

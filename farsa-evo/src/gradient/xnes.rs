@@ -18,13 +18,13 @@ use crate::strategy::RecordKind;
 /// The most genes: a matrix of 8 MiB, and some 10^10 products a generation.
 const MOST_GENES: usize = 1024;
 
-/// The configuration of [`Xnes`].
+/// Configuration of [`Xnes`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct XnesConfig {
-    /// The mean (mu) of the first generation [genes, at most 1024], within 1e100 of zero.
+    /// Initial mean (mu) [genes, at most 1024], within 1e100 of zero.
     pub mean: Vec<f64>,
-    /// The standard deviation (sigma) of every gene of the first generation, 1e-100 to 1e100.
+    /// Initial standard deviation (sigma) of every gene, 1e-100 to 1e100.
     pub sigma: f64,
     /// Number of individuals of a generation (lambda), at least 2.
     pub population: usize,
@@ -52,7 +52,7 @@ impl XnesConfig {
         }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -98,7 +98,7 @@ impl XnesConfig {
 /// [`diagnostics`](crate::Strategy::diagnostics) is sigma.
 pub type Xnes = Search<XnesState>;
 
-/// The state of [`Xnes`].
+/// Internal state of [`Xnes`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct XnesState {
     utilities: Vec<f64>,
@@ -109,7 +109,7 @@ pub struct XnesState {
 }
 
 impl Xnes {
-    /// The mean \[genes\] of the generation that waits for its fitness.
+    /// Gets the mean \[genes\] of the distribution that the current generation is drawn from.
     pub fn mean(&self) -> &[f64] {
         &self.state.mean
     }

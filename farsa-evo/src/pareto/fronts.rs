@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Returns true if objectives \[m\] are nowhere smaller than others, and somewhere larger.
+/// Checks whether objectives \[m\] dominate others. This is the case if they are nowhere smaller and somewhere larger.
 pub fn dominates(objectives: &[f64], others: &[f64]) -> bool {
     let mut larger = false;
     for (own, other) in objectives.iter().zip(others) {
@@ -15,9 +15,9 @@ pub fn dominates(objectives: &[f64], others: &[f64]) -> bool {
     larger
 }
 
-/// Returns the fronts of individuals with these objectives [individuals x m], where larger is better. The first front has
-/// the individuals that no other dominates, the second those that only the first dominates, and so on. Each is in order of
-/// index. There are no fronts for m = 0.
+/// Sorts individuals with these objectives [individuals x m] into fronts, where larger is better. The first front has
+/// the individuals that no other dominates, the second those that only the first dominates, and so on. Each front is in
+/// order of index. If m is 0, there are no fronts.
 ///
 /// It asks at most 3 n^2 / 2 times whether one dominates another, and keeps a number for each individual.
 ///
@@ -60,7 +60,8 @@ pub fn non_dominated_fronts(objectives: &[f64], m: usize) -> Vec<Vec<usize>> {
     fronts
 }
 
-/// The crowding distance of each individual of a front \[front\], given the objectives of all [individuals x m].
+/// Computes the crowding distance of each individual of a front \[front\], given the objectives of all individuals
+/// [individuals x m].
 ///
 /// For each objective, in the order of its values, it adds the difference of an individual's neighbors divided by the
 /// range. The first and the last have infinite distance. Equals are in the order of the front. An objective with equal
@@ -93,8 +94,8 @@ pub fn crowding_distances(objectives: &[f64], m: usize, front: &[usize]) -> Vec<
     distances
 }
 
-/// Returns the area above a reference point that points of two objectives dominate, where larger is better. It is exact up
-/// to rounding.
+/// Computes the area above a reference point that is dominated by points with two objectives, where larger is better.
+/// The result is exact up to rounding.
 ///
 /// Points that are not above the reference in both objectives, or have a NaN, add nothing.
 ///

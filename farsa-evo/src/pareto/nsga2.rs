@@ -19,35 +19,36 @@ use crate::scores::Scores;
 use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Collection, Genealogy, Member, Strategy, next_scored};
 
-/// The configuration of [`Nsga2`](crate::pareto::Nsga2).
+/// Configuration of [`Nsga2`](crate::pareto::Nsga2).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nsga2Config {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
+    /// Range of each gene, from low to high \[genes\], -1e100 to 1e100. You can freeze a gene by giving it equal ends.
     pub bounds: Vec<[f64; 2]>,
-    /// Number of objectives m, at least 1.
+    /// Number of objectives m, which must be at least 1.
     pub objectives: usize,
-    /// Number of individuals N of a generation, which is also that of the parents.
+    /// Number of individuals N in each generation. There are also N parents.
     pub population: usize,
-    /// The probability, 0 to 1, that a child has two parents, `p_c`.
+    /// Probability (0 to 1) that a child has two parents, `p_c`.
     pub crossover_rate: f64,
-    /// The distribution index of crossover `eta_c`, 0 to 1000: the larger, the nearer to the parents.
+    /// Distribution index of crossover `eta_c`, 0 to 1000. With a larger index, children are closer to their parents.
     pub crossover_eta: f64,
-    /// The probability, 0 to 1, that a gene is mutated, `p_m`.
+    /// Probability (0 to 1) that a gene is mutated, `p_m`.
     pub mutation_rate: f64,
-    /// The distribution index of mutation `eta_m`, 0 to 1000: the larger, the smaller the steps.
+    /// Distribution index of mutation `eta_m`, 0 to 1000. With a larger index, steps are smaller.
     pub mutation_eta: f64,
 }
 
 impl Nsga2Config {
-    /// The settings of \[Deb2002\] section IV: 100 individuals, `p_c` 0.9, `p_m` one gene of a genome, both indices 20.
+    /// Creates a configuration with the settings of \[Deb2002\] section IV. There are 100 individuals, and `p_c` is
+    /// 0.9. On average one gene of a genome is mutated, and both indices are 20.
     pub fn new(bounds: Vec<[f64; 2]>, objectives: usize) -> Self {
         let mutation_rate = 1.0 / bounds.len().max(1) as f64;
         let (crossover_rate, crossover_eta, mutation_eta) = (0.9, 20.0, 20.0);
         Self { bounds, objectives, population: 100, crossover_rate, crossover_eta, mutation_rate, mutation_eta }
     }
 
-    /// Checks every number.
+    /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
     /// [`EvoError::Config`] for sizes, [`EvoError::OutOfRange`] for other numbers.
@@ -136,7 +137,7 @@ impl Standing {
 }
 
 impl Nsga2 {
-    /// A search at its random initial generation.
+    /// Creates a new search with a random initial generation.
     ///
     /// # Errors
     /// The errors of [`Nsga2Config::validate`].
@@ -148,24 +149,24 @@ impl Nsga2 {
         Ok(search)
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &Nsga2Config {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The genes \[genes\] and objectives \[m\] of the parents, the first fronts first. `None` before the first generation
-    /// is reported.
+    /// An iterator over the genes \[genes\] and objectives \[m\] of the parents, beginning with the first front. It is
+    /// empty before the first generation is reported.
     pub fn parents(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         let m = self.config.objectives;
         self.parents.iter().flat_map(move |parents| parents.genes.iter().zip(parents.objectives.chunks_exact(m)))
     }
 
-    /// The parents that no other parent dominates, as [`parents`](Self::parents).
+    /// An iterator over the parents that no other parent dominates. Use this to get the result of a search.
     pub fn front(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         self.parents().take(self.front_size())
     }

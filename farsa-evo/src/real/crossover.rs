@@ -13,7 +13,7 @@ pub enum Crossover {
     None,
     /// Each gene is one parent's or the other's \[Syswerda1989\].
     Uniform {
-        /// The probability, 0 to 1, that a gene is the second parent's.
+        /// Probability (0 to 1) that a gene is the second parent's.
         rate: f64,
     },
     /// BLX-alpha. Each gene is uniform in the interval between the parents' genes, which is widened at both ends by alpha

@@ -15,55 +15,57 @@ use crate::strategy::RecordKind;
 /// The largest size of a gene or a step size of a configuration. Genes grow no further than by steps of this size.
 const LARGEST: f64 = 1e100;
 
-/// Which individuals are selected from, \[Beyer2002\].
+/// Determines which individuals the next parents are selected from, \[Beyer2002\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Survival {
-    /// (mu, lambda): the offspring alone.
+    /// (mu, lambda) selection, in which only the offspring can be selected.
     Comma,
-    /// (mu + lambda), parents and offspring. Parents keep their fitness.
+    /// (mu + lambda) selection from parents and offspring. Parents keep their fitness and are not evaluated again.
     Plus,
-    /// (mu + lambda) where the parents are evaluated again in every generation.
+    /// (mu + lambda) selection in which the parents are evaluated again in every generation. This is useful if fitness
+    /// is noisy.
     PlusEvaluatedAgain,
 }
 
-/// The recombination of the genes, or the step sizes, of rho parents, \[Beyer2002\].
+/// Method used to recombine the genes or the step sizes of rho parents, \[Beyer2002\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recombination {
-    /// No recombination. The values are those of the first drawn parent.
+    /// No recombination. All values are copied from the first parent that was drawn.
     None,
-    /// The mean of all rho parents.
+    /// Each value is the mean over all rho parents.
     Intermediate,
-    /// Each from one of the rho parents, drawn for it.
+    /// Each value is copied from one of the rho parents, which is drawn separately for every value.
     Discrete,
 }
 
-/// The number of step sizes of an individual and their learning rates, \[Beyer2002\].
+/// Number of step sizes that an individual has, and their learning rates, \[Beyer2002\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StepSizes {
-    /// One for all genes: `sigma e^(tau N)`.
+    /// A single step size for all genes, `sigma e^(tau N)`.
     One {
-        /// The learning rate tau, 0 to 10.
+        /// Learning rate tau, 0 to 10.
         tau: f64,
     },
-    /// One for each gene: `sigma_i e^(tau_0 N) e^(tau N_i)`.
+    /// A separate step size for each gene, `sigma_i e^(tau_0 N) e^(tau N_i)`.
     PerGene {
-        /// The learning rate `tau_0` of what all have in common, 0 to 10.
+        /// Learning rate `tau_0` of the factor that all step sizes share, 0 to 10.
         tau_0: f64,
-        /// The learning rate tau of each, 0 to 10.
+        /// Learning rate tau of each step size, 0 to 10.
         tau: f64,
     },
 }
 
 impl StepSizes {
-    /// One step size, with tau = 1 / sqrt(n) of n genes.
+    /// Creates a single step size with the recommended learning rate for n genes, tau = 1 / sqrt(n).
     pub fn one(genes: usize) -> Self {
         Self::One { tau: 1.0 / Scalar::sqrt(genes.max(1) as f64) }
     }
 
-    /// A step size for each gene, with `tau_0` = 1 / sqrt(2 n) and tau = 1 / sqrt(2 sqrt(n)) of n genes.
+    /// Creates a step size for each gene. For n genes, the learning rates are `tau_0` = 1 / sqrt(2 n) and tau = 1 /
+    /// sqrt(2 sqrt(n)).
     pub fn per_gene(genes: usize) -> Self {
         let n = genes.max(1) as f64;
         Self::PerGene { tau_0: 1.0 / Scalar::sqrt(2.0 * n), tau: 1.0 / Scalar::sqrt(2.0 * Scalar::sqrt(n)) }
@@ -78,36 +80,37 @@ impl StepSizes {
     }
 }
 
-/// The configuration of [`EvolutionStrategy`].
+/// Configuration of [`EvolutionStrategy`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvolutionStrategyConfig {
-    /// Where the search begins \[genes\], -1e100 to 1e100.
+    /// Point from which the search starts \[genes\], within -1e100 to 1e100.
     pub mean: Vec<f64>,
-    /// The first step size sigma, in the unit of the genes, `smallest_step` to 1e100.
+    /// Initial step size sigma, in the unit of the genes. It must be between `smallest_step` and 1e100.
     pub initial_step: f64,
-    /// The number of parents mu, 1 to the number of offspring.
+    /// Number of parents mu, from 1 to the number of offspring.
     pub parents: usize,
-    /// The number of offspring lambda of a generation.
+    /// Number of offspring lambda in each generation.
     pub offspring: usize,
-    /// The mixing number rho, the number of different parents of a child, 1 to mu. No effect without recombination.
+    /// Mixing number rho, which is the number of different parents of a child, 1 to mu. This has no effect without
+    /// recombination.
     pub mixing: usize,
-    /// Which individuals are selected from.
+    /// Determines which individuals the next parents are selected from.
     pub survival: Survival,
-    /// Recombination of genes.
+    /// Method used to recombine genes.
     pub recombination: Recombination,
-    /// Recombination of step sizes.
+    /// Method used to recombine step sizes.
     pub step_recombination: Recombination,
     /// Number and learning rates of step sizes.
     pub step_sizes: StepSizes,
-    /// The step size that is never undercut, in the unit of the genes, 1e-100 to 1e100.
+    /// Lower limit of all step sizes, in the unit of the genes, 1e-100 to 1e100.
     pub smallest_step: f64,
 }
 
 impl EvolutionStrategyConfig {
-    /// A (15/15, 100) strategy that begins around `mean` \[genes\] with this step size. It has intermediate recombination
-    /// of genes and step sizes, and one step size for each gene. Its learning rates are those of \[Beyer2002\]. (15, 100)
-    /// is the classical choice of its authors, the smallest step of 1e-12 is ours.
+    /// Creates a (15/15, 100) strategy that starts around `mean` \[genes\] with the given step size. It has a step size
+    /// for each gene and uses intermediate recombination for genes and step sizes. Its learning rates are those of
+    /// \[Beyer2002\]. While (15, 100) is the classical choice of its authors, the smallest step of 1e-12 is ours.
     pub fn new(mean: Vec<f64>, initial_step: f64) -> Self {
         let step_sizes = StepSizes::per_gene(mean.len());
         Self {
@@ -124,7 +127,7 @@ impl EvolutionStrategyConfig {
         }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -201,7 +204,7 @@ const FARTHEST: f64 = 1e120;
 /// ```
 pub type EvolutionStrategy = Search<EvolutionStrategyState>;
 
-/// The state of [`EvolutionStrategy`].
+/// Internal state of [`EvolutionStrategy`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvolutionStrategyState {
     /// The selected individuals, best first \[mu\]. Empty in generation 0.
@@ -222,13 +225,14 @@ struct Individual {
 }
 
 impl EvolutionStrategy {
-    /// The step sizes of the individuals that wait for their fitness [individuals x (1 or genes)], in the unit of the
-    /// genes.
+    /// Gets the step sizes of the individuals that are waiting for their fitness [individuals x (1 or genes)]. They are
+    /// in the unit of the genes.
     pub fn step_sizes(&self) -> &[f64] {
         &self.state.steps
     }
 
-    /// The fitness that the current parents keep, best first \[mu\]. Empty in generation 0 and without [`Survival::Plus`].
+    /// Fitness of the current parents, best first \[mu\]. This is empty in generation 0, and always empty without
+    /// [`Survival::Plus`].
     pub fn parent_fitness(&self) -> Vec<Fitness> {
         self.state.kept(&self.config).iter().map(|parent| parent.fitness).collect()
     }

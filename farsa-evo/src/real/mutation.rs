@@ -11,7 +11,7 @@ use crate::real::bounds::reflect;
 pub enum RealMutation {
     /// The same step size always.
     Gaussian {
-        /// The probability, 0 to 1, that a gene is mutated.
+        /// Probability (0 to 1) that a gene is mutated.
         rate: f64,
         /// The standard deviation, as a share of the gene's range, 0 to 1.
         sigma: f64,
@@ -20,7 +20,7 @@ pub enum RealMutation {
     /// genes are then mutated with it \[Beyer2002\]. Deviations: there is one step size, not one for each gene. It is a
     /// share of the range, and at most 1.
     SelfAdaptive {
-        /// The probability, 0 to 1, that a gene is mutated. 1 in the source.
+        /// Probability (0 to 1) that a gene is mutated. 1 in the source.
         rate: f64,
         /// The first step size, as a share of the gene's range, from `smallest` to 1.
         initial: f64,

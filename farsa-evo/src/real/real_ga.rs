@@ -16,13 +16,13 @@ use crate::search::{Algorithm, Search, Step};
 use crate::snapshot::{StateReader, between_states, push_indices, push_reals};
 use crate::strategy::RecordKind;
 
-/// The configuration of [`RealGa`](crate::real::RealGa).
+/// Configuration of [`RealGa`](crate::real::RealGa).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RealGaConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
+    /// Range of each gene, from low to high \[genes\], -1e100 to 1e100. You can freeze a gene by giving it equal ends.
     pub bounds: Vec<[f64; 2]>,
-    /// Number of individuals of a generation.
+    /// Number of individuals in each generation.
     pub population: usize,
     /// Number of the best that stay unchanged, as the first individuals, 0 to population - 1.
     pub elites: usize,
@@ -30,7 +30,7 @@ pub struct RealGaConfig {
     pub selection: Selection,
     /// The crossover of two parents.
     pub crossover: Crossover,
-    /// The probability, 0 to 1, that a child has two parents. No effect for [`Crossover::None`].
+    /// Probability (0 to 1) that a child has two parents. No effect for [`Crossover::None`].
     pub crossover_rate: f64,
     /// The mutation of genes.
     pub mutation: RealMutation,
@@ -55,7 +55,7 @@ impl RealGaConfig {
         }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -104,7 +104,7 @@ impl RealGaConfig {
 /// ```
 pub type RealGa = Search<RealGaState>;
 
-/// The state of [`RealGa`].
+/// Internal state of [`RealGa`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct RealGaState {
     selector: Selector,

@@ -13,15 +13,15 @@ use crate::search::{Algorithm, Search, Step};
 use crate::snapshot::{StateReader, between_states, push_indices, push_reals};
 use crate::strategy::RecordKind;
 
-/// The configuration of [`SteadyState`].
+/// Configuration of [`SteadyState`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyStateConfig {
-    /// The range of each gene, low to high \[genes\], -1e100 to 1e100. Equal ends freeze a gene.
+    /// Range of each gene, from low to high \[genes\], -1e100 to 1e100. You can freeze a gene by giving it equal ends.
     pub bounds: Vec<[f64; 2]>,
     /// Number of individuals, parents and offspring together: even. In the source `popsize`.
     pub population: usize,
-    /// The probability, 0 to 1, that a gene is mutated. 1 in the source.
+    /// Probability (0 to 1) that a gene is mutated. 1 in the source.
     pub rate: f64,
     /// The standard deviation of mutation, as a share of the gene's range, 0 to 1. In the source `mutation`, in the
     /// gene's unit.
@@ -38,7 +38,7 @@ impl SteadyStateConfig {
         Self { bounds, population: 20, rate: 1.0, sigma: 0.02, noise: 0.0 }
     }
 
-    /// Checks every number.
+    /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
     /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
@@ -79,7 +79,7 @@ impl SteadyStateConfig {
 /// ```
 pub type SteadyState = Search<SteadyStateParents>;
 
-/// The state of [`SteadyState`].
+/// Internal state of [`SteadyState`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyStateParents {
     /// The parent of each individual, itself for one that stayed. Empty in generation 0.

@@ -1,4 +1,4 @@
-//! Records, which rebuild every genome of a search.
+//! A record that can rebuild every genome of a search.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -14,7 +14,7 @@ use crate::score_shape::ScoreShape;
 use crate::scores::Scores;
 use crate::strategy::Strategy;
 
-/// The reported fitness of every generation, in the form that the strategy depends on.
+/// A record of the reported fitness of every generation, in the form that the strategy depends on.
 ///
 /// A strategy is a pure function of its configuration, its seed and the reported fitness. Replaying the recorded fitness
 /// into a new instance therefore reconstructs the same genomes, bit for bit, without evaluations. A generation of a hundred
@@ -65,7 +65,7 @@ struct Keyframe {
 }
 
 impl Record {
-    /// Starts the record of a strategy at generation 0.
+    /// Creates an empty record for a strategy that is still in generation 0.
     ///
     /// # Errors
     /// [`EvoError::Record`] for a strategy past generation 0, or one that requires recorded genomes and cannot save its state.
@@ -86,7 +86,7 @@ impl Record {
         Progress { shape: self.shape, generations: self.generations(), saved, state, states }
     }
 
-    /// Returns a writer that continues this record.
+    /// Creates a writer that continues this record.
     pub fn writer(&self) -> RecordWriter {
         RecordWriter::going_on(self.progress())
     }
@@ -103,7 +103,8 @@ impl Record {
         self.keyframes.push(Keyframe { generation: self.generations(), end: self.states.len() });
     }
 
-    /// Reports the fitness \[individuals\] of a generation to a strategy and records it.
+    /// Reports the fitness \[individuals\] of a generation to a strategy and records it. Use this instead of
+    /// [`Strategy::tell`] if you keep a record.
     ///
     /// # Errors
     /// [`EvoError::Record`] for a strategy that is not at the end of this record, that has another number of champions than
@@ -119,7 +120,8 @@ impl Record {
         Ok(())
     }
 
-    /// Reports the scores of a generation to a strategy and records them.
+    /// Reports the scores of a generation to a strategy and records them. This is the counterpart of
+    /// [`tell`](Self::tell) for strategies that require scores.
     ///
     /// # Errors
     /// The errors of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
@@ -141,7 +143,7 @@ impl Record {
         }
     }
 
-    /// Checks that the record fits a strategy.
+    /// Checks that this record fits a strategy.
     ///
     /// # Errors
     /// [`EvoError::Record`].
@@ -149,7 +151,8 @@ impl Record {
         self.shape.check_strategy(strategy)
     }
 
-    /// Number of recorded generations, which is also the number of the current generation.
+    /// Number of generations recorded so far. Since generations are numbered from 0, this is also the number of the
+    /// current one.
     pub fn generations(&self) -> u32 {
         (self.frames.len() / self.shape.frame().max(1)) as u32
     }
@@ -159,12 +162,12 @@ impl Record {
         self.shape.populations
     }
 
-    /// Number of individuals of each population.
+    /// Number of individuals in each population.
     pub fn size(&self) -> usize {
         self.shape.individuals / self.shape.populations.max(1)
     }
 
-    /// Bytes of what was recorded, saved states included.
+    /// Computes how many bytes the recorded data takes, including saved states.
     pub fn bytes(&self) -> usize {
         self.frames.len() + self.states.len()
     }
@@ -175,12 +178,13 @@ impl Record {
         frame.split_at_checked(self.shape.populations * self.shape.width())
     }
 
-    /// The best individual of a population in a recorded generation, counted through all populations.
+    /// Gets the best individual of a population in a recorded generation. Its index counts through all populations.
     pub fn champion(&self, population: usize, generation: u32) -> Option<usize> {
         self.shape.indices(self.frame(generation)?.0).nth(population)
     }
 
-    /// The individuals of a recorded generation, best first, equals by index. `None` where genomes are recorded.
+    /// Sorts the individuals of a recorded generation, best first, with ties broken by index. If genomes are recorded
+    /// instead of fitness, this returns `None`.
     pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
         match self.shape.recorded {
             Kept::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
@@ -206,8 +210,8 @@ impl Record {
         }
     }
 
-    /// Advances a strategy, new or at an earlier generation of this record, to the given generation before its fitness is
-    /// reported.
+    /// Advances a strategy to the given generation, before the fitness of that generation is reported. The strategy can
+    /// be new or at an earlier generation of this record.
     ///
     /// # Errors
     /// [`EvoError::Record`] for a generation beyond the record or before that of the strategy, for a strategy of another kind or
@@ -244,8 +248,8 @@ impl Record {
         Ok(())
     }
 
-    /// Returns the genomes of a recorded generation [individuals x genes], with a strategy as for
-    /// [`rebuild`](Self::rebuild).
+    /// Rebuilds the genomes of a recorded generation [individuals x genes]. The strategy must satisfy the same
+    /// requirements as for [`rebuild`](Self::rebuild).
     ///
     /// # Errors
     /// The errors of [`rebuild`](Self::rebuild).
@@ -268,14 +272,14 @@ impl Record {
         Ok(population)
     }
 
-    /// The entry of a recorded generation, for a file that grows by it. [`push`](Self::push) reads it.
+    /// Gets the entry of a recorded generation. You can append it to a file and read it back with [`push`](Self::push).
     pub fn entry(&self, generation: u32) -> Option<RecordEntry<'_>> {
         let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
         let place = self.keyframes.binary_search_by_key(&(generation + 1), |keyframe| keyframe.generation);
         Some(RecordEntry { frame, state: place.ok().and_then(|place| self.state(place)) })
     }
 
-    /// Appends a generation from its [`entry`](Self::entry), without a strategy.
+    /// Appends a generation from its [`entry`](Self::entry). This does not need a strategy.
     ///
     /// # Errors
     /// [`EvoError::State`] for an entry of another size or an impossible generation, [`EvoError::NanFitness`],
@@ -324,7 +328,7 @@ impl Record {
         Ok(())
     }
 
-    /// Discards all generations from this one on.
+    /// Discards all generations from the given one on.
     pub fn truncate(&mut self, generations: u32) {
         self.frames.truncate((generations as usize).saturating_mul(self.shape.frame()));
         self.keyframes.retain(|keyframe| keyframe.generation <= generations);

@@ -1,4 +1,4 @@
-//! Records that are written generation by generation.
+//! A record that is written generation by generation.
 
 use alloc::vec::Vec;
 
@@ -9,17 +9,17 @@ use crate::recording::progress::{Progress, Taken};
 use crate::scores::Scores;
 use crate::strategy::Strategy;
 
-/// The entry of a [`Record`](crate::Record) for one generation.
+/// An entry of a [`Record`](crate::Record), which holds one generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordEntry<'r> {
-    /// The champion of each population, then what was recorded.
+    /// Champion of each population, followed by the recorded data.
     pub frame: &'r [u8],
-    /// The state that the strategy was in afterwards, where it was saved.
+    /// State of the strategy after this generation, if it was saved.
     pub state: Option<&'r [u8]>,
 }
 
-/// Records a search whose generations are written one by one, such as to a file. Its memory does not depend on the number
-/// of generations.
+/// A record whose generations are written one by one, such as to a file. Its memory does not depend on the number of
+/// generations, so it is suitable for very long searches.
 ///
 /// Its entries are those of a [`Record`](crate::Record) of the same search. [`Record::push`](crate::Record::push) reads
 /// them, and [`Record::writer`](crate::Record::writer) continues a record.
@@ -44,7 +44,7 @@ pub struct RecordWriter {
 }
 
 impl RecordWriter {
-    /// Starts with a strategy at generation 0.
+    /// Creates a writer for a strategy that is still in generation 0.
     ///
     /// # Errors
     /// The errors of [`Record::new`](crate::Record::new).
@@ -90,13 +90,13 @@ impl RecordWriter {
         self.last = Some(taken);
     }
 
-    /// The latest recorded generation, `None` before the first.
+    /// Gets the generation that was recorded last, or `None` before the first.
     pub fn entry(&self) -> Option<RecordEntry<'_>> {
         let (frame, state) = self.last.as_ref()?;
         Some(RecordEntry { frame, state: state.as_deref() })
     }
 
-    /// Number of recorded generations, including those before this writer.
+    /// Number of generations recorded so far. This includes the ones before this writer was created.
     pub fn generations(&self) -> u32 {
         self.progress.generations
     }

@@ -17,7 +17,7 @@ use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_b
 /// Number of individuals of a search of one parent and one mutant.
 pub(crate) const PARENT_AND_MUTANT: usize = 2;
 
-/// The configuration of [`OnePlusOne`](crate::words::OnePlusOne).
+/// Configuration of [`OnePlusOne`](crate::words::OnePlusOne).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OnePlusOneConfig {
@@ -42,7 +42,7 @@ impl OnePlusOneConfig {
         Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
     }
 
-    /// Checks every number.
+    /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
     /// [`EvoError::Config`].
@@ -59,7 +59,7 @@ impl OnePlusOneConfig {
         Ok(())
     }
 
-    /// The probability, 0 to 1, that mutation hits a bit of the mutant of a generation.
+    /// Probability (0 to 1) that mutation hits a bit of the mutant of a generation.
     pub fn rate(&self, generation: u32) -> f64 {
         (self.first_rate - self.rate_step * f64::from(generation)).max(self.last_rate)
     }
@@ -124,12 +124,12 @@ impl OnePlusOne {
         Ok(Self { config, seed, generation: 0, survivor: 0, sum, evaluations: 0, population })
     }
 
-    /// The configuration.
+    /// Gets the configuration that this search was created with.
     pub fn config(&self) -> &OnePlusOneConfig {
         &self.config
     }
 
-    /// The seed.
+    /// Gets the seed that this search was created with.
     pub fn seed(&self) -> u64 {
         self.seed
     }

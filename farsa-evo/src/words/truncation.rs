@@ -16,7 +16,7 @@ use crate::snapshot::{StateReader, largest, push_genes, push_indices};
 use crate::strategy::RecordKind;
 use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_bits};
 
-/// The configuration of [`TruncationGa`](crate::words::TruncationGa).
+/// Configuration of [`TruncationGa`](crate::words::TruncationGa).
 ///
 /// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the name of the
 /// mutation. Configurations from before this option have the same form.
@@ -28,7 +28,7 @@ pub struct GaConfig {
     pub genes: usize,
     /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
     pub gene_bits: u32,
-    /// Number of individuals of a generation.
+    /// Number of individuals in each generation.
     pub population: usize,
     /// Number of selected individuals. Each makes population / parents copies.
     pub parents: usize,
@@ -46,7 +46,7 @@ impl GaConfig {
         Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
     }
 
-    /// Checks every number.
+    /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
     /// [`EvoError::Config`].
@@ -136,7 +136,7 @@ impl From<GaConfig> for SavedConfig {
 /// ```
 pub type TruncationGa = Search<TruncationState>;
 
-/// The state of [`TruncationGa`].
+/// Internal state of [`TruncationGa`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruncationState {
     mutation: BitMutation,

@@ -1,4 +1,4 @@
-//! Many planar worlds of one arena that are stepped together, one in each lane of SIMD vectors.
+//! Many planar worlds of one arena that are stepped together in SIMD lanes.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -23,7 +23,8 @@ use crate::arena::view::{self as view, View};
 use crate::arena::world::{World, ports};
 use crate::articulated::lockstep::LANES;
 
-/// Worlds of one arena, one in each lane of SIMD vectors, all at their description's start at first.
+/// Many worlds of one arena, one in each lane of SIMD vectors. All of them start in the initial state of the
+/// description.
 ///
 /// Every world has the bits of a [`World`] with the same arrangement and commands, independent of its neighbors. It
 /// examines every body and has no grid, so lanes are for arenas of a few robots. While an attachment device holds or
@@ -61,7 +62,8 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Builds 8 or 16 worlds, stepped by these instructions. See [`crate::articulated::Batch::new`].
+    /// Creates a batch of 8 or 16 worlds that are stepped with the given instructions. See
+    /// [`crate::articulated::Batch::new`] for the choice of instructions.
     ///
     /// # Errors
     /// The fault of the description, or [`ArenaError::Lanes`] for another number of worlds.
@@ -79,22 +81,23 @@ impl Batch {
         Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, instructions), ring, alone })
     }
 
-    /// The instruction sets of this machine that there are steps for, narrowest first.
+    /// An iterator over the instruction sets of this machine that a batch can use, from the narrowest to the widest.
     pub fn instructions() -> impl Iterator<Item = Instructions> {
         crate::articulated::lockstep::instructions()
     }
 
-    /// Number of worlds.
+    /// Number of worlds in the batch.
     pub fn lanes(&self) -> usize {
         self.lanes
     }
 
-    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
+    /// Gets the numbers of the parts of a robot. If there is no such robot, the parts of the last one are returned.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.alone.parts(robot)
     }
 
-    /// One of the worlds. The last one for a number beyond it, which is a mistake.
+    /// Gets one of the worlds. If the index is out of range, this is the last world. Note that relying on this is a
+    /// mistake.
     #[inline]
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.lanes, "lane {index} of {}", self.lanes);
@@ -130,7 +133,7 @@ impl Batch {
         }
     }
 
-    /// Lets one control step pass in every world.
+    /// Advances every world by one control step.
     pub fn step(&mut self) {
         let attached = self.alone.model().attachments && (0..self.lanes).any(|lane| view::holds(&self.lane(lane)));
         match &self.lockstep {
@@ -175,7 +178,7 @@ impl fmt::Debug for Batch {
     }
 }
 
-/// One world of a [`Batch`]: the ports of a [`World`], no step.
+/// A single world of a [`Batch`]. It has the same ports as a [`World`], except that it cannot be stepped alone.
 ///
 /// Changes to it affect no other lane.
 #[derive(Debug)]
@@ -187,7 +190,7 @@ pub struct Lane<'a> {
 }
 
 impl Lane<'_> {
-    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
+    /// Gets the numbers of the parts of a robot. If there is no such robot, the parts of the last one are returned.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }

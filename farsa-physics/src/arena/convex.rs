@@ -1,4 +1,4 @@
-//! Convex obstacles of a planar world as data.
+//! Convex obstacles of a planar world, as data.
 
 use alloc::vec::Vec;
 
@@ -15,16 +15,16 @@ pub(crate) const GREY: [f64; 3] = [0.5; 3];
     serde(rename_all = "kebab-case", deny_unknown_fields)
 )]
 pub enum ConvexForm {
-    /// An upright prism on the ground.
+    /// An upright prism that rests on the ground.
     Prism {
-        /// Corners of its base, in turn, either way round [m].
+        /// Corners of its base in order, either clockwise or counter-clockwise [m].
         corners: Vec<[f64; 2]>,
         /// Height [m].
         height: f64,
     },
-    /// The convex hull of points, in any order, needs the feature `parry`.
+    /// Convex hull of a set of points, which can be in any order. This needs the feature `parry`.
     Hull {
-        /// The points: x, y and the height above the ground, which is not negative [m].
+        /// Points of the hull, given as x, y and the height above the ground [m]. The height must not be negative.
         points: Vec<[f64; 3]>,
     },
 }
@@ -53,14 +53,14 @@ pub enum ConvexForm {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Convex {
-    /// Its form and place.
+    /// Form and place of the obstacle.
     pub form: ConvexForm,
     /// Red, green and blue [0..1].
     pub color: [f64; 3],
 }
 
 impl Convex {
-    /// A gray upright prism over the convex polygon with these corners [m], of a height [m].
+    /// Creates a gray upright prism of the given height [m] over the convex polygon with these corners [m].
     ///
     /// Corners follow each other either way round. A corner on the straight line between its neighbors is allowed, a
     /// dent is not.
@@ -68,19 +68,20 @@ impl Convex {
         Self { form: ConvexForm::Prism { corners: corners.into(), height }, color: GREY }
     }
 
-    /// The gray convex hull of points [m], in any order. The third coordinate is the height above the ground.
+    /// Creates the gray convex hull of a set of points [m], which can be in any order. Their third coordinate is the
+    /// height above the ground.
     ///
     /// Needs the feature `parry`. Points within the hull are allowed.
     pub fn hull(points: &[[f64; 3]]) -> Self {
         Self { form: ConvexForm::Hull { points: points.into() }, color: GREY }
     }
 
-    /// Returns the obstacle in another color.
+    /// Sets the color of the obstacle.
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color, ..self }
     }
 
-    /// Returns the obstacle turned counter-clockwise about the origin by `heading` [rad], then moved by `at` [m].
+    /// Turns the obstacle counter-clockwise about the origin by `heading` [rad] and then moves it by `at` [m].
     pub fn placed(self, at: [f64; 2], heading: f64) -> Self {
         let (sine, cosine) = sin_cos(heading);
         let place = |x: f64, y: f64| [at[0] + (x * cosine - y * sine), at[1] + (x * sine + y * cosine)];
@@ -99,8 +100,8 @@ impl Convex {
         Self { form, ..self }
     }
 
-    /// Corners of its outline as seen from above, counter-clockwise from the lowest x [m]. Fewer than three if it has
-    /// no area.
+    /// Computes the corners of its outline as seen from above [m]. They are counter-clockwise and begin with the lowest
+    /// x. If the obstacle has no area, there are fewer than three.
     pub fn outline(&self) -> Vec<[f64; 2]> {
         match &self.form {
             ConvexForm::Prism { corners, .. } => crate::arena::outline::hull(corners),
@@ -110,7 +111,7 @@ impl Convex {
         }
     }
 
-    /// Its highest point above the ground [m].
+    /// Height of its highest point above the ground [m].
     pub fn height(&self) -> f64 {
         match &self.form {
             ConvexForm::Prism { height, .. } => *height,

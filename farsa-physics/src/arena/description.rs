@@ -1,4 +1,4 @@
-//! A planar world as data: walls, obstacles, cylinders, colored areas of the ground and wheeled robots.
+//! A planar world as data, with walls, obstacles, cylinders, colored areas of the ground and wheeled robots.
 
 use alloc::vec::Vec;
 
@@ -7,13 +7,13 @@ use farsa_body::robots::{MobileParts, MobileRobot};
 
 use crate::arena::convex::{Convex, GREY};
 
-/// A wall: a box on the ground.
+/// A wall, which is a box on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Wall {
-    /// Its middle [m].
+    /// Position of its middle [m].
     pub centre: [f64; 2],
-    /// Where its length points to, counter-clockwise from the x axis [rad].
+    /// Direction of its length, counter-clockwise from the x axis [rad].
     pub heading: f64,
     /// Length and thickness [m].
     pub size: [f64; 2],
@@ -24,17 +24,19 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// Height of a wall that is given none [m].
+    /// Default height of a wall [m].
     pub const HEIGHT: f64 = 0.1;
-    /// Color of a wall that is given none.
+    /// Default color of a wall, a shade of gray.
     pub const COLOR: [f64; 3] = GREY;
 
-    /// A box with its middle at `centre` [m], of so much length and thickness [m], its length along `heading` [rad].
+    /// Creates a wall of the given length and thickness [m] with its middle at `centre` [m]. Its length points along
+    /// `heading` [rad], and it has the default height and color.
     pub fn cuboid(centre: [f64; 2], size: [f64; 2], heading: f64) -> Self {
         Self { centre, heading, size, height: Self::HEIGHT, color: Self::COLOR }
     }
 
-    /// A wall whose middle line goes from one point to another [m], so thick [m], with square ends.
+    /// Creates a wall whose middle line goes from one point to another [m]. The wall ends at these points, and its ends
+    /// are square.
     pub fn segment(from: [f64; 2], to: [f64; 2], thickness: f64) -> Self {
         let [x, y] = [to[0] - from[0], to[1] - from[1]];
         let length = farsa_num::Scalar::sqrt(x * x + y * y);
@@ -42,22 +44,22 @@ impl Wall {
         Self::cuboid(centre, [length, thickness], farsa_num::atan2(y, x))
     }
 
-    /// Returns the wall in another color.
+    /// Sets the color of the wall.
     pub fn with_color(self, color: [f64; 3]) -> Self {
         Self { color, ..self }
     }
 
-    /// Returns the wall of another height [m].
+    /// Sets the height of the wall [m].
     pub fn with_height(self, height: f64) -> Self {
         Self { height, ..self }
     }
 }
 
-/// A cylinder on the ground that does not move by itself, optionally a lamp.
+/// A cylinder on the ground, which can also be a lamp. It does not move by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Cylinder {
-    /// The initial place of its axis [m].
+    /// Initial position of its axis [m].
     pub centre: [f64; 2],
     /// Radius [m].
     pub radius: f64,
@@ -65,18 +67,18 @@ pub struct Cylinder {
     pub height: f64,
     /// Red, green and blue [0..1].
     pub color: [f64; 3],
-    /// The intensity of its light, in a unit of your choice. A cylinder with 0 is no lamp.
+    /// Intensity of its light, in a unit of your choice. If this is 0, the cylinder is not a lamp.
     pub lamp: f64,
 }
 
 impl Cylinder {
-    /// A gray cylinder as high as a wall, at `centre` [m] with `radius` [m], that does not shine.
+    /// Creates a gray cylinder at `centre` [m] with the given `radius` [m]. It is as high as a wall and does not shine.
     pub fn new(centre: [f64; 2], radius: f64) -> Self {
         Self { centre, radius, height: Wall::HEIGHT, color: Wall::COLOR, lamp: 0.0 }
     }
 }
 
-/// The form of an [`Area`].
+/// Shape of an [`Area`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -96,33 +98,34 @@ pub enum AreaShape {
     },
 }
 
-/// A part of the ground with a color, such as a target or a nest. Nothing collides with it.
+/// A colored part of the ground, such as a target or a nest. Since it is flat, nothing collides with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Area {
-    /// Its middle at first [m].
+    /// Initial position of its middle [m].
     pub centre: [f64; 2],
-    /// Where it points to at first, counter-clockwise from the x axis [rad].
+    /// Initial direction, counter-clockwise from the x axis [rad].
     pub heading: f64,
-    /// Its form.
+    /// Shape of the area.
     pub shape: AreaShape,
     /// Red, green and blue [0..1].
     pub color: [f64; 3],
 }
 
 impl Area {
-    /// A disc at `centre` [m] with `radius` [m].
+    /// Creates a disc at `centre` [m] with the given `radius` [m].
     pub fn circle(centre: [f64; 2], radius: f64, color: [f64; 3]) -> Self {
         Self { centre, heading: 0.0, shape: AreaShape::Circle { radius }, color }
     }
 
-    /// A rectangle with its middle at `centre` [m], so long along `heading` [rad] and so broad [m].
+    /// Creates a rectangle with its middle at `centre` [m]. The first number of `size` is its length along `heading`
+    /// [rad], the second its breadth [m].
     pub fn rectangle(centre: [f64; 2], size: [f64; 2], heading: f64, color: [f64; 3]) -> Self {
         Self { centre, heading, shape: AreaShape::Rectangle { size }, color }
     }
 }
 
-/// The treatment of robots that would overlap something.
+/// Determines how robots are treated if they would overlap something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum CollisionRule {
@@ -138,32 +141,32 @@ pub enum CollisionRule {
     Circles,
 }
 
-/// The search for neighbors. Results are equal.
+/// Method used to search for neighbors. Note that this affects only the speed, since all methods give the same results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Search {
-    /// In a grid where there are more than 32 robots and cylinders.
+    /// Use a grid if there are more than 32 robots and cylinders.
     #[default]
     Auto,
-    /// By looking at everything.
+    /// Always look at everything.
     All,
-    /// In a uniform grid.
+    /// Always use a uniform grid.
     Grid,
 }
 
-/// A robot and where it starts.
+/// A robot and the pose it starts from.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct RobotPlacement {
     /// The robot.
     pub robot: MobileRobot,
-    /// Where it starts [m].
+    /// Initial position [m].
     pub at: [f64; 2],
-    /// Where it looks to at first, counter-clockwise from the x axis [rad].
+    /// Initial heading, counter-clockwise from the x axis [rad].
     pub heading: f64,
 }
 
-/// A planar world as data.
+/// A planar world as data. You can change it freely and then build a [`World`](crate::arena::World) from it.
 ///
 /// Bodies are numbered: robots first, then cylinders, then areas. The wheels of robot `r` are joints `2 r` (left) and
 /// `2 r + 1` (right). Actuators follow each other robot by robot, each robot's as in [`MobileRobot::parts`].
@@ -188,25 +191,25 @@ pub struct RobotPlacement {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Arena {
-    /// Everything starts within [0, width] x [0, depth] [m], if given.
+    /// Size of the arena [m]. If given, everything must start within [0, width] x [0, depth].
     pub size: Option<[f64; 2]>,
-    /// The walls.
+    /// All walls.
     pub walls: Vec<Wall>,
-    /// The convex obstacles.
+    /// All convex obstacles.
     pub convexes: Vec<Convex>,
-    /// The cylinders.
+    /// All cylinders.
     pub cylinders: Vec<Cylinder>,
-    /// The areas. Where several lie over each other, the last one is seen.
+    /// All areas. If several of them overlap, the last one is visible.
     pub areas: Vec<Area>,
-    /// The robots.
+    /// All robots and where they start.
     pub robots: Vec<RobotPlacement>,
-    /// Color of the ground where no area is.
+    /// Color of the ground outside the areas.
     pub ground: [f64; 3],
-    /// The control step [s].
+    /// Duration of a control step [s].
     pub time_step: f64,
-    /// The treatment of robots that would overlap something.
+    /// Determines how robots are treated if they would overlap something.
     pub collisions: CollisionRule,
-    /// The search for neighbors.
+    /// Method used to search for neighbors.
     pub search: Search,
 }
 
@@ -217,12 +220,12 @@ impl Default for Arena {
 }
 
 impl Arena {
-    /// Thickness of the walls around [`Arena::walled`] [m].
+    /// Thickness of the walls that [`Arena::walled`] creates [m].
     pub const THICKNESS: f64 = 0.03;
-    /// The control step where none is given [s].
+    /// Default duration of a control step [s].
     pub const TIME_STEP: f64 = 0.05;
 
-    /// An endless plane with nothing in it. Ground white, steps of 50 ms, collisions undone.
+    /// Creates an endless plane with nothing in it. The ground is white, a step takes 50 ms and collisions are undone.
     pub fn new() -> Self {
         Self {
             size: None,
@@ -238,7 +241,8 @@ impl Arena {
         }
     }
 
-    /// The rectangle [0, width] x [0, depth] [m] with four walls around it, their inner faces on its sides.
+    /// Creates the rectangle [0, width] x [0, depth] [m] with four walls around it. Their inner faces lie on the sides
+    /// of the rectangle, so the whole area is free.
     pub fn walled(width: f64, depth: f64) -> Self {
         let t = Self::THICKNESS;
         let [middle, centre] = [0.5 * width, 0.5 * depth];
@@ -249,37 +253,38 @@ impl Arena {
         Self { size: Some([width, depth]), walls: across.into_iter().chain(along).collect(), ..Self::new() }
     }
 
-    /// Adds a wall. Its number.
+    /// Adds a wall and returns its number.
     pub fn add_wall(&mut self, wall: Wall) -> usize {
         self.walls.push(wall);
         self.walls.len() - 1
     }
 
-    /// Adds a convex obstacle. Its number.
+    /// Adds a convex obstacle and returns its number.
     pub fn add_convex(&mut self, convex: Convex) -> usize {
         self.convexes.push(convex);
         self.convexes.len() - 1
     }
 
-    /// Adds a cylinder. Its number, see [`Arena::cylinder`].
+    /// Adds a cylinder and returns its number. You can pass this number to [`Arena::cylinder`] to get its body.
     pub fn add_cylinder(&mut self, cylinder: Cylinder) -> usize {
         self.cylinders.push(cylinder);
         self.cylinders.len() - 1
     }
 
-    /// Adds an area. Its number, see [`Arena::area`].
+    /// Adds an area and returns its number. You can pass this number to [`Arena::area`] to get its body.
     pub fn add_area(&mut self, area: Area) -> usize {
         self.areas.push(area);
         self.areas.len() - 1
     }
 
-    /// Adds a robot that starts at `at` [m] and looks along `heading` [rad]. Its number, see [`Arena::parts`].
+    /// Adds a robot that starts at `at` [m] and looks along `heading` [rad]. This returns its number, which you can
+    /// pass to [`Arena::parts`].
     pub fn add_robot(&mut self, robot: MobileRobot, at: [f64; 2], heading: f64) -> usize {
         self.robots.push(RobotPlacement { robot, at, heading });
         self.robots.len() - 1
     }
 
-    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
+    /// Gets the numbers of the parts of a robot. If there is no such robot, the parts of the last one are returned.
     ///
     /// # Panics
     /// If there are no robots.
@@ -289,12 +294,13 @@ impl Arena {
         self.robots[robot].robot.parts(BodyId(robot as u16), JointId(2 * robot as u16), ActuatorId(first as u16))
     }
 
-    /// The body of a cylinder, when all robots are added.
+    /// Gets the body of a cylinder. Call this only after all robots are added, since bodies of robots come first.
     pub fn cylinder(&self, cylinder: usize) -> BodyId {
         BodyId((self.robots.len() + cylinder) as u16)
     }
 
-    /// The body of an area, when all robots and cylinders are added.
+    /// Gets the body of an area. Call this only after all robots and cylinders are added, since their bodies come
+    /// first.
     pub fn area(&self, area: usize) -> BodyId {
         BodyId((self.robots.len() + self.cylinders.len() + area) as u16)
     }

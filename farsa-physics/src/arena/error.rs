@@ -1,11 +1,11 @@
-//! The error of planar worlds.
+//! Errors of planar worlds.
 
 use core::fmt;
 
-/// A part of an arena, by its number in the arena's list.
+/// A part of an arena, given by its number in the list of the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The arena as a whole.
+    /// The arena itself.
     Arena,
     /// A wall.
     Wall(usize),
@@ -32,98 +32,99 @@ impl fmt::Display for Part {
     }
 }
 
-/// Why a planar world cannot be built, or a place in it not be found.
+/// An error that occurs if a planar world cannot be built, or if no free place can be found in it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArenaError {
-    /// Too few or too many parts of one kind.
+    /// There are too few or too many parts of one kind.
     Count {
-        /// The kind of parts.
+        /// Kind of the parts.
         what: &'static str,
-        /// The number of parts.
+        /// Number of parts.
         count: usize,
-        /// The least and the greatest number.
+        /// Smallest and largest number that is allowed.
         range: [usize; 2],
     },
-    /// A number is not within what is possible.
+    /// A number is outside of its allowed range.
     Range {
-        /// Whose number.
+        /// Part that the number belongs to.
         part: Part,
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
-        /// The number.
+        /// Value that was given.
         value: f64,
-        /// The permitted range, both ends included.
+        /// Allowed range, including both ends.
         range: [f64; 2],
     },
     /// Two parts overlap where they start.
     Overlap {
-        /// The two.
+        /// Both parts.
         parts: [Part; 2],
-        /// The depth of the overlap [m].
+        /// Depth of the overlap [m].
         depth: f64,
     },
-    /// Something starts outside of the arena.
+    /// A part starts outside of the arena.
     Outside {
-        /// The part.
+        /// Part that is outside.
         part: Part,
-        /// Where it starts [m].
+        /// Initial position of the part [m].
         at: [f64; 2],
         /// Its radius, or 0 for an area, of which the middle counts, and for a corner of a convex obstacle [m].
         radius: f64,
-        /// The arena is [0, width] x [0, depth] [m].
+        /// Width and depth of the arena, which begins at the origin [m].
         size: [f64; 2],
     },
-    /// A convex obstacle whose points have no hull.
+    /// A convex obstacle is invalid.
     Convex {
-        /// The obstacle.
+        /// Obstacle that is invalid.
         part: Part,
-        /// The fault.
+        /// Reason why it is invalid.
         fault: ConvexFault,
     },
-    /// A robot may go farther in a step than its hull's radius, and so through another.
+    /// In a single step, a robot may move farther than the radius of its hull. It could then pass through another
+    /// robot.
     StepTooLong {
-        /// The robot.
+        /// Number of the robot.
         robot: usize,
-        /// The largest distance in a step [m].
+        /// Largest distance that it can move in a step [m].
         travel: f64,
-        /// The radius of its hull [m].
+        /// Radius of its hull [m].
         radius: f64,
     },
-    /// No free place was found.
+    /// No free place was found within the allowed number of tries.
     NoFreePlace {
-        /// The number of tries.
+        /// Number of tries.
         tries: u32,
-        /// For a disc of this radius [m].
+        /// Radius of the disc [m].
         radius: f32,
-        /// The overlap at the best place [m].
+        /// Overlap at the best place that was tried [m].
         short: f32,
     },
-    /// A number of worlds without a batch.
+    /// A batch of this many worlds is not possible.
     Lanes {
-        /// The number asked for.
+        /// Requested number of worlds.
         lanes: usize,
-        /// The nearest possible.
+        /// Nearest number that is possible.
         nearest: usize,
     },
 }
 
-/// The fault of a convex obstacle.
+/// Reason why a convex obstacle is invalid.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ConvexFault {
-    /// Two corners of a prism at one place.
+    /// Two corners of a prism are at the same place.
     SameCorner {
-        /// The numbers of the corners.
+        /// Numbers of both corners.
         corners: [usize; 2],
-        /// The distance between them [m].
+        /// Distance between the corners [m].
         distance: f64,
     },
-    /// A corner of a prism within the hull of the others, so that the prism is not convex.
+    /// A corner of a prism is within the hull of the others, so the prism is not convex.
     Dent {
-        /// The number of the corner.
+        /// Number of the corner.
         corner: usize,
-        /// The depth of the corner within the hull [m].
+        /// Depth of the corner within the hull [m].
         depth: f64,
     },
     /// Corners of a prism that do not follow each other around it.
@@ -135,12 +136,12 @@ pub enum ConvexFault {
     },
     /// Points so close to each other or to a plane that they have no closed hull.
     NoHull {
-        /// The number of points.
+        /// Number of points.
         points: usize,
     },
-    /// An obstacle that needs a feature of this crate.
+    /// This obstacle requires a feature that the crate was built without.
     NeedsFeature {
-        /// The name of the feature.
+        /// Name of the feature.
         feature: &'static str,
     },
 }

@@ -1,11 +1,11 @@
-//! Finding a free place in a planar world.
+//! A search for a free place in a planar world.
 
 use farsa_body::ports::{BodyId, Planar};
 use farsa_num::Stream;
 
 use crate::arena::error::ArenaError;
 
-/// The requirements of a free place for a disc, all distances from surface to surface [m].
+/// Requirements that a free place for a disc has to satisfy. All distances are measured from surface to surface [m].
 ///
 /// Places are drawn uniformly from the region until one is free: two draws of the stream for each try.
 ///
@@ -28,32 +28,33 @@ use crate::arena::error::ArenaError;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreePlace<'a> {
-    /// The lowest and highest coordinates of the disc's center [m].
+    /// Lowest and highest coordinates of the center of the disc [m].
     pub region: [[f32; 2]; 2],
     /// Radius of the disc [m].
     pub radius: f32,
-    /// The distance from every wall [m].
+    /// Minimum distance from every wall [m].
     pub walls: f32,
-    /// The middle and the radius of the circle in which its center lies, if there is one [m].
+    /// If this is set, the center must also lie within a circle with this middle and radius [m].
     pub within: Option<([f32; 2], f32)>,
-    /// From which bodies it keeps how far [m]. Others are not looked at.
+    /// Bodies to keep away from and the minimum distance from each [m]. Note that all other bodies are ignored.
     pub bodies: &'a [(BodyId, f32)],
-    /// Places that are tried at most.
+    /// Maximum number of places to try.
     pub tries: u32,
 }
 
 impl<'a> FreePlace<'a> {
-    /// A disc within a region that overlaps no wall. A thousand tries.
+    /// Creates requirements for a disc that lies within a region and does not overlap a wall. It makes up to a thousand
+    /// tries.
     pub fn new(region: [[f32; 2]; 2], radius: f32) -> Self {
         Self { region, radius, walls: 0.0, within: None, bodies: &[], tries: 1000 }
     }
 
-    /// Returns the disc, which also keeps from these bodies.
+    /// Sets the bodies that the disc has to keep away from.
     pub fn clear_of(self, bodies: &'a [(BodyId, f32)]) -> Self {
         Self { bodies, ..self }
     }
 
-    /// A free place [m].
+    /// Searches for a free place and returns its position [m].
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] if none of the tries is free.

@@ -1,4 +1,4 @@
-//! One planar world that answers the ports.
+//! A single planar world.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -43,7 +43,7 @@ pub struct World {
 }
 
 impl World {
-    /// A world at its description's start.
+    /// Creates a world in the initial state of its description.
     ///
     /// # Errors
     /// The first thing that is wrong with the description.
@@ -56,12 +56,12 @@ impl World {
         Ok(Self { model, words, work, crowd })
     }
 
-    /// Number of robots.
+    /// Number of robots in the world.
     pub fn robots(&self) -> usize {
         self.model.robots.len()
     }
 
-    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
+    /// Gets the numbers of the parts of a robot. If there is no such robot, the parts of the last one are returned.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }

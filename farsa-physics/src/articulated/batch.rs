@@ -1,4 +1,4 @@
-//! Many articulated worlds of one model that are stepped together, one in each lane of SIMD vectors.
+//! Many articulated worlds of one model that are stepped together in SIMD lanes.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -8,7 +8,8 @@ use crate::articulated::lane::{Lane, Words};
 use crate::articulated::lockstep::{self, LANES, Lockstep};
 use crate::articulated::model::{Model, ModelError};
 
-/// Worlds of one model, one in each lane of SIMD vectors, all at their description's start at first.
+/// Many worlds of one model, one in each lane of SIMD vectors. All of them start in the initial state of the
+/// description.
 ///
 /// Every world has the bits of a [`World`](crate::articulated::World) that is arranged, commanded and stepped like it,
 /// whatever its neighbors do.
@@ -42,7 +43,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Builds `lanes` worlds, one of [`LANES`], stepped by these instructions.
+    /// Creates `lanes` worlds that are stepped with the given instructions. Their number must be one of [`LANES`].
     ///
     /// For instructions that are not in [`Batch::instructions`] the best below them are used.
     /// [`Instructions::Fallback`], one world after the other, exists on every machine.
@@ -59,30 +60,31 @@ impl Batch {
         Ok(Self { model, words, lockstep })
     }
 
-    /// The instruction sets of this machine that there are steps for, narrowest first.
+    /// An iterator over the instruction sets of this machine that a batch can use, from the narrowest to the widest.
     ///
     /// On x86-64 SSE2, AVX2 and AVX-512, as far as [`Instructions::available`] has them.
     pub fn instructions() -> impl Iterator<Item = Instructions> {
         lockstep::instructions()
     }
 
-    /// Number of worlds.
+    /// Number of worlds in the batch.
     pub fn lanes(&self) -> usize {
         self.words.lanes
     }
 
-    /// The constant part, shared by all.
+    /// Gets the model that all worlds share.
     pub fn model(&self) -> &Model<f32> {
         &self.model
     }
 
-    /// One of the worlds. The last one for a number beyond it, which is a mistake.
+    /// Gets one of the worlds. If the index is out of range, this is the last world. Note that relying on this is a
+    /// mistake.
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.words.lanes, "lane {index} of {}", self.words.lanes);
         Lane { index: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }
     }
 
-    /// Lets one control step pass in every world.
+    /// Advances every world by one control step.
     pub fn step(&mut self) {
         self.lockstep.step(&self.model, &mut self.words);
     }

@@ -1,4 +1,4 @@
-//! One world of a batch, with the ports of a world alone.
+//! A single world of a batch.
 
 use alloc::vec::Vec;
 
@@ -90,7 +90,8 @@ fn link_words(w: &LinkData<f32>) -> [f32; LINK_WORDS] {
     [a, b, c, d, e, f, g, h, i, x, y, z, u, v, n, k, l, m, o, p, q]
 }
 
-/// One world of a [`Batch`](crate::articulated::Batch): the ports of a [`World`](crate::articulated::World), no step.
+/// A single world of a [`Batch`](crate::articulated::Batch). It has the same ports as a
+/// [`World`](crate::articulated::World), except that it cannot be stepped alone.
 ///
 /// Changes to it affect no other lane.
 #[derive(Debug)]
@@ -101,7 +102,7 @@ pub struct Lane<'a> {
 }
 
 impl Lane<'_> {
-    /// The constant part.
+    /// Gets the model that all worlds of the batch share.
     pub fn model(&self) -> &Model<f32> {
         self.model
     }

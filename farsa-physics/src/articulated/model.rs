@@ -13,27 +13,27 @@ use farsa_num::Real;
 use crate::articulated::link::{Link, WORLD};
 use crate::articulated::spatial::{Matrix, Vector};
 
-/// The options of an articulated world's steps.
+/// Options for the simulation of an articulated world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
-    /// Control step [s].
+    /// Duration of a control step [s].
     pub time_step: f64,
-    /// Dynamics steps per control step.
+    /// Number of dynamics steps in each control step.
     pub substeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
-    /// Sweeps over the contacts per dynamics step.
+    /// Number of sweeps over the contacts in each dynamics step.
     pub sweeps: u32,
     /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]: what is left of creep.
     pub friction_compliance: f64,
-    /// Natural frequency of a joint stop, from the joint's own inertia at position 0 [rad/s].
+    /// Natural frequency of a joint stop [rad/s]. It is based on the inertia of the joint at position 0.
     pub limit_frequency: f64,
     /// Damping ratio of a joint stop.
     pub limit_damping: f64,
-    /// Contacts are watched from this distance on [m].
+    /// Distance below which a contact is taken into account [m].
     pub margin: f64,
-    /// The height of the horizontal plane that cameras see [m].
+    /// Height of the horizontal plane that cameras see [m].
     pub sight_height: f64,
 }
 
@@ -53,36 +53,36 @@ impl Default for Options {
     }
 }
 
-/// Why a model cannot be made.
+/// An error that occurs if a model cannot be built.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// The description is not valid.
+    /// The description of the robot is not valid.
     Robot(RobotError),
-    /// An option is out of its range.
+    /// An option is out of its allowed range.
     Option {
-        /// Its name.
+        /// Name of the option.
         name: &'static str,
-        /// Its value.
+        /// Value that was given.
         value: f64,
     },
-    /// A joint that nothing makes heavy: no mass beyond it about its axis and no armature.
+    /// A joint has nothing to move, because there is neither mass beyond it about its axis nor an armature.
     Weightless {
-        /// The segment's name.
+        /// Name of the segment.
         segment: String,
     },
-    /// More parts than 16 bits can number.
+    /// There are more parts than can be numbered with 16 bits.
     TooMany {
-        /// Which parts.
+        /// Kind of the parts.
         what: &'static str,
-        /// The number.
+        /// Number of parts.
         count: usize,
     },
-    /// A number of lanes that there are no vectors for.
+    /// A batch of this many worlds is not possible.
     Lanes {
-        /// The number.
+        /// Requested number of worlds.
         lanes: usize,
-        /// The nearest one of [`LANES`](crate::articulated::LANES).
+        /// Nearest possible number, which is one of [`LANES`](crate::articulated::LANES).
         nearest: usize,
     },
 }
@@ -213,7 +213,7 @@ pub(crate) struct Actuator<R> {
     pub(crate) law: Law<R>,
 }
 
-/// The constant part of an articulated world, each number rounded once from the description.
+/// Constant part of an articulated world. Each number of the description is rounded only once.
 #[derive(Clone, Debug)]
 pub struct Model<R> {
     pub(crate) links: Vec<Link<R>>,
@@ -259,15 +259,17 @@ pub struct Model<R> {
 pub(crate) const POINT_WORDS: usize = 8;
 
 impl<R: Real> Model<R> {
-    /// Number of positions: one per joint, seven per floating body (position, quaternion x, y, z, w).
+    /// Number of positions in a state. A joint has one and a floating body has seven, its position and the quaternion
+    /// x, y, z, w.
     pub fn positions(&self) -> usize {
         self.positions
     }
-    /// Number of velocities: one per joint, six per floating body (angular, then that of the center of mass).
+    /// Number of velocities in a state. A joint has one and a floating body has six. These are its angular velocity and
+    /// the velocity of its center of mass.
     pub fn dofs(&self) -> usize {
         self.dofs
     }
-    /// The moving links in the order of their velocities, for the kernels.
+    /// Gets the moving links in the order of their velocities. This is mainly useful for the kernels.
     pub fn links(&self) -> &[Link<R>] {
         &self.links
     }
@@ -275,7 +277,8 @@ impl<R: Real> Model<R> {
     pub fn gravity(&self) -> [R; 3] {
         self.gravity
     }
-    /// Length of a state: positions, velocities, two commands per actuator, eight words per contact point, three per rolling point.
+    /// Length of a state. It consists of positions, velocities, two commands per actuator, eight words per contact
+    /// point and three per rolling point.
     pub fn state_len(&self) -> usize {
         self.first_point() + POINT_WORDS * self.points + 3 * self.rolling
     }
@@ -287,12 +290,13 @@ impl<R: Real> Model<R> {
     pub(crate) fn first_point(&self) -> usize {
         self.first_command() + 2 * self.actuators.len()
     }
-    /// The link of a body's segment and the velocity it begins with, or `None` for what is fixed to the world.
+    /// Finds the link that a body belongs to. If the body is fixed to the world, this returns `None`.
     pub fn link_of(&self, body: BodyId) -> Option<usize> {
         let mount = self.mounts.get(body.index())?;
         (mount.link != WORLD).then_some(usize::from(mount.link))
     }
-    /// The index of a joint's position and velocity, or `None` for fixed and floating joints.
+    /// Finds the indices of the position and the velocity of a joint. For fixed and floating joints this returns
+    /// `None`.
     pub fn joint_index(&self, joint: farsa_body::ports::JointId) -> Option<(usize, usize)> {
         match self.joints.get(joint.index())? {
             JointKind::Revolute | JointKind::Prismatic => {

@@ -236,7 +236,8 @@ fn grounds_of<R: Real>(
 }
 
 impl<R: Real> Model<R> {
-    /// Builds the constant part of a world from a robot's (or a whole scene's) description.
+    /// Builds a model from the description of a robot or of a whole scene. This checks the description, so a model is
+    /// always valid.
     ///
     /// # Errors
     /// A description that is not valid, an option out of range, a joint without inertia, more than 65534 parts.

@@ -1,4 +1,4 @@
-//! One articulated world that answers the ports.
+//! A single articulated world.
 
 use alloc::vec::Vec;
 
@@ -20,7 +20,7 @@ use crate::articulated::tree::{forward_kinematics, inverse_dynamics, kinetic_ene
 use crate::articulated::view::{self, View};
 use crate::articulated::vision;
 
-/// One articulated world: a model and its state.
+/// A single articulated world, which consists of a model and its state.
 #[derive(Clone, Debug)]
 pub struct World<R: Precision> {
     model: Model<R>,
@@ -34,7 +34,7 @@ fn f32_of<R: Real>(x: [R; 3]) -> [f32; 3] {
 }
 
 impl<R: Precision> World<R> {
-    /// A world at its description's start.
+    /// Creates a world in the initial state of its description.
     pub fn new(model: Model<R>) -> Self {
         let state = model.initial.clone();
         let scratch = Scratch::new((), &model);
@@ -44,37 +44,38 @@ impl<R: Precision> World<R> {
         world
     }
 
-    /// The constant part.
+    /// Gets the model of this world.
     pub fn model(&self) -> &Model<R> {
         &self.model
     }
 
-    /// Positions, velocities, commands and contacts [`Model::state_len`].
+    /// Gets the current state, which has the length [`Model::state_len`]. It contains positions, velocities, commands
+    /// and contacts.
     pub fn state(&self) -> &[R] {
         &self.state
     }
 
-    /// Returns the state for changes. [`Arrange::finish_placement`] must follow.
+    /// Gives mutable access to the state. Note that you must call [`Arrange::finish_placement`] after changing it.
     pub fn state_mut(&mut self) -> &mut [R] {
         &mut self.state
     }
 
-    /// Joint and floating positions [positions].
+    /// Positions of joints and floating bodies [positions].
     pub fn positions(&self) -> &[R] {
         &self.state[..self.model.positions]
     }
 
-    /// Joint and floating velocities [dofs].
+    /// Velocities of joints and floating bodies [dofs].
     pub fn velocities(&self) -> &[R] {
         &self.state[self.model.positions..self.model.positions + self.model.dofs]
     }
 
-    /// Returns whether every word of the state is finite.
+    /// Checks whether all numbers of the state are finite. Use this to detect a simulation that has diverged.
     pub fn is_finite(&self) -> bool {
         self.state[..self.model.positions + self.model.dofs].iter().all(|x| x.to_f64().is_finite())
     }
 
-    /// Kinetic and potential energy [J], armatures included, contacts and actuators not.
+    /// Computes the kinetic and the potential energy [J]. This includes armatures, but not contacts and actuators.
     pub fn energy(&mut self) -> [f64; 2] {
         let v = &self.state[self.model.positions..];
         let work = &mut self.scratch.links;
@@ -83,7 +84,7 @@ impl<R: Precision> World<R> {
         [kinetic.to_f64(), potential.to_f64()]
     }
 
-    /// Linear momentum of all moving bodies [N s], armatures not counted.
+    /// Computes the linear momentum of all moving bodies [N s]. Armatures are not included.
     pub fn momentum(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (link, w) in self.model.links.iter().zip(&self.scratch.links) {
@@ -95,7 +96,8 @@ impl<R: Precision> World<R> {
         sum
     }
 
-    /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs. N m or N].
+    /// Computes the joint efforts that hold the current positions at rest against gravity [dofs, N m or N]. This uses
+    /// the recursive Newton-Euler algorithm.
     ///
     /// # Panics
     /// When there is not a place for each degree of freedom.
@@ -109,19 +111,19 @@ impl<R: Precision> World<R> {
         self.finish_placement();
     }
 
-    /// Number of pairs that the last dynamics step has looked at the surfaces of: those whose bounds were near.
+    /// Number of pairs that were close enough in the last dynamics step for their surfaces to be compared.
     ///
     /// Before the first step it means nothing.
     pub fn near_pairs(&self) -> usize {
         near_pairs(&self.model, &self.scratch.placed)
     }
 
-    /// Pose of a body's frame in full precision.
+    /// Computes the pose of the frame of a body in full precision.
     pub fn pose_of(&self, body: BodyId) -> Pose<R> {
         view::pose(self, body)
     }
 
-    /// Velocity of a body's origin and its angular velocity in full precision.
+    /// Computes the velocity of the origin of a body and its angular velocity in full precision.
     pub fn velocity_of(&self, body: BodyId) -> Twist<R> {
         view::velocity(self, body)
     }

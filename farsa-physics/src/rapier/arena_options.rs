@@ -3,19 +3,19 @@
 use crate::rapier::error::RapierError;
 use crate::rapier::options::Options;
 
-/// The options of a world of wheeled robots in rapier. The control step is the arena's.
+/// Options for a world of wheeled robots in rapier. Note that the control step is part of the arena instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArenaOptions {
-    /// The longest step of rapier [s]: a control step is divided into as few equal ones as are no longer.
+    /// Longest step that rapier may take [s]. A control step is divided into as few equal steps as this allows.
     pub longest_step: f64,
     /// Iterations of the solver per step of rapier, which divide it further. Motors' laws are evaluated once per step.
     pub iterations: u32,
-    /// Sweeps of the solver over contacts in each iteration.
+    /// Number of sweeps over the contacts in each iteration of the solver.
     pub sweeps: u32,
-    /// Gravity, downwards [m/s2].
+    /// Gravity [m/s2]. It points downwards.
     pub gravity: f64,
-    /// Size of what is simulated, next to which rapier's tolerances are chosen [m].
+    /// Typical size of the simulated things [m]. The tolerances of rapier are chosen relative to this.
     pub length_unit: f64,
     /// Natural frequency of contacts [Hz].
     pub contact_frequency: f64,

@@ -1,4 +1,4 @@
-//! Wheeled robots as rigid bodies, and what they can push, as data.
+//! Wheeled robots as rigid bodies and the things they can push, as data.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -9,21 +9,21 @@ use farsa_body::robots::MobileRobot;
 use crate::arena::description::{Arena, Wall};
 use crate::rapier::error::RapierError;
 
-/// The properties of a wheeled robot as a rigid body, in addition to those of [`MobileRobot`].
+/// Additional properties that a [`MobileRobot`] needs as a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Chassis {
-    /// Mass of all of it [kg].
+    /// Total mass, including the wheels [kg].
     pub mass: f64,
-    /// Part of the mass that is in the two wheels together.
+    /// Fraction of the mass that belongs to the two wheels together.
     pub wheel_share: f64,
-    /// The largest torque of each wheel's motor, at the wheel [N m].
+    /// Largest torque of the motor of each wheel, measured at the wheel [N m].
     pub torque: f64,
-    /// Inertia of each motor and its gear, at the wheel [kg m2].
+    /// Inertia of each motor including its gear, measured at the wheel [kg m2].
     pub rotor_inertia: f64,
     /// Coefficient of friction between wheels and ground.
     pub grip: f64,
-    /// Coefficient of friction of the hull with what it runs into.
+    /// Coefficient of friction between the hull and the things it runs into.
     pub friction: f64,
 }
 
@@ -62,19 +62,19 @@ impl Chassis {
     }
 }
 
-/// A box on the ground that robots can push.
+/// A box on the ground that robots can push around.
 ///
 /// Its frame has x along its length, z up and the origin on the ground below its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Block {
-    /// Its middle at first [m].
+    /// Initial position of its middle [m].
     pub centre: [f64; 2],
-    /// Where its length points to at first, counter-clockwise from the x axis [rad].
+    /// Initial direction of its length, counter-clockwise from the x axis [rad].
     pub heading: f64,
     /// Length, breadth and height [m].
     pub size: [f64; 3],
-    /// Mass [kg], spread evenly.
+    /// Mass [kg], which is distributed evenly.
     pub mass: f64,
     /// Coefficient of friction with the ground and with what is smoother.
     pub friction: f64,
@@ -83,7 +83,8 @@ pub struct Block {
 }
 
 impl Block {
-    /// A gray block of this size [m] and mass [kg] with its middle at `centre` [m], along the axes, with friction 0.5.
+    /// Creates a gray block of the given size [m] and mass [kg] with its middle at `centre` [m]. It is aligned with the
+    /// axes and has a coefficient of friction of 0.5.
     pub fn new(centre: [f64; 2], size: [f64; 3], mass: f64) -> Self {
         Self { centre, heading: 0.0, size, mass, friction: 0.5, color: Wall::COLOR }
     }
@@ -137,22 +138,23 @@ impl Block {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ArenaScene {
-    /// The arena. Its rule of collisions is of the kinematic world and not looked at here.
+    /// Description of the arena. Note that its rule of collisions has no effect here, since it is for the kinematic
+    /// world only.
     pub arena: Arena,
-    /// The chassis of each of its robots.
+    /// Chassis of each robot in the arena.
     pub chassis: Vec<Chassis>,
-    /// The blocks.
+    /// All blocks.
     pub blocks: Vec<Block>,
 }
 
 impl ArenaScene {
-    /// An arena without blocks whose robots have the chassis that is chosen for their size.
+    /// Creates a scene without blocks. Each robot gets the chassis that [`Chassis::for_robot`] chooses for its size.
     pub fn new(arena: Arena) -> Self {
         let chassis = arena.robots.iter().map(|placed| Chassis::for_robot(&placed.robot)).collect();
         Self { arena, chassis, blocks: Vec::new() }
     }
 
-    /// Adds a block. Its number.
+    /// Adds a block and returns its number.
     pub fn add_block(&mut self, block: Block) -> usize {
         self.blocks.push(block);
         self.blocks.len() - 1
@@ -163,12 +165,13 @@ impl ArenaScene {
         self.arena.robots.len() + self.arena.cylinders.len() + self.arena.areas.len()
     }
 
-    /// The body of a block, when everything of the arena is added.
+    /// Gets the body of a block. Call this only after everything in the arena is added, since blocks come last.
     pub fn block(&self, block: usize) -> BodyId {
         BodyId((self.arena_bodies() + block) as u16)
     }
 
-    /// Returns the pair of a block and the body that it touches, except the ground. Pairs of robots come first.
+    /// Gets the pair of a block and the body that it touches, except the ground. Note that the pairs of the robots come
+    /// first.
     pub fn block_pair(&self, block: usize) -> PairId {
         PairId((self.arena.robots.len() + block) as u16)
     }

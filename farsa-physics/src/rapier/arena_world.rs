@@ -1,4 +1,4 @@
-//! One world of wheeled robots in rapier.
+//! A single world of wheeled robots in rapier.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -71,7 +71,7 @@ pub struct ArenaWorld {
 const NOWHERE: Pose = Pose { position: [f32::NAN; 3], rotation: [f32::NAN; 4] };
 
 impl ArenaWorld {
-    /// A world at its description's start.
+    /// Creates a world in the initial state of its description.
     ///
     /// # Errors
     /// A fault of the arena ([`RapierError::Arena`]), a robot with an attachment device, a number of chassis that
@@ -101,22 +101,23 @@ impl ArenaWorld {
         Ok(world)
     }
 
-    /// Number of robots.
+    /// Number of robots in the world.
     pub fn robots(&self) -> usize {
         self.plan.vehicles.len()
     }
 
-    /// Returns the numbers of a robot's parts, or those of the last robot for a number beyond it.
+    /// Gets the numbers of the parts of a robot. If there is no such robot, the parts of the last one are returned.
     pub fn parts(&self, robot: usize) -> MobileParts {
         self.model.parts(robot)
     }
 
-    /// Returns whether the world has not broken down.
+    /// Checks that the world has not broken down. If this is false, you have to clear or restore the world before it
+    /// can be stepped again.
     pub fn is_finite(&self) -> bool {
         !self.lost
     }
 
-    /// rapier's own state, for what the ports do not report.
+    /// Gets the internal state of rapier. Use this for anything that the ports do not report.
     pub fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }

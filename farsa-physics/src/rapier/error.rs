@@ -1,4 +1,4 @@
-//! Why a world of rapier cannot be built.
+//! Errors of worlds in rapier.
 
 use alloc::string::String;
 use core::fmt;
@@ -8,36 +8,36 @@ use farsa_body::robot::RobotError;
 use crate::arena::error::ArenaError;
 use crate::articulated::model::ModelError;
 
-/// Why a world of rapier cannot be built.
+/// An error that occurs if a world of rapier cannot be built.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RapierError {
     /// The robot's description is not valid, a joint moves no mass, or there are too many parts.
     Model(ModelError),
-    /// An option is out of its range.
+    /// An option is out of its allowed range.
     Option {
-        /// Its name.
+        /// Name of the option.
         name: &'static str,
-        /// Its value.
+        /// Value that was given.
         value: f64,
-        /// The lowest and highest value.
+        /// Lowest and highest value that is allowed.
         range: [f64; 2],
     },
     /// A part that rapier cannot simulate: a moving plane, friction on the ground below a sliding body, or an attachment device.
     Unsupported {
-        /// The part and the reason.
+        /// Name of the part and the reason.
         why: String,
     },
     /// An object that has an invalid number, or a geometry from which rapier makes no collider.
     SceneObject {
-        /// The object's name.
+        /// Name of the object.
         name: String,
-        /// The fault.
+        /// Message that explains the problem.
         why: String,
     },
-    /// A fault of the arena.
+    /// The arena is not valid.
     Arena(ArenaError),
-    /// There are not as many chassis as robots.
+    /// The number of chassis is different from the number of robots.
     Chassis {
         /// Number of robots.
         robots: usize,
@@ -48,20 +48,20 @@ pub enum RapierError {
     Part {
         /// `robot` or `block`.
         part: &'static str,
-        /// Its number.
+        /// Index of the robot or block.
         number: usize,
-        /// Which number of it.
+        /// Name of the number that is out of range.
         field: &'static str,
-        /// Its value.
+        /// Value that was given.
         value: f64,
-        /// The lowest and highest value.
+        /// Lowest and highest value that is allowed.
         range: [f64; 2],
     },
     /// A block overlaps something where it starts, which would push it away.
     BlockOverlap {
-        /// The block's number.
+        /// Index of the block.
         block: usize,
-        /// The depth of the overlap [m].
+        /// Depth of the overlap [m].
         depth: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! The options of a world of rapier.
+//! Options for a world of rapier.
 
 use rapier3d::dynamics::{FrictionModel, SpringCoefficients};
 use rapier3d::pipeline::PhysicsWorld;
@@ -6,11 +6,11 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::rapier::convert::vector;
 use crate::rapier::error::RapierError;
 
-/// The options of a world of rapier.
+/// Options for the simulation of a world in rapier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
-    /// Control step [s].
+    /// Duration of a control step [s].
     pub time_step: f64,
     /// Steps of rapier per control step: how often contacts are looked for and actuators' laws evaluated.
     pub substeps: u32,
@@ -23,7 +23,7 @@ pub struct Options {
     pub speed_sweeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
-    /// Size of what is simulated, next to which rapier's tolerances are chosen [m].
+    /// Typical size of the simulated things [m]. The tolerances of rapier are chosen relative to this.
     pub length_unit: f64,
     /// Natural frequency of contacts [Hz].
     pub contact_frequency: f64,

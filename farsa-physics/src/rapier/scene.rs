@@ -1,4 +1,4 @@
-//! A robot with objects around it that only a general world can have.
+//! A robot together with objects that only a general world can have.
 
 use alloc::format;
 use alloc::string::String;
@@ -22,7 +22,7 @@ use crate::rapier::error::RapierError;
     serde(rename_all = "kebab-case", deny_unknown_fields)
 )]
 pub enum Geometry {
-    /// A sphere, capsule, box or plane as robots have them.
+    /// A sphere, capsule, box or plane. Robots can have these shapes, too.
     Simple(Shape),
     /// A cylinder about the z axis.
     Cylinder {
@@ -31,16 +31,16 @@ pub enum Geometry {
         /// Half its length [m].
         half_length: f64,
     },
-    /// The convex hull of points [m].
+    /// Convex hull of a set of points [m].
     Hull(Vec<[f32; 3]>),
-    /// A surface of triangles, which does not move. Only its outside is met.
+    /// A surface made of triangles, which cannot move. Note that only its outside can be touched.
     Mesh {
         /// Vertices [m].
         vertices: Vec<[f32; 3]>,
-        /// The numbers of each triangle's vertices, counter-clockwise as seen from outside.
+        /// Indices of the vertices of each triangle, counter-clockwise as seen from outside.
         triangles: Vec<[u32; 3]>,
     },
-    /// A landscape over a rectangle about the origin, which does not move.
+    /// A landscape over a rectangle that is centered at the origin. It cannot move.
     HeightField {
         /// Heights above z = 0 [rows * columns. M]: row after row towards +y, in a row towards +x.
         heights: Vec<f32>,
@@ -51,29 +51,30 @@ pub enum Geometry {
     },
 }
 
-/// An object in addition to the robot.
+/// An object that is added to the scene next to the robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct SceneObject {
-    /// Its name, unique in the scene.
+    /// Name of the object, which must be unique in the scene.
     pub name: String,
-    /// Its geometry.
+    /// Geometry of the object.
     pub geometry: Geometry,
-    /// Where it is at the start, in the world.
+    /// Initial pose in the frame of the world.
     pub placement: Pose<f64>,
-    /// Its mass [kg], spread evenly, or `None` for what does not move.
+    /// Mass [kg], which is distributed evenly. If this is `None`, the object does not move.
     pub mass: Option<f64>,
-    /// Coefficient of sliding friction with the robot. Between two objects the geometric mean of theirs.
+    /// Coefficient of sliding friction between the object and the robot. For two objects, the geometric mean of their
+    /// coefficients is used.
     pub friction: f64,
 }
 
 impl SceneObject {
-    /// An object that moves, with friction 0.5.
+    /// Creates an object that can move. Its coefficient of friction is 0.5.
     pub fn movable(name: &str, geometry: Geometry, placement: Pose<f64>, mass: f64) -> Self {
         Self { name: name.into(), geometry, placement, mass: Some(mass), friction: 0.5 }
     }
 
-    /// An object that does not move, with friction 0.5.
+    /// Creates an object that does not move. Its coefficient of friction is 0.5.
     pub fn fixed(name: &str, geometry: Geometry, placement: Pose<f64>) -> Self {
         Self { name: name.into(), geometry, placement, mass: None, friction: 0.5 }
     }
@@ -86,9 +87,9 @@ impl SceneObject {
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Scene {
-    /// The robot.
+    /// Description of the robot.
     pub robot: Robot,
-    /// The objects.
+    /// All objects in the scene.
     pub objects: Vec<SceneObject>,
 }
 
@@ -100,24 +101,24 @@ pub(crate) enum Side {
 }
 
 impl Scene {
-    /// A scene of a robot alone.
+    /// Creates a scene that contains only a robot.
     pub fn new(robot: Robot) -> Self {
         Self { robot, objects: Vec::new() }
     }
 
-    /// Appends an object and returns its body.
+    /// Adds an object and returns its body.
     pub fn add(&mut self, object: SceneObject) -> BodyId {
         self.objects.push(object);
         BodyId((self.robot.segments.len() + self.objects.len() - 1) as u16)
     }
 
-    /// The body of a segment or object of this name.
+    /// Finds the body of the segment or object with this name.
     pub fn body(&self, name: &str) -> Option<BodyId> {
         let object = || self.objects.iter().position(|object| object.name == name);
         self.robot.body(name).or_else(|| Some(BodyId((self.robot.segments.len() + object()?) as u16)))
     }
 
-    /// The pair of two colliders or objects of these names, in either order.
+    /// Finds the pair of two colliders or objects with these names. Their order does not matter.
     pub fn pair(&self, a: &str, b: &str) -> Option<PairId> {
         let side = |name: &str| {
             let object = self.objects.iter().position(|object| object.name == name).map(Side::SceneObject);
