@@ -166,6 +166,7 @@ impl<A: Algorithm> Search<A> {
 
     /// Reads a saved state. On error the search is incomplete.
     fn read(&mut self, saved: &[u8]) -> Result<(), EvoError> {
+        // The length of a state may depend on its generation.
         let generation = saved.first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes));
         let mut reader = StateReader::new(saved, self.state_length(generation))?;
         self.generation = reader.u32()?;
@@ -186,6 +187,7 @@ impl<A: Algorithm> Strategy<A::Gene> for Search<A> {
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        // An error leaves the search unchanged. The new genomes draw from the streams of the next generation.
         self.generation = next_generation(self.generation, self.population.len(), fitness)?;
         let step = Step { config: &self.config, seed: self.seed, generation: self.generation };
         self.state.advance(&step, fitness, &mut self.population);
@@ -229,6 +231,7 @@ impl<A: Algorithm> Snapshot for Search<A> {
     }
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), EvoError> {
+        // `read` changes the search as it proceeds, so an error needs a way back.
         let before = self.save();
         let restored = self.read(saved);
         if restored.is_err() {

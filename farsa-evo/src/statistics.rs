@@ -40,6 +40,7 @@ impl Statistics {
                 (best, best_index) = (value, index);
             }
             if !value.is_failed() {
+                // A failure is below every value, so the minimum begins with the first success.
                 worst = if counted == 0 { value } else { worst.min(value) };
                 counted += 1;
                 sum += value.get();

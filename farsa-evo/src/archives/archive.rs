@@ -137,11 +137,13 @@ impl<C: Cells> Archive<C> {
 
     /// The same for lengths that are right.
     pub(super) fn insert(&mut self, genes: &[f64], objective: f64, measures: &[f64], origin: [u32; 2]) -> Addition {
+        // Negated, so that NaN is refused.
         if !(objective > f64::NEG_INFINITY && measures.iter().all(|x| x.is_finite())) {
             return Addition::None;
         }
         let cell = self.cells.cell(measures);
         let slot = self.slots[cell] as usize;
+        // An empty cell has a slot beyond the last one.
         let Some(&elite) = self.objectives.get(slot) else {
             self.slots[cell] = self.filled.len() as u32;
             self.filled.push(cell as u32);
@@ -154,6 +156,7 @@ impl<C: Cells> Archive<C> {
         if objective <= elite {
             return Addition::None;
         }
+        // The slot stays, so the order of elites is that in which cells were filled.
         let d = measures.len();
         self.genomes[slot * self.genes..(slot + 1) * self.genes].copy_from_slice(genes);
         self.measures[slot * d..(slot + 1) * d].copy_from_slice(measures);
@@ -223,6 +226,8 @@ impl<C: Cells> Archive<C> {
             reader.reals(genes.as_mut_slice())?;
             check_within(&genes, bounds)?;
             let added = read.insert(genes.as_slice(), objective, &measures, [generation, individual]);
+            // Elites are saved in the order of their slots, so inserting them fills the same slots. Each must be the
+            // first in the cell of its measures.
             if added != Addition::New || read.filled.last() != Some(&cell) {
                 return Err(EvoError::state_content("the cell of an elite", cell.into()));
             }

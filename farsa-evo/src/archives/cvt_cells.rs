@@ -88,6 +88,7 @@ impl CvtCells {
 
 /// Moves centroids [cells x d] to the means of the points [points x d] that are nearest to them, again and again.
 fn k_means(mut centroids: Vec<f64>, points: &[f64], d: usize) -> Vec<f64> {
+    // No centroid has this number, so the first pass counts as a change.
     let mut owners = vec![usize::MAX; points.len() / d];
     for _ in 0..ITERATIONS {
         let nearest = Nearest::new(&centroids, d);

@@ -54,11 +54,13 @@ impl Improvement {
             _ => (0, 0.0),
         };
         let mut ranked: Vec<usize> = (0..additions.len()).collect();
+        // The stable sort ranks equals by index.
         ranked.sort_by(|&a, &b| worth(b).0.cmp(&worth(a).0).then_with(|| worth(b).1.total_cmp(&worth(a).1)));
         let parents = additions.iter().filter(|addition| **addition != Addition::None).count();
         if parents == 0 {
             return true;
         }
+        // A population of twice the additions makes every addition a parent, since mu = lambda / 2.
         let own = coefficients(self.distribution.mean.len(), 2 * parents);
         let usual = core::mem::replace(&mut self.distribution.coefficients, own);
         self.distribution.update(&ranked);

@@ -203,6 +203,7 @@ fn vary<C: Cells>(
         Emitter::Gaussian { sigma, .. } | Emitter::Improvement { sigma, .. } => (sigma, None, 0.0),
     };
     stream.fill_normal(row);
+    // x = a + sigma_1 range N + sigma_2 N' (b - a). Without b the difference is 0. [Mouret2018].
     let line = second.map_or(elite.genes, |second| second.genes);
     for (((gene, own), other), &[low, high]) in row.iter_mut().zip(elite.genes).zip(line).zip(bounds) {
         *gene = reflect(own + sigma * (high - low) * *gene + along * (other - own), [low, high]);
@@ -243,6 +244,7 @@ impl<C: Cells + Clone> Strategy<f64> for MapElites<C> {
             first = own.end;
             let Some(improvement) = self.improvements.get_mut(number).and_then(Option::as_mut) else { continue };
             if improvement.tell(&objectives[own.clone()], &additions[own]) {
+                // Trial 1, because individuals draw from trial 0.
                 let mut stream = Stream::new(self.seed, Domain::Mutation, 1, number as u32, generation);
                 let elite = self.archive.slot(stream.below(self.archive.len() as u32) as usize);
                 let mean = match (elite, emitter) {
@@ -316,6 +318,7 @@ impl<C: Cells + Clone> Snapshot for MapElites<C> {
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         let mut header = StateReader::new(state, state.len())?;
+        // The length of a state depends on its number of elites.
         let (_, elites) = (header.u32()?, header.u32()? as usize);
         let mut reader = StateReader::new(state, self.state_length(elites))?;
         let generation = reader.u32()?;

@@ -62,6 +62,7 @@ impl Nearest {
         let (axis, place) = self.splits[node];
         let (middle, beyond) = (start + (end - start) / 2, point[axis as usize] - place);
         let (lower, upper) = ((2 * node + 1, start, middle), (2 * node + 2, middle, end));
+        // Points with the coordinate of the split may be on either side. The test with <= below finds them.
         let (near, far) = if beyond < 0.0 { (lower, upper) } else { (upper, lower) };
         self.search(point, near.0, near.1, near.2, best);
         // Rounding is monotonic, so no point beyond can be computed to be nearer than the split.
@@ -91,6 +92,7 @@ fn split(points: &[f64], d: usize, numbers: &mut [u32], node: usize, splits: &mu
         }
     }
     let middle = numbers.len() / 2;
+    // Ties by number make the two halves independent of the selection algorithm.
     let (_, &mut at, _) = numbers
         .select_nth_unstable_by(middle, |&a, &b| value(a, axis).total_cmp(&value(b, axis)).then_with(|| a.cmp(&b)));
     if splits.len() <= node {

@@ -222,6 +222,7 @@ impl<S> NoveltySearch<S> {
         if let ArchiveRule::Threshold { most, patience, .. } = self.config.archive {
             let added = (self.archive.len() - before) / self.config.measures;
             self.idle = if added == 0 { self.idle.saturating_add(1) } else { 0 };
+            // The factors are those of Lehman's program. [Lehman2011].
             if added > most {
                 self.threshold = (1.2 * self.threshold).min(THRESHOLDS[1]);
             } else if self.idle >= patience {
@@ -259,6 +260,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
         let found = novelty(&rows, &self.archive, self.config.measures, self.config.neighbors);
         let told: Vec<Fitness> =
             found.iter().map(|novelty| novelty.map_or(Fitness::WORST, Fitness::nan_as_failed)).collect();
+        // The archive grows last, so novelty is measured against the archive of earlier generations.
         self.inner.tell(&told)?;
         self.novelty = told;
         self.remember(&rows, &found, generation);
@@ -332,6 +334,7 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
         }
         let mut archive = vec![0.0; numbers];
         reader.reals(&mut archive)?;
+        // An error of the inner search leaves the numbers of this one unchanged.
         self.inner.restore(inner)?;
         (self.idle, self.threshold, self.archive) = (idle, threshold, archive);
         self.novelty.clear();
@@ -348,6 +351,7 @@ fn novelty(rows: &[Option<&[f64]>], archive: &[f64], d: usize, k: usize) -> Vec<
         let others = rows.iter().enumerate().filter(|(other, _)| *other != own).filter_map(|(_, row)| *row);
         for other in others.chain(archive.chunks_exact(d.max(1))) {
             let square = other.iter().zip(behavior).fold(0.0, |sum, (a, b)| sum + (a - b) * (a - b));
+            // Squares have the order of distances, so roots are needed for the k nearest alone.
             if nearest.len() == k && nearest.last().is_some_and(|farthest| square >= *farthest) {
                 continue;
             }

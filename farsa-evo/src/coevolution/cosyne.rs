@@ -176,6 +176,7 @@ impl CosyneOrigins {
             }
             let of = |rank: u32| order.get(rank as usize).map_or(0, |individual| *individual as u32);
             cross(segments, [of(one), of(other)], &mut stream, &mut children);
+            // With an odd number of offspring the last pair has no room for its second child.
             for ((new, origins), from) in new.chunks_mut(genes).zip(origins.chunks_mut(genes)).zip(&children) {
                 origins.copy_from_slice(from);
                 for (index, (gene, from)) in new.iter_mut().zip(from).enumerate() {
@@ -203,6 +204,7 @@ impl CosyneOrigins {
                     marked.extend(chosen.map(|(individual, _)| individual));
                 }
             }
+            // Fisher-Yates shuffle: all permutations are equally likely. Origins move with their weights.
             for last in (1..marked.len()).rev() {
                 let other = stream.below(last as u32 + 1) as usize;
                 let (a, b) = (marked[last] * genes + gene, marked[other] * genes + gene);
@@ -231,6 +233,7 @@ fn chances(fitness: &[Fitness], genes: usize) -> Vec<f64> {
         } else if fitness == most {
             0.0
         } else {
+            // Above, fitness equal to an infinite best avoids a quotient of NaN. The worst has the part 0 and the chance 1.
             let part = (half(fitness) - half(least)) / (half(most) - half(least));
             1.0 - exp(ln(part) / genes as f64)
         }
@@ -259,6 +262,7 @@ impl Algorithm for CosyneOrigins {
         self.breed(step, &old, &order, genomes);
         let sorted: Vec<Fitness> = order.iter().filter_map(|&individual| fitness.get(individual)).copied().collect();
         let chances = chances(&sorted, genes);
+        // Offspring are the last individuals, and their weights stay.
         let kept = chances.get(..sorted.len() - step.config.offspring).unwrap_or_default();
         self.permute(step, kept, genomes);
     }

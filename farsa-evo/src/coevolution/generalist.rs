@@ -199,6 +199,7 @@ impl GeneralistCoevolution {
                 let (fitness, earned) = told.unwrap_or((&f64::NAN, &[]));
                 *sum = Fitness::nan_as_failed(sum.get() + fitness);
                 let cells = row.iter_mut().skip(first);
+                // A row ends before the repeated opponents of the last generation, which count for fitness alone.
                 cells.zip(earned).for_each(|(cell, earned)| *cell = Fitness::nan_as_failed(*earned));
             }
         }
@@ -216,12 +217,14 @@ impl GeneralistCoevolution {
         let (all, first): (Vec<usize>, Vec<usize>) = ((0..size).collect(), (0..members).collect());
         let mut kept = [first.clone(), first.clone()];
         for (side, kept) in self.sides.iter_mut().zip(&mut kept) {
+            // Opponents are the other population's members alone, since its newcomers are not yet selected.
             let replaced = matrix(side, &all, &first)?.replacements(newcomers)?;
             for &Replacement { member, newcomer } in &replaced {
                 kept[member] = newcomer;
             }
             side.selected = [replaced.len() as f64, 0.0].map(Fitness::nan_as_failed);
         }
+        // A second loop, because opponents are drawn from the members that the other population has selected.
         for (number, side) in self.sides.iter_mut().enumerate() {
             let [own, other] = if number == 0 { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
             let genome = |of: usize, individual: usize| self.population.get(of * size + individual).unwrap_or_default();
@@ -268,6 +271,7 @@ impl GeneralistCoevolution {
             let (side, own) = (individual / size, individual % size);
             let origin = self.sides[side].origins.get(own / tried).map_or(0, |origin| *origin as usize);
             genes.copy_from_slice(self.population.get(origin).unwrap_or_default());
+            // The first candidate is unchanged, so a newcomer can stay as it is.
             if !own.is_multiple_of(tried) {
                 let mut stream = Stream::new(self.seed, Domain::Mutation, side as u32, own as u32, generation);
                 self.mutation.apply(genes, &mut stream);
@@ -370,6 +374,8 @@ impl Opponents for GeneralistCoevolution {
         let met = if self.is_training() {
             own.opponents.get(opponent)
         } else {
+            // The last generation of encounters begins again with the first opponents where m does not divide the
+            // size.
             let column = (self.place() as usize * m + opponent) % size;
             self.population.get((1 - side) * size + column)
         };

@@ -109,6 +109,7 @@ impl Outcomes {
                 }
             }
             let others = (0..self.opponents).filter(|opponent| !chosen.contains(opponent));
+            // Among equals `max_by` returns the last, so indices compare in reverse.
             let next = others.max_by(|&a, &b| apart[a].total_cmp(&apart[b]).then(b.cmp(&a)));
             chosen.extend(next);
         }
@@ -127,6 +128,7 @@ impl Outcomes {
         let fitness = self.fitness();
         let order = Fitness::ranking(&fitness);
         let (stay, go) = order.split_at(members);
+        // As many members leave as newcomers stay, because `stay` has one place for each member.
         let leaving = go.iter().rev().filter(|&&individual| individual < members);
         let coming = stay.iter().rev().filter(|&&individual| individual >= members);
         Ok(leaving.zip(coming).map(|(&member, &newcomer)| Replacement { member, newcomer }).collect())

@@ -308,6 +308,7 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
         if !rest.is_empty() {
             return Err(EvoError::state_length(state.len() - rest.len(), state.len()));
         }
+        // Searches advance together, so all states have the same generation.
         let generation = self.generation();
         match self.members.iter().find(|member| member.generation() != generation) {
             None => Ok(()),

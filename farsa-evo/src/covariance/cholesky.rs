@@ -63,9 +63,11 @@ fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     if !(smallest > 0.0 && largest.is_finite()) {
         return None;
     }
+    // A_ij = (C_ij - sum_k A_ik A_jk) / A_jj and A_jj^2 = C_jj - sum_k A_jk^2, with sums over k < j.
     let mut factor = vec![0.0; n * n];
     for first in (0..n).step_by(4) {
         let count = 4.min(n - first);
+        // Four rows of a block use each earlier row, which is therefore read once for four.
         let (done, rows) = factor.split_at_mut(first * n);
         let rows = &mut rows[..count * n];
         for (column, other) in done.chunks_exact(n).enumerate() {
@@ -82,6 +84,7 @@ fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
                 rows[index * n + column] = (matrix[(first + index) * n + column] - product) / other[column];
             }
         }
+        // Columns of the block itself depend on its rows above, so they follow row by row.
         for index in 0..count {
             let (above, own) = rows.split_at_mut(index * n);
             for (column, other) in (first..).zip(above.chunks_exact(n)) {
@@ -90,6 +93,7 @@ fn factor<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
             }
             let place = first + index;
             let square = matrix[place * n + place] - dot_in_vectors(simd, &own[..place], &own[..place]);
+            // Rounding can make this square negative where C is nearly singular.
             own[place] = Scalar::sqrt(square.max(smallest));
         }
     }
@@ -102,6 +106,7 @@ impl Covariance for Cholesky {
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
+        // A factorization takes of the order of n^3 operations, and C changes little within this interval.
         let interval = 1.0 / ((coefficients.rank_one + coefficients.rank_mu) * n as f64 * 10.0);
         Self { n, factor: matrix.clone(), matrix, age: 0, interval }
     }
@@ -114,6 +119,7 @@ impl Covariance for Cholesky {
                 let fours = normals.chunks(4 * n).zip(steps.chunks_mut(4 * n));
                 for (normals, steps) in fours {
                     for (index, row) in factor.chunks_exact(n).enumerate() {
+                        // A is zero above its diagonal.
                         let row = &row[..=index];
                         if normals.len() == 4 * n {
                             let sums = dots_in_vectors(simd, normals, n, row);
@@ -153,6 +159,7 @@ impl Covariance for Cholesky {
     }
 
     fn scale(&mut self, factor: f64) {
+        // C = A A^T: the factor scales with the root.
         let root = Scalar::sqrt(factor);
         self.matrix.iter_mut().for_each(|x| *x *= factor);
         self.factor.iter_mut().for_each(|x| *x *= root);

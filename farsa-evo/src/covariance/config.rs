@@ -74,6 +74,7 @@ impl CmaEsConfig {
     pub(super) fn coefficients_of(&self, population: usize) -> Coefficients {
         let rates = |one: f64, mu: f64| {
             let one = self.rank_one_rate.unwrap_or(one);
+            // With c_1 + c_mu up to 1 the factor of the old C is never negative.
             (one, self.rank_mu_rate.unwrap_or(mu).min(1.0 - one))
         };
         Coefficients::new(self.mean.len(), population, self.active, self.damping, rates)
@@ -142,6 +143,7 @@ impl Start for SeparableCmaEsConfig {
     }
 
     fn coefficients(&self) -> Coefficients {
+        // A diagonal has n numbers to learn instead of n (n + 1) / 2, so its rates may be higher. [Ros2008].
         let faster = (self.mean.len() as f64 + 2.0) / 3.0;
         let rates = |one: f64, mu: f64| {
             let one = (one * faster).min(1.0);

@@ -48,6 +48,7 @@ impl Covariance for Diagonal {
             self.variances.iter_mut().zip(row).for_each(|(variance, y)| *variance += factor * y * y);
         }
         let largest = self.variances.iter().fold(0.0_f64, |largest, variance| largest.max(*variance));
+        // Above 0 even if all variances underflow, because the axis ratio divides by the smallest.
         let smallest = (SMALLEST * largest).max(f64::MIN_POSITIVE);
         self.variances.iter_mut().for_each(|variance| *variance = variance.max(smallest));
     }

@@ -126,6 +126,8 @@ impl<C: Covariance> Distribution<C> {
             }
             within
         };
+        // Individuals have separate streams, so their draws may interleave. Shaping all rows together reads the
+        // matrix less often than row by row.
         let mut streams: Vec<Stream> = (0..points.len() / n).map(stream).collect();
         for (stream, row) in streams.iter_mut().zip(normals.chunks_exact_mut(n)) {
             stream.fill_normal(row);
@@ -143,6 +145,7 @@ impl<C: Covariance> Distribution<C> {
                 within = place(point, steps);
             }
             if !within {
+                // The step y stays as drawn: an update uses the point before the clamp.
                 point.iter_mut().zip(bounds).for_each(|(x, [low, high])| *x = x.clamp(*low, *high));
             }
         }
@@ -167,6 +170,8 @@ impl<C: Covariance> Distribution<C> {
         // p_sigma <- (1 - c_sigma) p_sigma + sqrt(c_sigma (2 - c_sigma) mu_eff) C^(-1/2) y_w. [Hansen2016] eq. 43.
         let rate = c.step_path_rate;
         let gain = Scalar::sqrt(rate * (2.0 - rate) * c.effective);
+        // C^(-1/2) y_w = B z_w because y = B D z, so no matrix is inverted. A Cholesky factor uses A^-1 y_w = z_w
+        // instead.
         for (path, x) in self.step_path.iter_mut().zip(self.covariance.turn(&normal)) {
             *path = (1.0 - rate) * *path + gain * x;
         }
@@ -181,8 +186,10 @@ impl<C: Covariance> Distribution<C> {
 
         // C <- keep C + c_1 p_c p_c^T + c_mu sum w_i y_i y_i^T. Negative weights are scaled by n / |z_i|^2, so that C stays
         // positive definite. [Hansen2016] eqs. 46 and 47.
+        // A stalled path lacks variance. C keeps c_1 c_c (2 - c_c) more of itself in return.
         let lost = if stalls { c.rank_one * rate * (2.0 - rate) } else { 0.0 };
         let keep = 1.0 + lost - c.rank_one - c.rank_mu * c.weights.iter().sum::<f64>();
+        // Factors are in the order of the individuals, as the rows of `steps` are.
         let mut factors: Vec<f64> = Vec::with_capacity(weights.len() + 1);
         for (&weight, normal) in weights.iter().zip(self.normals.chunks_exact(n)) {
             let square = dot(normal, normal);
@@ -196,6 +203,7 @@ impl<C: Covariance> Distribution<C> {
             factors.push(c.rank_mu * weight * shorter);
         }
         factors.push(c.rank_one);
+        // The path is the last row, so that one pass through C adds all squares.
         let mut rows = core::mem::take(&mut self.steps);
         rows.extend_from_slice(&self.path);
         self.covariance.update(keep, &factors, &rows);
@@ -213,6 +221,7 @@ impl<C: Covariance> Distribution<C> {
     fn normalize(&mut self) {
         let [_, largest] = self.covariance.extremes();
         if !(VARIANCES[0]..=VARIANCES[1]).contains(&largest) {
+            // The product sigma^2 C is invariant. The path p_c scales as sqrt(C), while p_sigma has no scale.
             let root = Scalar::sqrt(largest);
             self.covariance.scale(1.0 / largest);
             for x in &mut self.path {
@@ -240,6 +249,7 @@ impl<C: Covariance> Distribution<C> {
 
     /// Appends the state, without the samples.
     pub(crate) fn save(&self, state: &mut Vec<u8>) {
+        // Samples follow from the seed, the generation and these numbers.
         state.extend(self.updates.to_le_bytes());
         push_reals(state, &[self.sigma]);
         for row in [&self.mean, &self.step_path, &self.path] {
@@ -270,6 +280,7 @@ pub(crate) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f6
 #[inline(always)]
 pub(crate) fn multiply(factors: &[f64], rows: &[f64], n: usize, sums: &mut [f64]) {
     const BLOCK: usize = 16;
+    // Blocks of rows change the order in which sums are visited, but not the order of additions within a sum.
     sums.fill(0.0);
     for (block, rows) in rows.chunks(BLOCK * n).enumerate() {
         for (sum, factors) in sums.chunks_exact_mut(n).zip(factors.chunks_exact(n)) {

@@ -57,6 +57,7 @@ impl SymmetricEigen {
         let mut reduced = matrix.to_vec();
         let (mut diagonal, mut off, halves) = tridiagonalize(simd, &mut reduced, n);
         let vectors = accumulate(simd, &reduced, &halves, n);
+        // At most two buffers of n^2 numbers are allocated at a time.
         drop(reduced);
         let mut strips = into_strips(&vectors, n);
         drop(vectors);
@@ -94,8 +95,10 @@ fn tridiagonalize<V: Simd>(simd: V, matrix: &mut [f64], n: usize) -> (Vec<f64>, 
         let last = row - 1;
         // Scaled, so that no square overflows, and none underflows that counts.
         let scale = vector[..last].iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));
+        // The row is already tridiagonal. Its entry in `halves` stays 0, which marks a reflection as the identity.
         if scale == 0.0 {
             off[last] = vector[last];
+            // No product follows that could take the pending update along.
             if pending {
                 for (index, elements) in above.chunks_exact_mut(n).enumerate() {
                     update(&mut elements[..=index], index, u, q);
@@ -108,6 +111,8 @@ fn tridiagonalize<V: Simd>(simd: V, matrix: &mut [f64], n: usize) -> (Vec<f64>, 
         for x in vector.iter_mut() {
             *x /= scale;
         }
+        // u = x - length e_last and H = I - u u^T / half, where half = |u|^2 / 2 = |x|^2 - x_last length. The sign of
+        // the length prevents cancellation in u_last.
         let square = dot_in_vectors(simd, vector, vector);
         let length = if vector[last] < 0.0 { Scalar::sqrt(square) } else { -Scalar::sqrt(square) };
         off[last] = scale * length;
@@ -122,6 +127,7 @@ fn tridiagonalize<V: Simd>(simd: V, matrix: &mut [f64], n: usize) -> (Vec<f64>, 
             product[index] = dot_in_vectors(simd, &elements[..=index], &vector[..=index]);
             add_scaled(&mut product[..index], vector[index], &elements[..index]);
         }
+        // H A H = A - u q^T - q u^T, where p = A u and q = p / half - (u^T p) / (2 half^2) u.
         let shift = dot_in_vectors(simd, vector, product) / (half + half) / half;
         let [u, q] = &mut before;
         for (((q, u), p), x) in q.iter_mut().zip(u).zip(&*product).zip(&*vector) {
@@ -155,6 +161,7 @@ fn accumulate<V: Simd>(simd: V, reduced: &[f64], halves: &[f64], n: usize) -> Ve
         let rows_len = rows.len();
         for row in (block * ROWS + 1..n).filter(|&row| halves[row] > 0.0) {
             let vector = &reduced[row * n..][..row];
+            // Vector `row` is zero from element `row` on, so it leaves the later rows of the identity as they are.
             let touched = n * ROWS.min(row - block * ROWS);
             let rows = &mut rows[..touched.min(rows_len)];
             let mut fours = rows.chunks_exact_mut(4 * n);
@@ -180,6 +187,7 @@ fn iterate(diagonal: &mut [f64], off: &mut [f64], strips: &mut [[f64; STRIP]]) -
     let mut rotations: Vec<Rotation> = Vec::new();
     for first in 0..n {
         for iteration in 0.. {
+            // An element below the rounding of its neighbors splits the matrix.
             let negligible = |&i: &usize| off[i].abs() <= f64::EPSILON * (diagonal[i].abs() + diagonal[i + 1].abs());
             let end = (first..n - 1).find(negligible).unwrap_or(n - 1);
             if end == first {
@@ -188,6 +196,8 @@ fn iterate(diagonal: &mut [f64], off: &mut [f64], strips: &mut [[f64; STRIP]]) -
             if iteration == ITERATIONS {
                 return None;
             }
+            // The shift is the eigenvalue of the leading 2 x 2 matrix that is nearer to its first element. The sign
+            // of the root prevents cancellation.
             let slope = (diagonal[first + 1] - diagonal[first]) / (2.0 * off[first]);
             let root = length(slope, 1.0);
             let root = if slope < 0.0 { slope - root } else { slope + root };
@@ -197,6 +207,7 @@ fn iterate(diagonal: &mut [f64], off: &mut [f64], strips: &mut [[f64; STRIP]]) -
                 let (f, b) = (sine * off[index], cosine * off[index]);
                 let r = length(f, g);
                 off[index + 1] = r;
+                // Both f and g are 0, so no rotation is defined, and the matrix splits here.
                 if r == 0.0 {
                     diagonal[index + 1] -= shift;
                     split = true;
@@ -216,6 +227,7 @@ fn iterate(diagonal: &mut [f64], off: &mut [f64], strips: &mut [[f64; STRIP]]) -
             }
             off[end] = 0.0;
         }
+        // Batches bound the memory to the order of n rotations, and long ones load each strip less often.
         if rotations.len() >= 8 * n {
             rotate(strips, n, &rotations);
             rotations.clear();
@@ -243,6 +255,7 @@ fn rotate(strips: &mut [[f64; STRIP]], n: usize, rotations: &[Rotation]) {
         // Indices fall by one within a sweep, so the row of the next rotation stays in the cache.
         for sweep in rotations.chunk_by(|rotation, next| rotation.index == next.index + 1) {
             let (Some(first), Some(last)) = (sweep.first(), sweep.last()) else { continue };
+            // Two successive rotations share a row. It stays in `kept` and is stored once.
             let mut kept = strip[first.index + 1];
             for &Rotation { index, cosine, sine } in sweep {
                 let [lower, done] = &mut strip[index..index + 2] else { continue };

@@ -51,10 +51,12 @@ impl Full {
 
     /// Computes axes and deviations from the matrix. They stay if it has no positive eigenvalue.
     fn decompose(&mut self) {
+        // On failure `age` stays, so the next update tries again.
         let Some(SymmetricEigen { values, vectors }) = SymmetricEigen::from_lower(&self.matrix, self.n) else { return };
         let largest = values.last().copied().unwrap_or_default();
         let smallest = SMALLEST * largest;
         if smallest > 0.0 {
+            // Rounding can leave small eigenvalues at or below 0, where the axis ratio has no value.
             self.deviations = values.iter().map(|value| Scalar::sqrt(value.max(smallest))).collect();
             (self.axes, self.age) = (vectors, 0);
         }
@@ -76,6 +78,7 @@ pub(super) fn interval_of_cubes(genes: usize, cubes: u64) -> u32 {
 /// Keeps so much of the lower triangle of a matrix [n x n] and adds the squares of rows [factors x n], each times its factor.
 #[inline(always)]
 pub(super) fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f64], rows: &[f64]) {
+    // Row i of sum f_k y_k y_k^T is sum (f_k y_k[i]) y_k, of which the lower triangle has i + 1 elements.
     let mut weighted = vec![0.0; factors.len()];
     for (index, elements) in matrix.chunks_exact_mut(n).enumerate() {
         let column = rows.iter().skip(index).step_by(n);
@@ -94,11 +97,13 @@ impl Covariance for Full {
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
         matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
+        // Within 1 / (10 n (c_1 + c_mu)) generations C changes little, and n^3 operations are spread over them.
         let interval = 1.0 / ((coefficients.rank_one + coefficients.rank_mu) * n as f64 * 10.0);
         Self { n, axes: matrix.clone(), matrix, deviations: vec![1.0; n], age: 0, interval }
     }
 
     fn shape(&self, normals: &[f64], steps: &mut [f64]) {
+        // y = B (D z), a sum of axes.
         let scale = |row: &[f64]| row.iter().zip(&self.deviations).map(|(z, d)| d * z).collect::<Vec<f64>>();
         let scaled: Vec<f64> = normals.chunks_exact(self.n).flat_map(scale).collect();
         vectorized(
@@ -148,6 +153,7 @@ impl Covariance for Full {
     }
 
     fn state_length(n: usize) -> usize {
+        // B and D may be older than C and thus do not follow from it.
         4 + 8 * (n * (n + 1) / 2 + n + n * n)
     }
 

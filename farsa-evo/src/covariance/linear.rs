@@ -15,6 +15,8 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
             *sum += a * b;
         }
     }
+    // Lanes 4 apart are added first, then 2, then 1, as vectors are halved. All forms have this order and thus equal
+    // bits.
     let rest = a_rest.iter().zip(b_rest).fold(0.0, |sum, (a, b)| sum + a * b);
     let [s0, s1, s2, s3, s4, s5, s6, s7] = sums;
     (((s0 + s4) + (s2 + s6)) + ((s1 + s5) + (s3 + s7))) + rest
@@ -42,6 +44,7 @@ pub(super) fn dots_in_vectors<V: Simd>(simd: V, rows: &[f64], stride: usize, vec
     let row = |index: usize| rows.get(index * stride..index * stride + vector.len()).unwrap_or_default();
     let rows = [row(0), row(1), row(2), row(3)].map(<[f64]>::as_chunks::<SUMS>);
     let [r0, r1, r2, r3] = rows.map(|(blocks, _)| blocks);
+    // One load of the vector serves four rows, and the four sums do not wait for each other.
     let mut sums = [f64x8::splat(simd, 0.0); 4];
     for ((((v, a), b), c), d) in blocks.iter().zip(r0).zip(r1).zip(r2).zip(r3) {
         let v = f64x8::from_slice(simd, v);
@@ -75,6 +78,7 @@ pub(super) fn add_rows(sum: &mut [f64], factors: &[f64], rows: &[f64], stride: u
         let (first, second) = block.split_at(2 * stride);
         let ((r0, r1), (r2, r3)) = (first.split_at(stride), second.split_at(stride));
         for ((((sum, x0), x1), x2), x3) in sum.iter_mut().zip(r0).zip(r1).zip(r2).zip(r3) {
+            // The parentheses keep the order of four single rows, and with it the bits.
             *sum = (((*sum + a * x0) + b * x1) + c * x2) + d * x3;
         }
     }

@@ -185,6 +185,8 @@ impl CmaEsRestarts {
     /// Draws the run's generation, of which the current block is one, and shows that block.
     fn draw(&mut self) {
         let (seed, block, size) = (self.seed, self.block(), self.population.len());
+        // A block is a generation of this search, and each individual draws from the stream of its block's
+        // generation.
         let first = self.generation.saturating_sub(block as u32);
         let named =
             |individual: usize| stream(seed, first.saturating_add((individual / size) as u32), individual % size);
@@ -223,8 +225,11 @@ impl CmaEsRestarts {
         let spread = self.config.spread;
         let mean = mean.iter().map(|mean| mean + spread * (2.0 * stream.uniform_f64() - 1.0)).collect();
         let [size, shrink] = [stream.uniform_f64(), stream.uniform_f64()];
+        // With both kinds, that with fewer evaluations is next, the large one at a tie. [Hansen2009].
         let small = self.config.schedule == RestartSchedule::Bipop && self.spent[1] < self.spent[0];
         let (blocks, sigma, most) = if small {
+            // lambda_s = lambda_0 (lambda_l / (2 lambda_0))^(U^2) and sigma_s = sigma 10^(-2 U'). A small run
+            // ends at the latest when it has half the evaluations of the latest large one, rounded up to a generation.
             let factor = exp(size * size * ln(0.5 * f64::from(self.large))) as u32;
             let sigma = sigma * exp(-2.0 * core::f64::consts::LN_10 * shrink);
             (factor.clamp(1, self.large), sigma.max(STEP_SIZES[0]), (self.latest / 2).max(1))
@@ -316,6 +321,7 @@ impl Snapshot for CmaEsRestarts {
         }
         let [generation, large, number, blocks, small, iterations, block, remembered] = words;
         let wrong = |what, found: u32| Err(EvoError::state_content(what, found.into()));
+        // Large runs double from 1.
         if !large.is_power_of_two() || large > MOST_BLOCKS {
             return wrong("the blocks of a large run", large);
         }
@@ -328,6 +334,7 @@ impl Snapshot for CmaEsRestarts {
         if block >= blocks || block > generation {
             return wrong("a block of a run", block);
         }
+        // Generations that failed as a whole count as iterations but have no best.
         if remembered > iterations || remembered as usize > LONGEST || iterations > generation {
             return wrong("a number of generations of a run", remembered);
         }
@@ -335,6 +342,7 @@ impl Snapshot for CmaEsRestarts {
         let values = told + 2 * remembered;
         let rest = Distribution::<Full>::state_length(self.config.first.mean.len());
         let mut reader = StateReader::new(state, 4 * FRONT.0 + 8 * (FRONT.1 + values) + rest)?;
+        // The first reader found the length, which depends on these numbers. This one checks it.
         for _ in 0..FRONT.0 {
             reader.u32()?;
         }

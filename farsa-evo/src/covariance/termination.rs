@@ -46,6 +46,7 @@ impl Progress {
     pub(super) fn push(&mut self, fitness: &[Fitness], ranked: &[usize]) {
         self.iterations = self.iterations.saturating_add(1);
         let at = |rank: usize| ranked.get(rank).map_or(Fitness::WORST, |&individual| fitness[individual]);
+        // Without a success there is no best, but the generation counts for the limit of iterations.
         if at(0).is_failed() {
             return;
         }
@@ -62,8 +63,10 @@ impl Progress {
         let (n, population) = (distribution.mean.len(), distribution.coefficients.population());
         let (sigma, covariance) = (distribution.sigma, &distribution.covariance);
         let [_, longest] = covariance.extremes();
+        // MaxIter = 100 + 50 (n + 3)^2 / sqrt(lambda). [Hansen2009].
         let reach = (n as f64 + 3.0) * (n as f64 + 3.0) / Scalar::sqrt(population as f64);
         let small = |x: f64| x * (sigma / start) < TOLERANCE;
+        // Axes take turns, so a generation needs n operations instead of n^2.
         let axis = covariance.axis(self.iterations as usize % n);
         let unmoved = |(mean, step): (&f64, f64)| *mean + step == *mean;
         if f64::from(self.iterations) >= 100.0 + 50.0 * reach {
@@ -71,16 +74,21 @@ impl Progress {
         } else if flat(&self.best, 10 + (30 * n).div_ceil(population)) {
             Some(Termination::TolHistFun)
         } else if covariance.gene_deviations().chain(distribution.path.iter().map(|x| x.abs())).all(small) {
+            // sigma sqrt(C_ii) and sigma |p_c| are below 10^-12 of the first sigma in all genes.
             Some(Termination::TolX)
         } else if sigma / start * Scalar::sqrt(longest) > LONGEST_AXIS {
             Some(Termination::TolUpSigma)
         } else if distribution.axis_ratio() * distribution.axis_ratio() > CONDITION {
             Some(Termination::ConditionCov)
         } else if distribution.mean.iter().zip(axis.0.iter().map(|b| 0.1 * sigma * axis.1 * b)).all(unmoved) {
+            // m + 0.1 sigma d_i b_i = m in floating point.
             Some(Termination::NoEffectAxis)
         } else if distribution.mean.iter().zip(covariance.gene_deviations().map(|d| 0.2 * sigma * d)).any(unmoved) {
+            // m_i + 0.2 sigma sqrt(C_ii) = m_i for some gene.
             Some(Termination::NoEffectCoord)
         } else {
+            // The last fifth of the run, at least 120 + 30 n / lambda generations. [Hansen2016] section B.3. The
+            // upper limit must not be below the lower one.
             let window = (self.iterations as usize / 5).clamp(120 + 30 * n / population, LONGEST.max(120 + 30 * n));
             (stagnates(&self.best, window) && stagnates(&self.median, window)).then_some(Termination::Stagnation)
         }
@@ -91,6 +99,7 @@ impl Progress {
 fn flat(history: &[Fitness], window: usize) -> bool {
     let Some(latest) = history.len().checked_sub(window).map(|start| &history[start..]) else { return false };
     let (Some(low), Some(high)) = (latest.iter().min(), latest.iter().max()) else { return false };
+    // The difference of two infinities is NaN, so equality is a separate test.
     low == high || high.get() - low.get() < TOLERANCE
 }
 

@@ -97,6 +97,7 @@ fn top(fitness: &[Fitness], count: usize) -> Vec<usize> {
     let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
     let mut top = Fitness::ranking(&better);
     top.truncate(count);
+    // Sums by index do not depend on the ranking within the top directions.
     top.sort_unstable();
     top
 }
@@ -107,6 +108,8 @@ impl ArsState {
         let count = rewards.len() as f64;
         let mean = rewards.iter().sum::<f64>() / count;
         let variance = rewards.iter().map(|reward| (reward - mean) * (reward - mean)).sum::<f64>() / count;
+        // M <- M + alpha / (b sigma_R) sum (r+ - r-) delta, with sigma_R of the 2 b rewards in the sum. [Mania2018]
+        // algorithm 1.
         let deviation = Scalar::sqrt(variance);
         if deviation > 0.0 {
             let mut step = vec![0.0; self.samples.mean.len()];

@@ -30,6 +30,7 @@ pub(super) fn exponential(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     while norm * scale > 0.5 {
         (halvings, scale) = (halvings + 1, 0.5 * scale);
     }
+    // exp(A) = exp(A / 2^s)^(2^s), with s halvings.
     let power1: Vec<f64> = matrix.iter().map(|x| scale * x).collect();
     let (mut power2, mut power3, mut power4) = (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]);
     product(&power1, &power1, &mut power2, n);
@@ -37,6 +38,7 @@ pub(super) fn exponential(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     product(&power2, &power2, &mut power4, n);
     let mut sum: Vec<f64> = power4.iter().map(|x| INVERSE_FACTORIALS[16] * x).collect();
     let mut other = vec![0.0; n * n];
+    // Horner's scheme in A^4: a group has four degrees, and degree 16 starts the sum.
     for group in [12, 8, 4, 0] {
         if group < 12 {
             product(&sum, &power4, &mut other, n);
@@ -58,6 +60,7 @@ pub(super) fn exponential(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
 /// The product of two symmetric matrices [n x n] that commute.
 fn product(a: &[f64], b: &[f64], out: &mut [f64], n: usize) {
     for (i, (a, out)) in a.chunks_exact(n).zip(out.chunks_exact_mut(n)).enumerate() {
+        // Polynomials of one symmetric matrix commute, so their product is symmetric too.
         let out = &mut out[i..];
         out.fill(0.0);
         for (x, b) in a.iter().zip(b.chunks_exact(n)) {

@@ -96,6 +96,8 @@ fn add_moments(numbers: &[f64], weights: [f64; 2], first: &mut [f64], second: &m
         #[inline(always)]
         || {
             for ((first, second), number) in first.iter_mut().zip(second).zip(numbers) {
+                // For x = mu + sigma z, d ln p / d mu = z / sigma and d ln p / d sigma = (z^2 - 1) / sigma. The
+                // callers apply the factors of sigma.
                 *first += weights[0] * number;
                 *second += weights[1] * (number * number - 1.0);
             }
@@ -108,6 +110,8 @@ impl<C> Step<'_, C> {
     /// Adds a row, weighted, to a sum \[genes\], and its squares less 1, weighted, to another.
     pub(super) fn add_moments(&self, row: usize, weights: [f64; 2], first: &mut [f64], second: &mut [f64]) {
         let mut stream = self.stream(row);
+        // The row is drawn again instead of stored. Blocks are even, so the pairs of normal numbers are those of one
+        // long row.
         let mut numbers = [0.0; BLOCK];
         for (first, second) in first.chunks_mut(BLOCK).zip(second.chunks_mut(BLOCK)) {
             stream.fill_normal(numbers.get_mut(..first.len()).unwrap_or_default());

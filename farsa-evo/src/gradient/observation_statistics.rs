@@ -107,6 +107,7 @@ impl ObservationStatistics {
         let count = self.count as f64;
         for ((mean, squares), x) in self.mean.iter_mut().zip(&mut self.squares).zip(row) {
             let x = f64::from(*x);
+            // d = x - mean, mean <- mean + d / n, S <- S + d (x - new mean). [Welford1962].
             let distance = x - *mean;
             *mean += distance / count;
             *squares += distance * (x - *mean);
@@ -135,10 +136,12 @@ impl ObservationStatistics {
         if count == 0 {
             return Ok(());
         }
+        // All checks are above, so an error leaves the statistics unchanged.
         self.count = total;
         let share = added / total as f64;
         let own = self.mean.iter_mut().zip(&mut self.squares);
         for ((mean, squares), (other, other_squares)) in own.zip(mean.iter().zip(squares)) {
+            // S <- S_a + S_b + d^2 n_a n_b / n, with d the distance of the means. [Chan1983].
             let distance = other - *mean;
             *mean += distance * share;
             *squares = (*squares + (other_squares + distance * distance * (before * share))).min(LARGEST_SQUARES);
@@ -165,6 +168,7 @@ impl ObservationStatistics {
         for ((x, mean), variance) in row.iter_mut().zip(&self.mean).zip(self.variance()) {
             let deviation = Scalar::sqrt(variance);
             let distance = f64::from(*x) - mean;
+            // A NaN passes through, also in a constant channel.
             let silent = deviation < LEAST_DEVIATION && !x.is_nan();
             *x = if silent { 0.0 } else { ((distance / deviation) as f32).clamp(-limit, limit) };
         }

@@ -110,14 +110,17 @@ impl Algorithm for OpenAiEsState {
         let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = *step.config;
         let mut gradient = vec![0.0; self.samples.mean.len()];
         for (row, pair) in centered_ranks(fitness).chunks_exact(2).enumerate() {
+            // A pair has the noise z and -z, so its two terms are (r+ - r-) z.
             self.samples.directions.add(row, pair[0] - pair[1], &mut gradient);
         }
         let scale = 1.0 / (fitness.len() as f64 * sigma);
         for (g, mean) in gradient.iter_mut().zip(&self.samples.mean) {
+            // g = 1 / (n sigma) sum (r+ - r-) z - decay theta. [Salimans2017] algorithm 1.
             *g = scale * *g - weight_decay * mean;
         }
         self.memory.step(optimizer, learning_rate, &mut gradient);
         self.samples.advance(&gradient);
+        // An infinite length would not be valid in a saved state.
         self.samples.step = self.samples.step.min(f64::MAX);
     }
 

@@ -73,6 +73,7 @@ impl Memory {
             }
             (Self::Momentum(velocity), Optimizer::Momentum { momentum }) => {
                 for (g, velocity) in gradient.iter_mut().zip(velocity) {
+                    // All steps are ascents: the caller adds them.
                     *velocity = momentum * *velocity + (1.0 - momentum) * *g;
                     *g = rate * *velocity;
                 }
@@ -120,9 +121,12 @@ impl Adam {
     /// Turns a gradient \[genes\] into a step.
     pub(super) fn step(&mut self, gradient: &mut [f64], rate: f64, decays: [f64; 2], epsilon: f64) {
         let [beta1, beta2] = decays;
+        // beta^t as a product, one factor a step, needs no power function.
         self.powers = [self.powers[0] * beta1, self.powers[1] * beta2];
         let [scale1, scale2] = self.powers.map(|power| 1.0 - power);
         for ((g, first), second) in gradient.iter_mut().zip(&mut self.first).zip(&mut self.second) {
+            // m <- beta_1 m + (1 - beta_1) g and v <- beta_2 v + (1 - beta_2) g^2. The step is
+            // alpha m' / (sqrt(v') + epsilon), with m' = m / (1 - beta_1^t) and v' = v / (1 - beta_2^t). [Kingma2015] algorithm 1.
             *first = beta1 * *first + (1.0 - beta1) * *g;
             *second = beta2 * *second + (1.0 - beta2) * (*g * *g);
             *g = rate * (*first / scale1) / (Scalar::sqrt(*second / scale2) + epsilon);
@@ -146,6 +150,7 @@ impl ClipUp {
 
     /// Takes a gradient \[genes\]. The velocity is the step.
     pub(super) fn step(&mut self, gradient: &[f64], step_size: f64, max_speed: f64, momentum: f64) {
+        // v <- m v + alpha g / |g|, then v <- v_max v / |v| where |v| > v_max. [Toklu2020].
         let length = norm(gradient);
         for (velocity, g) in self.velocity.iter_mut().zip(gradient) {
             let push = if length > 0.0 { step_size * (g / length) } else { 0.0 };
@@ -153,6 +158,7 @@ impl ClipUp {
         }
         let speed = self.speed();
         if speed > max_speed {
+            // The quotient is at most 1 up to rounding, so the product does not overflow.
             self.velocity.iter_mut().for_each(|velocity| *velocity = max_speed * (*velocity / speed));
         }
     }
@@ -177,6 +183,7 @@ pub(super) fn norm(row: &[f64]) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
+    // Within this range squares are safe, and division by 1 keeps the bits.
     let scale = if (1e-100..1e100).contains(&largest) { 1.0 } else { largest };
     let sum: f64 = row.iter().map(|x| (x / scale) * (x / scale)).sum();
     scale * Scalar::sqrt(sum)

@@ -143,6 +143,8 @@ impl PgpeState {
         let (count, pairs) = (rewards.len() as f64, config.pairs as f64);
         // b, the mean reward, divided before the sum so that it cannot overflow.
         let baseline = rewards.iter().map(|reward| reward / count).sum::<f64>();
+        // With e = sigma z, grad_mu = sigma / pairs sum (r+ - r-) / 2 z and
+        // grad_sigma = sigma / pairs sum ((r+ + r-) / 2 - b) (z^2 - 1). The factors sigma / pairs follow after the sums.
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes]);
         for (row, pair) in rewards.chunks_exact(2).enumerate() {
             let weights = [0.5 * (pair[0] - pair[1]), 0.5 * (pair[0] + pair[1]) - baseline];
@@ -154,6 +156,7 @@ impl PgpeState {
         for (mean, velocity) in self.mean.iter_mut().zip(self.clip_up.velocity()) {
             *mean = bounded(*mean + velocity);
         }
+        // The standard deviations change last, because both gradients belong to those of the samples.
         let (least, most) = (1.0 - sigma_max_change, 1.0 + sigma_max_change);
         for (sigma, g) in self.sigmas.iter_mut().zip(second) {
             let grown = *sigma + sigma_learning_rate * (*sigma * g / pairs);

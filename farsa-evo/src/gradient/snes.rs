@@ -115,6 +115,7 @@ impl Algorithm for SnesState {
     fn advance(&mut self, step: &Step<'_, SnesConfig>, fitness: &[Fitness], _: &mut Population<f64>) {
         let (mut first, mut second) = (vec![0.0; self.mean.len()], vec![0.0; self.mean.len()]);
         for (individual, weight) in weights(fitness, &self.utilities).into_iter().enumerate() {
+            // Fitness belongs to the numbers of the previous generation.
             step.previous().add_moments(individual, [weight; 2], &mut first, &mut second);
         }
         let (mean_rate, sigma_rate) = (step.config.mean_learning_rate, 0.5 * step.config.sigma_learning_rate);
@@ -122,6 +123,7 @@ impl Algorithm for SnesState {
         for ((mean, sigma), (first, second)) in
             self.mean.iter_mut().zip(&mut self.sigmas).zip(first.iter().zip(&second))
         {
+            // The mean moves by the sigma of the samples, so it changes first.
             *mean = bounded(*mean + mean_rate * *sigma * first);
             *sigma = bounded_size(*sigma * exp(sigma_rate * second));
         }

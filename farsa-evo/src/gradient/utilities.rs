@@ -14,6 +14,7 @@ use crate::fitness::Fitness;
 pub(super) fn utilities(population: usize) -> Vec<f64> {
     let count = population as f64;
     let raw = |rank: usize| (ln(0.5 * count + 1.0) - ln(rank as f64)).max(0.0);
+    // The term of rank 1 is positive, so the sum is not 0.
     let sum: f64 = (1..=population).map(raw).sum();
     (1..=population).map(|rank| raw(rank) / sum - 1.0 / count).collect()
 }
@@ -33,6 +34,7 @@ pub(super) fn weights(fitness: &[Fitness], utilities: &[f64]) -> Vec<f64> {
 ///
 /// Source: \[Salimans2017\] section 2. The spacing is that of its authors' program.
 pub(super) fn centered_ranks(fitness: &[Fitness]) -> Vec<f64> {
+    // One individual has no spacing: the divisor 1 prevents 0 / 0.
     let last = fitness.len().saturating_sub(1).max(1) as f64;
     let mut ranks = vec![0.0; fitness.len()];
     for (place, individual) in Fitness::ranking(fitness).into_iter().enumerate() {

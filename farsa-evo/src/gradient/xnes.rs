@@ -129,6 +129,8 @@ impl XnesState {
     /// The natural gradient of the mean \[genes\], and that of the exponent [genes x genes].
     fn gradients(&self, step: &Step<'_, XnesConfig>, fitness: &[Fitness]) -> (Vec<f64>, Vec<f64>) {
         let genes = self.mean.len();
+        // grad_delta = sum u_k z_k and grad_M = sum u_k (z_k z_k^T - I), the latter by its upper half. [Wierstra2014]
+        // algorithm 5.
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes * genes]);
         let mut numbers = vec![0.0; genes];
         for (individual, weight) in weights(fitness, &self.utilities).into_iter().enumerate() {
@@ -173,12 +175,14 @@ impl Algorithm for XnesState {
         self.mean.iter_mut().zip(moves).for_each(|(mean, turned)| *mean = bounded(*mean + rate * turned));
 
         // The trace of the gradient grows sigma, the rest turns and stretches B.
+        // M = (tr M / n) I + rest. With it sigma <- sigma exp(eta_sigma / 2 tr M / n) and B <- B exp(eta_B / 2 rest).
         let growth = second.iter().step_by(genes + 1).sum::<f64>() / genes as f64;
         self.sigma = bounded_size(self.sigma * exp(0.5 * config.sigma_learning_rate * growth));
         second.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal -= growth);
         for x in &mut second {
             *x *= 0.5 * config.shape_learning_rate;
         }
+        // B keeps its value if the exponential or the product is too large or NaN.
         if let Some(factor) = exponential(&second, genes) {
             let shape = multiply(&self.shape, &factor, genes);
             if shape.iter().all(|x| x.abs() <= LARGEST) {
@@ -191,6 +195,7 @@ impl Algorithm for XnesState {
         let mut numbers = vec![0.0; self.mean.len()];
         for (individual, genes) in genomes.iter_mut().enumerate() {
             step.stream(individual).fill_normal(&mut numbers);
+            // x = mu + sigma B z.
             let turned = rows_times(&self.shape, &numbers);
             for ((gene, mean), turned) in genes.iter_mut().zip(&self.mean).zip(turned) {
                 *gene = mean + self.sigma * turned;

@@ -47,6 +47,7 @@ pub fn non_dominated_fronts(objectives: &[f64], m: usize) -> Vec<Vec<usize>> {
     }
     let (mut front, mut rest): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&i| dominated_by[i] == 0);
     let mut fronts = Vec::new();
+    // Without NaN domination has no cycle, so each pass finds a front until all individuals have one.
     while !front.is_empty() {
         for &i in &front {
             for &j in rest.iter().filter(|&&j| dominates(rows[i], rows[j])) {
@@ -81,6 +82,7 @@ pub fn crowding_distances(objectives: &[f64], m: usize, front: &[usize]) -> Vec<
     for objective in 0..m {
         let value = |place: usize| objectives.get(front[place] * m + objective).copied().unwrap_or(f64::NEG_INFINITY);
         let mut order: Vec<usize> = (0..front.len()).collect();
+        // The stable sort leaves equals in the order of the front.
         order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else { return distances };
         let range = value(last) - value(first);
@@ -110,6 +112,8 @@ pub fn crowding_distances(objectives: &[f64], m: usize, front: &[usize]) -> Vec<
 pub fn hypervolume(points: &[[f64; 2]], reference: [f64; 2]) -> f64 {
     let mut above: Vec<[f64; 2]> =
         points.iter().copied().filter(|[x, y]| *x > reference[0] && *y > reference[1]).collect();
+    // From the largest x on, a point adds the strip above the highest y so far. Among equal x the highest y is first,
+    // and the others add nothing.
     above.sort_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
     let (mut area, mut highest) = (0.0, reference[1]);
     for [x, y] in above {

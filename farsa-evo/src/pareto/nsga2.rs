@@ -173,6 +173,7 @@ impl Nsga2 {
 
     fn front_size(&self) -> usize {
         let standing = self.parents.iter().flat_map(|parents| &parents.standing);
+        // Parents are sorted by front.
         standing.take_while(|standing| standing.front == 0).count()
     }
 
@@ -181,6 +182,7 @@ impl Nsga2 {
         let (size, m) = (self.population.len(), self.config.objectives);
         let old = self.parents.as_ref();
         let kept = old.map_or(0, |old| old.genes.len());
+        // Parents come first, so they precede equal offspring.
         let mut objectives = old.map_or(Vec::new(), |old| old.objectives.clone());
         objectives.extend_from_slice(scores.values());
         let mut places: Vec<(usize, Standing)> = Vec::with_capacity(size);
@@ -189,6 +191,8 @@ impl Nsga2 {
             let standing = |distance| Standing { front: number as u32, distance };
             let mut front: Vec<_> = front.into_iter().zip(distances.into_iter().map(standing)).collect();
             let room = size - places.len();
+            // A front that fits is taken as a whole. Only the last one needs an order, and the stable sort ranks
+            // equals by index.
             if front.len() > room {
                 front.sort_by_key(|(_, standing)| Reverse(Fitness::nan_as_failed(standing.distance)));
             }
@@ -257,6 +261,7 @@ impl Nsga2 {
             let (front, origin) = (reader.u32()?, [reader.u32()?, reader.u32()?]);
             let distance = reader.fitness()?.get();
             let last = standing.last().map_or(0, |last: &Standing| last.front);
+            // Fronts begin at 0 and have no gaps.
             if front < last || front > last + 1 || standing.is_empty() && front > 0 {
                 return Err(EvoError::state_content("the front of a parent", front.into()));
             }

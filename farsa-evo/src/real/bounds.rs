@@ -49,7 +49,9 @@ pub(crate) fn reflect(x: f64, [low, high]: [f64; 2]) -> f64 {
     // The remainder is exact.
     let rest = (x - low) % (2.0 * width);
     let rest = if rest < 0.0 { rest + 2.0 * width } else { rest };
+    // Reflection has the period 2 width: up within the first half, down within the second.
     let within = if rest > width { 2.0 * width - rest } else { rest };
+    // The sum may round beyond the high end.
     (low + within).clamp(low, high)
 }
 

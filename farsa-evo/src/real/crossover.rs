@@ -59,6 +59,7 @@ impl Crossover {
                 Self::Blend { alpha } => {
                     let (low, high) = (gene.min(other), gene.max(other));
                     let beyond = alpha * (high - low);
+                    // x = low - alpha d + (1 + 2 alpha) d U with d = high - low. [Eshelman1993].
                     reflect(low - beyond + (high - low + 2.0 * beyond) * stream.uniform_f64(), range)
                 }
                 Self::SimulatedBinary { eta } => simulated_binary(*gene, other, range, eta, stream),
@@ -70,13 +71,16 @@ impl Crossover {
 fn simulated_binary(first: f64, second: f64, [low, high]: [f64; 2], eta: f64, stream: &mut Stream) -> f64 {
     let (y1, y2) = (first.min(second), first.max(second));
     let gap = y2 - y1;
+    // Equal genes have no spread, and the quotient below needs a gap.
     if stream.uniform_f64() >= 0.5 || gap <= 1e-14 * (high - low) {
         return first;
     }
     let (u, upper) = (stream.uniform_f64(), stream.uniform_f64() < 0.5);
     let room = if upper { high - y2 } else { y1 - low };
+    // beta = 1 + 2 room / gap and alpha = 2 - beta^-(eta + 1), which cuts the distribution at the bound.
     let beta = 1.0 + 2.0 * room / gap;
     let alpha = 2.0 - exp(-(eta + 1.0) * ln(beta));
+    // beta_q = (u alpha)^(1 / (eta + 1)) if u <= 1 / alpha, else (2 - u alpha)^(-1 / (eta + 1)). [Deb1995].
     let power = if u <= 1.0 / alpha { ln(u * alpha) } else { -ln(2.0 - u * alpha) };
     let spread = exp(power / (eta + 1.0)) * gap;
     (0.5 * (y1 + y2 + if upper { spread } else { -spread })).clamp(low, high)

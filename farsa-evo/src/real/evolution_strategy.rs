@@ -248,6 +248,7 @@ impl EvolutionStrategyConfig {
     fn draw_parents(&self, stream: &mut Stream) -> Vec<usize> {
         let mut indices: Vec<usize> = (0..self.parents).collect();
         let rho = self.parents_of_one();
+        // The first rho places of a Fisher-Yates shuffle: all parents differ.
         for slot in 0..rho {
             let rest = (indices.len() - slot) as u32;
             indices.swap(slot, slot + stream.below(rest) as usize);
@@ -266,6 +267,8 @@ impl EvolutionStrategyConfig {
         let mut normal = vec![0.0; 1 + own + genes.len()];
         stream.fill_normal(&mut normal);
         let (of_steps, of_genes) = normal.split_at(1 + own);
+        // sigma_i <- sigma_i e^(tau_0 N_0 + tau N_i), then x_i <- x_i + sigma_i N. In this order selection judges a
+        // step size by the step that it made. [Beyer2002].
         let common = of_steps.first().copied().unwrap_or_default();
         for (index, step) in steps.iter_mut().enumerate() {
             let power = match self.step_sizes {
@@ -276,6 +279,7 @@ impl EvolutionStrategyConfig {
             };
             *step = (*step * exp(power)).clamp(self.smallest_step, LARGEST);
         }
+        // A single step size repeats for all genes.
         for ((gene, normal), step) in genes.iter_mut().zip(of_genes).zip(steps.iter().cycle()) {
             *gene = (*gene + step * normal).clamp(-FARTHEST, FARTHEST);
         }
@@ -302,6 +306,7 @@ impl EvolutionStrategyState {
         genomes: &Population<f64>,
     ) -> Vec<Individual> {
         let (plus, kept) = (config.survival == Survival::Plus, self.kept(config));
+        // Parents come first, so they win ties with offspring.
         let all: Vec<Fitness> = kept.iter().map(|parent| parent.fitness).chain(fitness.iter().copied()).collect();
         let asked = |index: usize| Individual {
             genes: genomes.get(index).unwrap_or_default().to_vec(),
@@ -397,6 +402,7 @@ impl Algorithm for EvolutionStrategyState {
         }
         let mut parents = match individual.checked_sub(step.config.asked_parents()) {
             None => vec![individual],
+            // Parents are a stream's first draws, so drawing again replaces storing them.
             Some(child) => step.config.draw_parents(&mut step.stream(child)),
         };
         parents.sort_unstable();

@@ -69,6 +69,8 @@ impl RealMutation {
             Self::Gaussian { sigma, .. } => sigma,
             Self::SelfAdaptive { tau, smallest, .. } => {
                 let [normal, _] = stream.normal_pair_f64();
+                // The logarithm tau N has the mean 0, so within the limits selection alone favors larger or smaller
+                // steps.
                 (step * exp(tau * normal)).clamp(smallest, 1.0)
             }
         }
@@ -80,6 +82,7 @@ impl RealMutation {
         let factors = factors.iter().copied().chain(core::iter::repeat(1.0));
         for ((gene, &[low, high]), factor) in genes.iter_mut().zip(bounds).zip(factors) {
             if stream.uniform_f64() < rate * factor {
+                // The second number is discarded, so every mutated gene draws the same amount.
                 let [normal, _] = stream.normal_pair_f64();
                 *gene = reflect(*gene + step * (high - low) * normal, [low, high]);
             }
@@ -113,6 +116,8 @@ impl PolynomialMutation {
             }
             let (u, power) = (stream.uniform_f64(), self.eta + 1.0);
             let step = if u < 0.5 {
+                // delta = (2 u + (1 - 2 u) (1 - d)^(eta + 1))^(1 / (eta + 1)) - 1, where d = (x - low) / width. The
+                // other half mirrors it.
                 let rest = raised((high - *gene) / width, power);
                 raised(2.0 * u + (1.0 - 2.0 * u) * rest, 1.0 / power) - 1.0
             } else {

@@ -159,6 +159,7 @@ impl Algorithm for RealGaState {
     }
 
     fn advance(&mut self, step: &Step<'_, RealGaConfig>, fitness: &[Fitness], genomes: &mut Population<f64>) {
+        // Children are written in place of individuals that may still be parents, hence the copy.
         let (order, old) = (Fitness::ranking(fitness), genomes.clone());
         let (mut parents, mut steps) = (Vec::with_capacity(2 * old.len()), Vec::with_capacity(old.len()));
         for (individual, genes) in genomes.iter_mut().enumerate() {
@@ -197,6 +198,7 @@ impl Algorithm for RealGaState {
 
     fn state_length(&self, step: &Step<'_, RealGaConfig>, genes: usize) -> usize {
         let parents = if step.generation == 0 { 0 } else { 8 * step.config.population };
+        // Constant step sizes follow from the configuration.
         let steps = step.config.mutation.smallest().map_or(0, |_| 8 * step.config.population);
         parents + steps + 8 * genes
     }

@@ -50,6 +50,7 @@ impl Selector {
             }
             Selection::Rank { pressure } => {
                 check_range("the selection pressure", pressure, [1.0, 2.0], "1 to 2")?;
+                // The divisor n - 1 of one individual would be 0.
                 let (size, last) = (population as f64, population.saturating_sub(1).max(1) as f64);
                 let mut sum = 0.0;
                 summed.extend((0..population).map(|rank| {
@@ -66,11 +67,13 @@ impl Selector {
         let below = |stream: &mut Stream, count: usize| stream.below(count as u32) as usize;
         match self.selection {
             Selection::Tournament { size } => {
+                // Ranks begin with the best, so the smallest one wins.
                 (0..size).map(|_| below(stream, self.population)).min().unwrap_or_default()
             }
             Selection::Truncation { parents } => below(stream, parents),
             Selection::Rank { .. } => {
                 let ball = stream.uniform_f64();
+                // Rounding may leave the last sum below 1.
                 self.summed.partition_point(|sum| *sum <= ball).min(self.population.saturating_sub(1))
             }
         }

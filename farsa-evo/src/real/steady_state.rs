@@ -90,6 +90,7 @@ pub struct SteadyStateParents {
 fn noisy(step: &Step<'_, SteadyStateConfig>, fitness: &[Fitness]) -> Vec<Fitness> {
     let noisy = |(individual, fitness): (usize, &Fitness)| {
         let mut stream = Stream::new(step.seed, Domain::Mutation, 1, individual as u32, step.generation);
+        // A failed evaluation remains minus infinity, whatever the noise.
         Fitness::nan_as_failed(fitness.get() + step.config.noise * (2.0 * stream.uniform_f64() - 1.0))
     };
     fitness.iter().enumerate().map(noisy).collect()
@@ -107,6 +108,7 @@ impl Algorithm for SteadyStateParents {
 
     fn advance(&mut self, step: &Step<'_, SteadyStateConfig>, fitness: &[Fitness], genomes: &mut Population<f64>) {
         let SteadyStateConfig { rate, sigma, noise, .. } = *step.config;
+        // Fitness and its noise belong to the previous generation.
         let order =
             if noise > 0.0 { Fitness::ranking(&noisy(&step.previous(), fitness)) } else { Fitness::ranking(fitness) };
         let (better, worse) = order.split_at(order.len() / 2);
@@ -127,6 +129,7 @@ impl Algorithm for SteadyStateParents {
     }
 
     fn record_kind(config: &SteadyStateConfig) -> RecordKind {
+        // Noise is added to values, so an order does not rebuild the generation.
         if config.noise > 0.0 { RecordKind::Values } else { RecordKind::Order }
     }
 

@@ -101,6 +101,7 @@ impl Progress {
             return Err(EvoError::fitness_count(expected, found));
         }
         let mut frame = Vec::with_capacity(shape.frame());
+        // Champions and genomes are those before `tell` replaces the generation.
         let champions = strategy.champions(&strategy.ranked_by(fitness));
         if champions.len() != shape.populations {
             return Err(EvoError::other_record("champions", shape.populations));
@@ -121,18 +122,21 @@ impl Progress {
         let since = generations + 1 - self.saved;
         let asked = |strategy: &&mut dyn Snapshot| self.spacing(strategy.snapshot_interval());
         let due = |strategy: &&mut dyn Snapshot| due || u64::from(since) >= asked(strategy);
+        // Frames of genomes need no states to replay from.
         let kept = shape.recorded != Kept::Genomes;
         Ok((frame, strategy.snapshot().filter(|strategy| kept && due(strategy)).map(|strategy| strategy.save())))
     }
 
     /// The interval of states for a strategy with a [`Snapshot::snapshot_interval`](crate::Snapshot::snapshot_interval).
     fn spacing(self, asked: u32) -> u64 {
+        // A shift of 31 keeps every `u32` within a `u64`.
         u64::from(asked.max(1)) << (self.states / ROOM).min(31)
     }
 
     /// Returns true if the frames since the last state, with the next, are as long as a state is likely to be.
     fn due(self) -> bool {
         let Self { shape, generations, saved, state, .. } = self;
+        // By this rule alone, states take about as many bytes as frames.
         let since = (generations - saved) as usize + 1;
         since.saturating_mul(shape.frame()) >= (shape.gene_bytes * shape.individuals * shape.genes).max(state)
     }

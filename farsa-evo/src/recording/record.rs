@@ -198,6 +198,7 @@ impl Record {
         let (_, bytes) = self.frame(generation)?;
         match self.shape.recorded {
             Kept::Order => {
+                // Any values in this order lead to the same next generation.
                 let mut fitness = vec![Fitness::WORST; self.shape.individuals];
                 for (rank, individual) in self.shape.indices(bytes).enumerate() {
                     *fitness.get_mut(individual)? = Fitness::nan_as_failed(-(rank as f64));
@@ -229,6 +230,7 @@ impl Record {
         }
         let usable = |keyframe: &Keyframe| keyframe.generation <= generation;
         let keyframe = self.keyframes.iter().enumerate().rev().find(|(_, keyframe)| usable(keyframe));
+        // A state that is not later than the strategy saves no replay.
         let keyframe = keyframe.filter(|(_, keyframe)| keyframe.generation > strategy.generation());
         let keyframe = keyframe.and_then(|(place, keyframe)| Some((keyframe, self.state(place)?)));
         if let (Some((keyframe, state)), Some(snapshot)) = (keyframe, strategy.snapshot()) {
@@ -275,6 +277,7 @@ impl Record {
     /// Gets the entry of a recorded generation. You can append it to a file and read it back with [`push`](Self::push).
     pub fn entry(&self, generation: u32) -> Option<RecordEntry<'_>> {
         let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
+        // A state is saved after its generation, so it has the next number.
         let place = self.keyframes.binary_search_by_key(&(generation + 1), |keyframe| keyframe.generation);
         Some(RecordEntry { frame, state: place.ok().and_then(|place| self.state(place)) })
     }

@@ -104,6 +104,7 @@ impl Shape {
 
     /// Bytes of an individual's index.
     pub(crate) fn width(self) -> usize {
+        // Indices are below the number of individuals, so 256 of them fit a byte.
         match self.individuals {
             0..=0x100 => 1,
             0x101..=0x1_0000 => 2,

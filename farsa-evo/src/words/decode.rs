@@ -59,6 +59,7 @@ impl GeneRange {
     /// It is never outside the range, exact at both ends, and never falls with the gene. A gene beyond the largest decodes
     /// to the high end.
     pub fn decode(self, gene: u16) -> f32 {
+        // In f64 the difference of two f32 cannot overflow.
         let (low, high) = (f64::from(self.low), f64::from(self.high));
         let value = (low + (high - low) * f64::from(gene) / f64::from(self.largest)) as f32;
         // The sum may round one f32 beyond an end, or short of the high end when the low end is far larger.

@@ -68,11 +68,13 @@ impl BitMutation {
     /// Bits are counted from the first gene on, and from the least significant bit within a gene.
     pub fn apply(self, genes: &mut [u16], stream: &mut Stream) {
         let bits = genes.len() as u64 * self.gene_bits;
+        // Bits are independent, so gaps between flips are geometric. Some n p + 1 draws replace n for n bits.
         let mut bit = stream.geometric(self.log_keep);
         while bit < bits {
             if let Some(gene) = genes.get_mut((bit / self.gene_bits) as usize) {
                 *gene ^= 1 << (bit % self.gene_bits);
             }
+            // At rate 0 a gap is `u64::MAX`, and the sum must not wrap.
             bit = bit.saturating_add(1).saturating_add(stream.geometric(self.log_keep));
         }
     }

@@ -192,7 +192,9 @@ impl Strategy for OnePlusOne {
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         let next = next_generation(self.generation, PARENT_AND_MUTANT, fitness)?;
         let [parent, mutant] = self.judged(fitness)?;
+        // An equal mutant wins, so the search drifts across plateaus.
         let survivor = usize::from(mutant >= parent);
+        // Made before any field changes, because an error must leave the search unchanged.
         let population = pair(&self.config, self.seed, next, self.population.get(survivor).unwrap_or_default())?;
         (self.sum, self.evaluations) = match fitness {
             &[parent, _] if survivor == 0 => (self.grown(parent), self.evaluations.saturating_add(1)),

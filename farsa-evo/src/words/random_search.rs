@@ -123,6 +123,7 @@ impl Snapshot for RandomSearch {
 
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         let generation = StateReader::new(state, state.len())?.u32()?;
+        // Before the first report there is no best, and the state is the generation alone.
         let mut reader = StateReader::new(state, if generation == 0 { 4 } else { 24 })?;
         reader.u32()?;
         let mut best = None;

@@ -189,6 +189,7 @@ impl Algorithm for TruncationState {
         for (individual, (child, parent)) in genomes.iter_mut().zip(heirs).enumerate() {
             child.copy_from_slice(parent);
             if !individual.is_multiple_of(config.copies()) {
+                // `Step::stream` has trial 0, while populations of one search differ in the trial.
                 let (trial, individual) = (self.number, individual as u32);
                 let mut stream = Stream::new(step.seed, Domain::Mutation, trial, individual, step.generation);
                 self.mutation.apply(child, &mut stream);
@@ -222,6 +223,7 @@ impl Algorithm for TruncationState {
     ) -> Result<(), EvoError> {
         let parents = if step.generation == 0 { 0 } else { step.config.parents };
         self.selected = reader.individuals(parents, genomes.len())?;
+        // A ranking contains each individual once.
         let mut sorted = self.selected.clone();
         sorted.sort_unstable();
         if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {

@@ -124,12 +124,14 @@ impl WordMap {
     pub fn encode(&self, parameters: &[f32], words: &mut [u16]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let pairs = || self.genes.iter().zip(&self.ranges).zip(parameters).filter(|((_, range), _)| range.count() > 0);
+        // All parameters are checked before the first word changes.
         if pairs().any(|(_, parameter)| parameter.is_nan()) {
             return Err(EvoError::OutOfRange { field: "a parameter", value: f64::NAN, allowed: "a number" });
         }
         for (((gene, range), &parameter), word) in pairs().zip(words) {
             if let WordGene::Word { bits, low, high, code } = *gene {
                 let number = nearest(*range, largest(bits), [low, high], parameter);
+                // The Gray code n xor n / 2: successive numbers differ in one bit.
                 *word = if code == WordCode::Gray { number ^ number >> 1 } else { number };
             }
         }
@@ -167,6 +169,7 @@ fn nearest(range: GeneRange, largest: u16, [low, high]: [f32; 2], parameter: f32
     let about = ((f64::from(parameter) - f64::from(low)) / width * f64::from(largest)) as u16;
     let candidates = about.saturating_sub(1)..=about.saturating_add(2).min(largest);
     let distance = |number: u16| (f64::from(range.decode(number)) - f64::from(parameter)).abs();
+    // At a tie `min_by` returns the lower number.
     candidates.min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or_default()
 }
 
