@@ -91,8 +91,8 @@ fn next(
         for last in (1..marked.len()).rev() {
             let target = stream.below(last as u32 + 1) as usize;
             let weight = p[marked[last]][i];
-            p[marked[last]][i] = p[marked[other]][i];
-            p[marked[other]][i] = weight;
+            p[marked[last]][i] = p[marked[target]][i];
+            p[marked[target]][i] = weight;
         }
     }
     p
@@ -226,7 +226,7 @@ proptest! {
         offspring in 0_usize..=6,
         scale in 0.0_f64..1e100,
         by_fitness: bool,
-        fitness in proptest::collection::vec(proptest::num::f64::ANY, 6),
+        reported in proptest::collection::vec(proptest::num::f64::ANY, 6),
     ) {
         let permutation = if by_fitness { Permutation::ByFitness } else { Permutation::All };
         let config = CosyneConfig {

@@ -90,7 +90,7 @@ impl Transcription {
             while chosen.len() < opponents {
                 let apart = |other: usize| -> f64 {
                     let sums = chosen.iter().map(|&opponent| {
-                        let [a, b] = [column(places[1 - side][other]), column(places[1 - side][one])];
+                        let [a, b] = [column(places[1 - side][other]), column(places[1 - side][opponent])];
                         a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum::<f64>()
                     });
                     sums.sum()

@@ -314,7 +314,7 @@ proptest! {
         seed: u64,
         which in 0_usize..4,
         sigma in 1e-3_f64..1e6,
-        scores in proptest::collection::vec(proptest::num::f64::NORMAL | proptest::num::f64::INFINITE, 10 * 81),
+        reported in proptest::collection::vec(proptest::num::f64::NORMAL | proptest::num::f64::INFINITE, 10 * 81),
     ) {
         let mut config = configs()[which].clone();
         for emitter in &mut config.emitters {

@@ -89,7 +89,7 @@ fn check_against_the_source<G: Gene, S: Strategy<G> + Snapshot + Debug + Partial
         };
         let values: Vec<f64> = (0..12).map(|i| if scores.is_failed(i) { f64::NAN } else { novelty(i) }).collect();
         let mut added = Vec::new();
-        for &i in &living {
+        for &i in &valid {
             let chance = Stream::new(7, Domain::General, 1, i as u32, generation).uniform_f64();
             let enters = match rule {
                 ArchiveRule::Random { rate } => chance < rate,

@@ -48,7 +48,7 @@ fn transcribed_replacements(means: &[f64], newcomers: usize) -> Vec<(usize, usiz
             replaced = skip(replaced + 1);
         }
     }
-    found
+    pairs
 }
 
 fn any_matrix() -> impl Strategy<Value = Vec<Vec<f64>>> {
@@ -118,7 +118,7 @@ fn failed_encounters_rank_last_and_choose_no_opponent() {
         {
             let mut sorted = chosen;
             sorted.sort_unstable();
-            all
+            sorted
         },
         [0, 1, 2]
     );

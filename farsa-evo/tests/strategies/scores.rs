@@ -97,25 +97,25 @@ fn scores(strategy: &impl Strategy) -> Scores {
 fn it_conforms() {
     check_strategy(|| Extremes::new(false), 20).unwrap();
     check_strategy(|| Populations::new(2, 1, |_| Extremes::new(false)), 20).unwrap();
-    let scores = check_strategy(|| Extremes::new(true), 20).unwrap_err();
-    assert_eq!(scores, "generation 0: takes judgements of another shape, or is changed by them");
+    let error = check_strategy(|| Extremes::new(true), 20).unwrap_err();
+    assert_eq!(error, "generation 0: takes judgements of another shape, or is changed by them");
 }
 
 #[test]
 fn a_record_rebuilds_any_generation() {
     let mut strategy = Extremes::new(false).unwrap();
     let mut record = Record::new(&mut strategy).unwrap();
-    let (mut asked, mut scores) = (Vec::new(), Vec::new());
+    let (mut asked, mut history) = (Vec::new(), Vec::new());
     for _ in 0..30 {
         asked.push(strategy.ask().clone());
-        scores.push(scores(&strategy));
-        record.tell_scores(&mut strategy, scores.last().unwrap()).unwrap();
+        history.push(scores(&strategy));
+        record.tell_scores(&mut strategy, history.last().unwrap()).unwrap();
     }
-    assert!(scores.iter().any(|scores| (0..6).any(|i| scores.is_failed(i))), "none failed");
+    assert!(history.iter().any(|scores| (0..6).any(|i| scores.is_failed(i))), "none failed");
     assert_eq!(record.bytes(), 30 * (1 + 6 * 3 * 8));
     for (generation, asked) in (0..).zip(&asked) {
         assert_eq!(&record.genomes(&mut Extremes::new(false).unwrap(), generation).unwrap(), asked);
-        let fitness = scores[generation as usize].fitness();
+        let fitness = history[generation as usize].fitness();
         assert_eq!(record.order(generation).unwrap()[0], record.champion(0, generation).unwrap());
         assert_eq!(fitness.iter().max(), Some(&fitness[record.champion(0, generation).unwrap()]));
     }
@@ -128,8 +128,8 @@ fn a_record_rebuilds_any_generation() {
     assert_eq!(read.push(farsa_evo::RecordEntry { frame: &damaged, state: None }), Err(EvoError::NanFitness));
     #[cfg(feature = "serde")]
     {
-        let bytes = postcard::to_allocvec(&scores).unwrap();
-        assert_eq!(postcard::from_bytes::<Vec<Scores>>(&bytes).unwrap(), scores);
+        let bytes = postcard::to_allocvec(&history).unwrap();
+        assert_eq!(postcard::from_bytes::<Vec<Scores>>(&bytes).unwrap(), history);
         let nan = postcard::to_allocvec(&(SHAPE, [Some(1.0), Some(f64::NAN), Some(0.0)].as_slice())).unwrap();
         assert!(postcard::from_bytes::<Scores>(&nan).is_err());
         let mut bytes = postcard::to_allocvec(&record).unwrap();

@@ -32,7 +32,7 @@ fn opened(live: &Value) -> LiveSession {
 
 /// Returns the script of a page, with the saved state of its evolution.
 fn standing(live: &Value) -> Value {
-    let mut script = live["script"].clchange();
+    let mut script = live["script"].clone();
     let mut state = String::new();
     GzDecoder::new(&decoded(&live["standing"])[..]).read_to_string(&mut state).expect("gzip");
     script["standing"] = parsed(&state);
@@ -103,11 +103,7 @@ fn an_agent_runs_as_it_is_replayed_and_tested() {
             asked(&mut session, &request)["successes"].as_u64().expect("a number")
         };
         let counts = [part(0, 40), part(0, 15) + part(15, 25)];
-        assert_eq!(
-            counts.map(Value::from),
-            [tested["cases"][case]["successes"].clchange(), counts[0].into()],
-            "{lesion}"
-        );
+        assert_eq!(counts.map(Value::from), [tested["cases"][case]["successes"].clone(), counts[0].into()], "{lesion}");
     }
 
     let names = asked(&mut session, &json!({ "do": "names" }));
@@ -137,7 +133,7 @@ fn generations_of_several_populations_run_side_by_side() {
     let live = &data(&here.join("live.html"))["live"];
     let generations = live["about"]["individuals"].as_array().expect("individuals").iter();
     assert_eq!(
-        generations.map(|individual| individual["generation"].clchange()).collect::<Vec<_>>(),
+        generations.map(|individual| individual["generation"].clone()).collect::<Vec<_>>(),
         [0, 2].map(Value::from)
     );
     let mut session = opened(live);
@@ -212,12 +208,12 @@ fn evolved(live: &Value, generations: usize, parts: usize) -> Vec<Value> {
     let mut sessions: Vec<LiveSession> = (0..parts).map(|_| evolving(live)).collect();
     let generation = |_| {
         let shares = sessions.iter_mut().enumerate().map(|(part, session)| {
-            asked(session, &json!({ "do": "share", "part": part, "parts": parts }))["outcomes"].clchange()
+            asked(session, &json!({ "do": "share", "part": part, "parts": parts }))["outcomes"].clone()
         });
         let request = json!({ "do": "tell", "outcomes": shares.collect::<Vec<_>>() });
         let updates: Vec<Value> = sessions.iter_mut().map(|session| asked(session, &request)).collect();
         assert!(updates.iter().all(|update| *update == updates[0] && update["error"].is_null()), "{updates:?}");
-        updates[0].clchange()
+        updates[0].clone()
     };
     (0..generations).map(generation).collect()
 }
@@ -304,13 +300,13 @@ fn evolution_that_cannot_continue_gives_the_reason() {
     ok(farsa(), &here, "live r --html r.html --quiet");
     let live = &data(&here.join("r.html"))["live"];
     let mut session = evolving(live);
-    let half = asked(&mut session, &json!({ "do": "share", "part": 1, "parts": 2 }))["outcomes"].clchange();
+    let half = asked(&mut session, &json!({ "do": "share", "part": 1, "parts": 2 }))["outcomes"].clone();
     for (request, why) in [
         (json!({ "do": "share", "part": 2, "parts": 2 }), "part 2 of 2"),
         (json!({ "do": "share", "part": 0, "parts": 0 }), "part 0 of 0"),
         (json!({ "do": "tell", "outcomes": [] }), "not those of a whole generation"),
-        (json!({ "do": "tell", "outcomes": [half.clchange()] }), "not those of a whole generation"),
-        (json!({ "do": "tell", "outcomes": [half.clchange(), half] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clone()] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clone(), half] }), "not those of a whole generation"),
         (json!({ "do": "tell", "outcomes": ["AAEC"] }), "outcomes: "),
         (json!({ "do": "tell", "outcomes": ["-"] }), "request: "),
     ] {
@@ -319,7 +315,7 @@ fn evolution_that_cannot_continue_gives_the_reason() {
     }
     // The refused requests have changed nothing.
     let first = evolved(live, 1, 1);
-    let whole = asked(&mut session, &json!({ "do": "share", "part": 0, "parts": 1 }))["outcomes"].clchange();
+    let whole = asked(&mut session, &json!({ "do": "share", "part": 0, "parts": 1 }))["outcomes"].clone();
     assert_eq!(asked(&mut session, &json!({ "do": "tell", "outcomes": [whole] })), first[0]);
     // A state of another strategy, and an invalid generation.
     for (key, to, why) in [("state", "AAAA", "the state of the run"), ("generation", "", "script: ")] {
@@ -354,7 +350,7 @@ fn a_body_of_a_page_is_moved() {
         let change = |body: usize| json!({ "step": 10, "body": body, "position": position, "rotation": ids });
         let moved = film(json!([change(body)]));
         let first = |other: &Value| {
-            let both = |film: &Value, at: usize| film["digests"][at].clchange();
+            let both = |film: &Value, at: usize| film["digests"][at].clone();
             (0..20).position(|at| both(&whole, at) != both(other, at))
         };
         // All effects begin at that step.
@@ -400,23 +396,23 @@ fn a_body_of_a_page_is_pushed() {
         asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "pushes": pushes }))
     };
     let whole = film(json!([]));
-    let bodies = whole["film"]["bodies"].as_array().expect("bodies").clchange();
+    let bodies = whole["film"]["bodies"].as_array().expect("bodies").clone();
     let push = |name: &str, steps: [u32; 2], force: f64| {
         let body = bodies.iter().position(|body| body == name).expect("the body");
         json!({ "steps": steps, "body": body, "point": [0, 0, 0], "force": [0, 0, force] })
     };
     let first = |other: &Value| {
-        let both = |film: &Value, at: usize| film["digests"][at].clchange();
+        let both = |film: &Value, at: usize| film["digests"][at].clone();
         (0..40).position(|at| both(&whole, at) != both(other, at))
     };
     // All effects begin with the first step, and bodies on joints are pushed as well as the sphere.
-    let pushed = film(json!([change("sphere", [10, 20], 5.0)]));
+    let pushed = film(json!([push("sphere", [10, 20], 5.0)]));
     assert_eq!(first(&pushed), Some(10));
     assert!(pushed["film"]["name"].as_str().expect("a name").ends_with("; 1 pushed"));
-    assert_eq!(film(json!([change("sphere", [10, 20], 5.0)]))["digests"], pushed["digests"]);
-    assert_eq!(first(&film(json!([change("palm", [12, 13], 5.0)]))), Some(12));
+    assert_eq!(film(json!([push("sphere", [10, 20], 5.0)]))["digests"], pushed["digests"]);
+    assert_eq!(first(&film(json!([push("palm", [12, 13], 5.0)]))), Some(12));
     for nothing in
-        [change("sphere", [10, 10], 5.0), change("sphere", [10, 20], 0.0), change("sphere", [100_000, 200_000], 5.0)]
+        [push("sphere", [10, 10], 5.0), push("sphere", [10, 20], 0.0), push("sphere", [100_000, 200_000], 5.0)]
     {
         assert_eq!(film(json!([nothing]))["digests"], whole["digests"]);
     }
