@@ -140,7 +140,7 @@ impl EvoError {
         Self::Config { field: "range", why: format!("genes cannot range from {low} to {high}") }
     }
 
-    /// Returns the error of genes, ranges and room for values that differ in number.
+    /// Creates the error for genes, ranges and output values that differ in number.
     pub fn lengths(genes: usize, ranges: usize, out: usize) -> Self {
         Self::Shape {
             expected: ranges,

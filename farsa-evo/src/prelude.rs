@@ -1,4 +1,4 @@
-//! The names of a first program, for `use farsa_evo::prelude::*`.
+//! Names that most programs need. Import them with `use farsa_evo::prelude::*`.
 
 pub use crate::archives::{GridCells, MapElites, MapElitesConfig};
 pub use crate::covariance::{CmaEs, CmaEsConfig};

@@ -31,8 +31,8 @@ pub enum Permutation {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CosyneConfig {
-    /// Number of genes of each segment, at least 1. Segments cover all genes and group related ones, such as the weights of
-    /// a neuron. Crossover cuts each of them once.
+    /// Number of genes in each segment, at least 1. Segments cover all genes and group related ones, such as the
+    /// weights of a neuron. Note that crossover cuts each of them once.
     pub segments: Vec<usize>,
     /// Number of individuals m, at least 2: weights of each subpopulation.
     pub population: usize,
@@ -44,8 +44,8 @@ pub struct CosyneConfig {
     pub range: f64,
     /// Probability (0 to 1) that a weight of an offspring is mutated.
     pub mutation_rate: f64,
-    /// The scale of the Cauchy distribution that mutation adds, in the unit of the genes: half of all mutations are smaller. 0
-    /// to 1e100.
+    /// Scale of the Cauchy distribution that mutation adds, in the unit of the genes, 0 to 1e100. Half of all mutations
+    /// are smaller than this.
     pub mutation_scale: f64,
     /// Which weights change places.
     pub permutation: Permutation,
@@ -70,7 +70,7 @@ impl CosyneConfig {
         }
     }
 
-    /// Number of genes, those of all segments together.
+    /// Number of genes in all segments together.
     pub fn genes(&self) -> usize {
         self.segments.iter().fold(0, |sum: usize, segment| sum.saturating_add(*segment))
     }

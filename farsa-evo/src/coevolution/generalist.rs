@@ -126,7 +126,7 @@ impl Side {
 }
 
 impl GeneralistCoevolution {
-    /// A co-evolution at its random initial generation.
+    /// Creates a new co-evolution with a random initial generation.
     ///
     /// # Errors
     /// The errors of [`GeneralistConfig::validate`].
@@ -153,13 +153,14 @@ impl GeneralistCoevolution {
         self.seed
     }
 
-    /// The genomes of the members of a population, 0 or any other number for the second [members x genes].
+    /// Gets the genomes of the members of a population [members x genes]. Use 0 for the first population and any other
+    /// number for the second.
     pub fn members(&self, population: usize) -> &Population {
         let [first, second] = &self.sides;
         if population == 0 { &first.members } else { &second.members }
     }
 
-    /// Returns true if the current generation is one of training.
+    /// Checks whether the current generation belongs to the training phase.
     pub fn is_training(&self) -> bool {
         self.place() >= self.config.encounters()
     }

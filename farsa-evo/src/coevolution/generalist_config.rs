@@ -1,4 +1,4 @@
-//! The configuration of co-evolution with generalist selection.
+//! Settings for co-evolution with generalist selection.
 
 use crate::error::{EvoError, check_setting};
 use crate::population::Population;
@@ -8,28 +8,29 @@ use crate::words::mutation::{BitMutation, Mutation, check_gene_bits};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GeneralistConfig {
-    /// Number of genes of a genome.
+    /// Number of genes in each genome.
     pub genes: usize,
-    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    /// Number of bits in a gene, 1 to 16. Genes range from 0 to 2^bits - 1.
     pub gene_bits: u32,
-    /// Members of each population, a multiple of the newcomers.
+    /// Number of members of each population. This must be a multiple of the number of newcomers.
     pub members: usize,
-    /// Members of which a copy is trained in each round, at least 1: the newcomers that may replace members.
+    /// Number of newcomers, at least 1. These are copies of members that are trained in each round and may replace
+    /// members.
     pub newcomers: usize,
-    /// Opponents m of each individual in a generation, 1 to `members`.
+    /// Number of opponents m that each individual has in a generation, from 1 to `members`.
     pub opponents: usize,
-    /// Generations of training in a round, at least 1.
+    /// Number of generations of training in each round, at least 1.
     pub iterations: u32,
     /// Probability, 0 to 1, that mutation hits a bit.
     pub mutation_rate: f64,
-    /// The change of a bit that mutation hits.
+    /// Determines what happens to a bit that is hit by mutation.
     pub mutation: Mutation,
 }
 
 impl GeneralistConfig {
-    /// The sizes of the program of \[Simione2020\] for genomes of this many genes of 16 bits. Each population has 80
-    /// members and 10 newcomers, trained for 20 generations against 10 opponents. Mutation is that of
-    /// [`GaConfig::new`](crate::words::GaConfig::new).
+    /// Creates a configuration with the sizes of the program of \[Simione2020\], for genomes with this many genes of 16
+    /// bits. Each population has 80 members and 10 newcomers, which are trained for 20 generations against 10
+    /// opponents. Mutation is that of [`GaConfig::new`](crate::words::GaConfig::new).
     pub const fn new(genes: usize) -> Self {
         let (members, newcomers, opponents, iterations) = (80, 10, 10, 20);
         let (gene_bits, mutation_rate, mutation) = (u16::BITS, 0.015, Mutation::Resample);
@@ -56,17 +57,18 @@ impl GeneralistConfig {
         self.bit_mutation().map(|_| ())
     }
 
-    /// Number of individuals of each population in a generation: members and newcomers.
+    /// Number of individuals that each population has in a generation. This includes members and newcomers.
     pub const fn size(&self) -> usize {
         self.members.saturating_add(self.newcomers)
     }
 
-    /// Generations of the encounters of a round, for a valid configuration.
+    /// Number of generations that the encounters of a round take. This requires a valid configuration.
     pub const fn encounters(&self) -> u32 {
         self.size().div_ceil(self.opponents) as u32
     }
 
-    /// Generations of a round, the encounters and then the training, for a valid configuration.
+    /// Number of generations in a round, which consists of encounters and training. This requires a valid
+    /// configuration.
     pub const fn round(&self) -> u32 {
         self.encounters().saturating_add(self.iterations)
     }

@@ -1,4 +1,4 @@
-//! Outcomes of individuals against opponents, and selection by them.
+//! Outcomes of individuals against opponents, and selection based on them.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,16 +9,16 @@ use crate::error::{EvoError, check_setting};
 use crate::fitness::Fitness;
 use crate::population::Population;
 
-/// A newcomer that takes the place of a member of a population, [`Outcomes::replacements`].
+/// A newcomer that replaces a member of a population, see [`Outcomes::replacements`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Replacement {
-    /// The member that goes.
+    /// Index of the member that is replaced.
     pub member: usize,
-    /// The individual, a row of the outcomes, that comes in its place.
+    /// Index of the newcomer, which is a row of the outcomes.
     pub newcomer: usize,
 }
 
-/// The outcome of each individual against each opponent. Larger is better for the individual.
+/// Outcomes of each individual against each opponent. Larger is better for the individual.
 ///
 /// It implements generalist selection. Fitness is the mean against all opponents. Training opponents are those with the
 /// most different outcomes. A trained individual stays only if it is better against *all* opponents.
@@ -46,8 +46,8 @@ pub struct Outcomes {
 }
 
 impl Outcomes {
-    /// Builds the outcomes of individuals against the given number of opponents [individuals x opponents]. A NaN is a
-    /// failed evaluation.
+    /// Creates outcomes of individuals against the given number of opponents [individuals x opponents]. If a value is
+    /// NaN, that evaluation has failed.
     ///
     /// # Errors
     /// [`EvoError::Config`] for no opponents, no values or too many. [`EvoError::Shape`] if the last individual has fewer values
@@ -74,12 +74,13 @@ impl Outcomes {
         self.opponents
     }
 
-    /// The outcome of an individual against each opponent \[opponents\]. Empty beyond the last individual.
+    /// Gets the outcomes of an individual against each opponent \[opponents\], or `None` if there is no such
+    /// individual.
     pub fn of(&self, individual: usize) -> Option<&[Fitness]> {
         self.values.chunks_exact(self.opponents).nth(individual)
     }
 
-    /// The fitness of each individual \[individuals\]: the mean against all opponents.
+    /// Computes the fitness of each individual \[individuals\], which is the mean over all opponents.
     pub fn fitness(&self) -> Vec<Fitness> {
         let mean = |row: &[Fitness]| {
             let sum: f64 = row.iter().map(|fitness| fitness.get()).sum();
@@ -116,8 +117,8 @@ impl Outcomes {
         Ok(chosen)
     }
 
-    /// Returns the members, the first individuals, that newcomers, the last individuals, replace. The best of all stay, as
-    /// many as there are members. Worse newcomers replace worse members.
+    /// Determines which members are replaced by newcomers. Members are the first individuals and newcomers the last. As
+    /// many of the best individuals stay as there are members, and worse newcomers replace worse members.
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`] for as many newcomers as individuals, or more.

@@ -1,4 +1,4 @@
-//! Several searches of one kind, one for each population.
+//! A group of searches of the same kind, one for each population.
 
 use alloc::vec::Vec;
 
@@ -89,7 +89,7 @@ impl Populations<TruncationGa, u16> {
         Self::gathered(members.collect::<Result<_, _>>()?, RecordKind::Order)
     }
 
-    /// The configuration of each population.
+    /// An iterator over the configurations of the populations.
     pub fn configs(&self) -> impl Iterator<Item = &GaConfig> {
         self.members.iter().map(TruncationGa::config)
     }
@@ -144,12 +144,12 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
         Ok(populations)
     }
 
-    /// The searches, one for each population.
+    /// Gets all searches, one for each population.
     pub fn members(&self) -> &[S] {
         &self.members
     }
 
-    /// Number of individuals of each population.
+    /// Number of individuals in each population.
     pub fn size(&self) -> usize {
         self.population.len() / self.members.len()
     }

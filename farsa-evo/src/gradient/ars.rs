@@ -17,11 +17,11 @@ use crate::search::{Algorithm, Row, Search, Step};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ArsConfig {
-    /// The parameters (M) that the search starts from \[genes\], within 1e100 of zero.
+    /// Initial parameters (M) \[genes\], within 1e100 of zero.
     pub mean: Vec<f64>,
-    /// Number of directions (N): a generation has twice as many individuals.
+    /// Number of directions (N). Note that a generation has twice as many individuals.
     pub directions: usize,
-    /// Number of top directions (b) that the step is made of, 1 to all of them.
+    /// Number of top directions (b) that a step is made of, from 1 to all of them.
     pub top_directions: usize,
     /// Step size (alpha), 1e-100 to 1e100.
     pub step_size: f64,
@@ -30,8 +30,9 @@ pub struct ArsConfig {
 }
 
 impl ArsConfig {
-    /// ARS V1, in which all directions count. The step size of 0.02 and the noise of 0.03 are the defaults of the program
-    /// of the authors of \[Mania2018\]. The paper chooses both for each task.
+    /// Creates a configuration of ARS V1, in which all directions count. Its step size of 0.02 and noise of 0.03 are
+    /// the defaults of the program of the authors of \[Mania2018\]. Note that the paper chooses both for each task, so
+    /// you may have to tune them.
     pub const fn new(mean: Vec<f64>, directions: usize) -> Self {
         Self { mean, directions, top_directions: directions, step_size: 0.02, noise: 0.03 }
     }

@@ -1,4 +1,4 @@
-//! Running mean and variance of observations, channel by channel.
+//! Running mean and variance of observations for each channel.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,7 +16,7 @@ const LARGEST_SQUARES: f64 = 1e250;
 /// The standard deviation below which a channel is constant, as in the program of the authors of \[Mania2018\].
 const LEAST_DEVIATION: f64 = 1e-7;
 
-/// Running mean and variance of every channel of an observation, for its normalization.
+/// Running mean and variance of every channel of an observation. Use this to normalize observations.
 ///
 /// It is independent of the strategies. Statistics of parts, such as an episode or an individual, are computed anywhere and
 /// [`merge`](Self::merge)d in a fixed order. Merged parts and a whole agree to a relative 1e-12, but not in their bits.
@@ -48,7 +48,7 @@ pub struct ObservationStatistics {
 }
 
 impl ObservationStatistics {
-    /// Statistics without observations, for the given number of channels.
+    /// Creates empty statistics for the given number of channels.
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`] for none, or more than [`Population::MAX_GENES`].
@@ -59,7 +59,7 @@ impl ObservationStatistics {
         Ok(Self { count: 0, mean: vec![0.0; channels], squares: vec![0.0; channels] })
     }
 
-    /// The statistics whose state was [saved](Snapshot::save), of as many channels as that has.
+    /// Restores statistics from a [saved](Snapshot::save) state. The number of channels is taken from the state.
     ///
     /// # Errors
     /// [`EvoError::State`] for bytes that are no such state.
@@ -75,29 +75,29 @@ impl ObservationStatistics {
         self.mean.len()
     }
 
-    /// Number of observations.
+    /// Number of observations so far.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The mean of each channel, 0 before the first observation.
+    /// Gets the mean of each channel. Before the first observation this is 0.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// The sum of the squared distances from the mean of each channel.
+    /// Gets the sum of the squared distances from the mean for each channel.
     pub fn squares(&self) -> &[f64] {
         &self.squares
     }
 
-    /// The variance of each channel, 0 before the first observation.
+    /// Computes the variance of each channel. Before the first observation this is 0.
     pub fn variance(&self) -> impl Iterator<Item = f64> + '_ {
         let count = self.count.max(1) as f64;
         self.squares.iter().map(move |squares| squares / count)
     }
 
-    /// Adds an observation \[channels\] and returns true. An observation of another length, or with a number that is not
-    /// finite, is left out.
+    /// Adds an observation \[channels\] and returns true. If the observation has a wrong length or contains a number
+    /// that is not finite, it is skipped and this returns false.
     pub fn push(&mut self, row: &[f32]) -> bool {
         debug_assert_eq!(row.len(), self.channels(), "a row of other channels");
         if row.len() != self.channels() || self.count == u64::MAX || !row.iter().all(|x| x.is_finite()) {
@@ -115,8 +115,8 @@ impl ObservationStatistics {
         true
     }
 
-    /// Adds a batch: its number of observations, their mean \[channels\] and their sum of squared distances from it
-    /// \[channels\].
+    /// Adds a batch of observations. You pass their number, their mean \[channels\] and their sum of squared distances
+    /// from it \[channels\].
     ///
     /// # Errors
     /// [`EvoError::OutOfRange`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
@@ -149,7 +149,7 @@ impl ObservationStatistics {
         Ok(())
     }
 
-    /// Adds other statistics.
+    /// Adds all observations of other statistics. Use this to combine statistics of several episodes or individuals.
     ///
     /// # Errors
     /// The conditions of [`add`](Self::add).
@@ -157,8 +157,8 @@ impl ObservationStatistics {
         self.add(other.count, &other.mean, &other.squares)
     }
 
-    /// Normalizes an observation \[channels\] in place. The mean is subtracted, the result divided by the standard
-    /// deviation and limited to `limit` from zero.
+    /// Normalizes an observation \[channels\] in place. This subtracts the mean, divides by the standard deviation and
+    /// limits the result to `limit` from zero.
     ///
     /// A channel with a standard deviation below 1e-7 becomes 0, so that all are 0 until there are two observations. A
     /// NaN stays one. A `limit` that is not above 0 limits nothing.

@@ -17,17 +17,17 @@ use crate::strategy::RecordKind;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OpenAiEsConfig {
-    /// The parameters (theta) that the search starts from \[genes\], within 1e100 of zero.
+    /// Initial parameters (theta) \[genes\], within 1e100 of zero.
     pub mean: Vec<f64>,
-    /// Number of antithetic pairs: a generation has twice as many individuals (n).
+    /// Number of antithetic pairs. Note that a generation has twice as many individuals (n).
     pub pairs: usize,
     /// Standard deviation of the noise (sigma), 1e-100 to 1e100.
     pub sigma: f64,
     /// Learning rate (alpha), 1e-100 to 1e100.
     pub learning_rate: f64,
-    /// The weight decay, subtracted from the gradient for each unit of a parameter, 0 to 1e9.
+    /// Weight decay, which is subtracted from the gradient for each unit of a parameter, 0 to 1e9.
     pub weight_decay: f64,
-    /// The optimizer.
+    /// Optimizer that turns the gradient into a step.
     pub optimizer: Optimizer,
 }
 

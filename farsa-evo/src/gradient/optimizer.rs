@@ -9,7 +9,7 @@ use super::settings::{LARGEST, decay, positive};
 use crate::error::EvoError;
 use crate::search::Row;
 
-/// The optimizer of [`OpenAiEs`](crate::gradient::OpenAiEs).
+/// An optimizer that [`OpenAiEs`](crate::gradient::OpenAiEs) can use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub enum Optimizer {
         first_decay: f64,
         /// Decay of the mean square (beta 2), 0 to less than 1.
         second_decay: f64,
-        /// The addend to the root of the mean square (epsilon), 1e-100 to 1e100.
+        /// Number that is added to the root of the mean square (epsilon), 1e-100 to 1e100.
         epsilon: f64,
     },
     /// Gradient ascent with momentum: v = momentum v + (1 - momentum) gradient, the step is the learning rate times v.

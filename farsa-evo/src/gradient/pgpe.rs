@@ -15,15 +15,15 @@ use crate::population::Population;
 use crate::search::{Algorithm, Row, Search, Step};
 use crate::strategy::RecordKind;
 
-/// The reward of an individual in [`Pgpe`].
+/// Determines the reward of an individual in [`Pgpe`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PgpeFitness {
-    /// Its rank, from -1/2 to 1/2 (0-centered ranking).
+    /// Rank of the individual, scaled to the range from -1/2 to 1/2 (0-centered ranking).
     #[cfg_attr(feature = "serde", serde(rename = "CentredRanks"))]
     CenteredRanks,
-    /// Its fitness, less the mean of its generation as baseline.
+    /// Fitness of the individual, minus the mean of its generation as baseline.
     Raw,
 }
 
@@ -31,30 +31,31 @@ pub enum PgpeFitness {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PgpeConfig {
-    /// The center (x, or mu) of the first generation \[genes\], within 1e100 of zero.
+    /// Initial center (x, or mu) \[genes\], within 1e100 of zero.
     pub mean: Vec<f64>,
     /// Initial standard deviation (sigma) of every gene, 1e-100 to 1e100.
     pub sigma: f64,
-    /// Number of symmetric pairs: a generation has twice as many individuals (lambda).
+    /// Number of symmetric pairs. Note that a generation has twice as many individuals (lambda).
     pub pairs: usize,
     /// Step size of `ClipUp` (alpha), 1e-100 to 1e100.
     pub step_size: f64,
-    /// The most that the center moves in a generation (v max), 1e-100 to 1e100.
+    /// Largest distance that the center can move in a generation (v max), 1e-100 to 1e100.
     pub max_speed: f64,
     /// Momentum of `ClipUp` (m), 0 to less than 1.
     pub momentum: f64,
     /// Learning rate of the standard deviations (Omega), 0 to 10.
     pub sigma_learning_rate: f64,
-    /// The most that a standard deviation changes in a generation, as a share of itself, 0 to less than 1.
+    /// Largest relative change of a standard deviation in a generation, 0 to less than 1.
     pub sigma_max_change: f64,
-    /// The reward of an individual.
+    /// Determines the reward of an individual.
     pub fitness: PgpeFitness,
 }
 
 impl PgpeConfig {
-    /// The parameters of \[Toklu2020\] and of its authors' program, for the given number of pairs. The maximum speed is a
-    /// 15th of the initial radius sigma sqrt(n), the step size half of that, and the momentum 0.9. The standard deviations
-    /// have a learning rate of 0.1 and a largest change of 0.2. Rewards are centered ranks.
+    /// Creates a configuration with the parameters of \[Toklu2020\] and its program, for the given number of pairs.
+    /// Here the maximum speed is a 15th of the initial radius sigma sqrt(n). The step size is half of that, and the
+    /// momentum is 0.9. For standard deviations, the learning rate is 0.1 and the largest change is 0.2. Rewards are
+    /// centered ranks.
     pub fn new(mean: Vec<f64>, sigma: f64, pairs: usize) -> Self {
         let max_speed = sigma * Scalar::sqrt(mean.len() as f64) / 15.0;
         Self {
@@ -125,7 +126,7 @@ pub struct PgpeState {
 }
 
 impl Pgpe {
-    /// The center \[genes\] of the generation that waits for its fitness.
+    /// Gets the center \[genes\] of the distribution that the current generation is drawn from.
     pub fn mean(&self) -> &[f64] {
         &self.state.mean
     }

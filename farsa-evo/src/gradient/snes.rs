@@ -30,8 +30,8 @@ pub struct SnesConfig {
 }
 
 impl SnesConfig {
-    /// The parameters of \[Wierstra2014\] table 1 for d genes: 4 + floor(3 ln d) individuals, learning rates 1 and
-    /// (3 + ln d) / (5 sqrt d).
+    /// Creates a configuration with the parameters of \[Wierstra2014\] table 1. For d genes there are 4 + floor(3 ln d)
+    /// individuals, and the learning rates are 1 and (3 + ln d) / (5 sqrt d).
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let d = mean.len() as f64;
         Self {

@@ -37,8 +37,8 @@ pub struct XnesConfig {
 }
 
 impl XnesConfig {
-    /// The parameters of \[Wierstra2014\] table 1 for d genes. There are 4 + floor(3 ln d) individuals. Learning rates are
-    /// 1 for the mean and (9 + 3 ln d) / (5 d sqrt d) for step size and shape.
+    /// Creates a configuration with the parameters of \[Wierstra2014\] table 1. For d genes there are 4 + floor(3 ln d)
+    /// individuals. Learning rates are 1 for the mean and (9 + 3 ln d) / (5 d sqrt d) for step size and shape.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let d = mean.len() as f64;
         let rate = (9.0 + 3.0 * ln(d)) / (5.0 * d * Scalar::sqrt(d));
@@ -114,12 +114,12 @@ impl Xnes {
         &self.state.mean
     }
 
-    /// The step size of the generation that waits for its fitness.
+    /// Gets the step size sigma of the distribution that the current generation is drawn from.
     pub fn sigma(&self) -> f64 {
         self.state.sigma
     }
 
-    /// The shape B [genes x genes, row after row]: the covariance of a generation is sigma^2 B B^T.
+    /// Gets the shape B [genes x genes, row after row]. Note that the covariance of a generation is sigma^2 B B^T.
     pub fn shape(&self) -> &[f64] {
         &self.state.shape
     }

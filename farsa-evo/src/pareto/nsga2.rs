@@ -1,4 +1,4 @@
-//! The elitist non-dominated sorting genetic algorithm.
+//! An elitist genetic algorithm with non-dominated sorting, for several objectives.
 
 use alloc::vec;
 use alloc::vec::Vec;

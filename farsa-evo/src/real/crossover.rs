@@ -5,11 +5,11 @@ use farsa_num::{Stream, exp, ln};
 use crate::error::{EvoError, check_range, check_share};
 use crate::real::bounds::reflect;
 
-/// The crossover of two parents. Each child is drawn independently.
+/// Method used to cross two parents. Each child is drawn independently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crossover {
-    /// There is one parent, and its genes are copied.
+    /// No crossover. There is only one parent, and its genes are copied.
     None,
     /// Each gene is one parent's or the other's \[Syswerda1989\].
     Uniform {
@@ -27,7 +27,7 @@ pub enum Crossover {
     /// Deviations: one child of the pair is made, either with probability 1/2 for each gene. Genes count as equal from
     /// 1e-14 of their range on, not from 1e-14.
     SimulatedBinary {
-        /// The distribution index eta, 0 to 1000: the larger, the nearer to the parents.
+        /// Distribution index eta, 0 to 1000. With a larger index, children are closer to their parents.
         eta: f64,
     },
 }

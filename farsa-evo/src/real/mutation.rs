@@ -5,11 +5,11 @@ use farsa_num::{Stream, exp, ln};
 use crate::error::{EvoError, check_range, check_setting, check_share};
 use crate::real::bounds::reflect;
 
-/// The mutation of real genes, which adds normal numbers and reflects genes that leave the bounds.
+/// Method used to mutate real genes. All methods add normal numbers and reflect genes that leave the bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RealMutation {
-    /// The same step size always.
+    /// Mutation with a constant step size.
     Gaussian {
         /// Probability (0 to 1) that a gene is mutated.
         rate: f64,
@@ -26,7 +26,7 @@ pub enum RealMutation {
         initial: f64,
         /// The learning rate tau, 0 to 10. 1 / sqrt(genes) in the source.
         tau: f64,
-        /// The step size that is never undercut, above 0 to 1.
+        /// Lower limit of the step size, above 0 to 1.
         smallest: f64,
     },
 }

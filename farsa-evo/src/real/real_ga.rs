@@ -1,4 +1,4 @@
-//! The generational genetic algorithm over real genes.
+//! A generational genetic algorithm over real genes.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -24,23 +24,24 @@ pub struct RealGaConfig {
     pub bounds: Vec<[f64; 2]>,
     /// Number of individuals in each generation.
     pub population: usize,
-    /// Number of the best that stay unchanged, as the first individuals, 0 to population - 1.
+    /// Number of the best individuals that stay unchanged, 0 to population - 1. They become the first individuals.
     pub elites: usize,
-    /// The selection of parents.
+    /// Method used to select parents.
     pub selection: Selection,
-    /// The crossover of two parents.
+    /// Method used to cross two parents.
     pub crossover: Crossover,
     /// Probability (0 to 1) that a child has two parents. No effect for [`Crossover::None`].
     pub crossover_rate: f64,
     /// The mutation of genes.
     pub mutation: RealMutation,
-    /// The factor of the mutation rate of each gene \[genes\], 0 to 1e6. Empty for 1 everywhere.
+    /// Factors that multiply the mutation rate of each gene \[genes\], 0 to 1e6. If this is empty, all factors are 1.
     pub rate_factors: Vec<f64>,
 }
 
 impl RealGaConfig {
-    /// 100 individuals with one elite and tournaments of two. Simulated binary crossover of index 2 has probability 0.9.
-    /// Gaussian mutation changes one gene in a genome by a tenth of its range. The choice is ours.
+    /// Creates a configuration with 100 individuals, one elite and tournaments of two. Simulated binary crossover of
+    /// index 2 has a probability of 0.9. Gaussian mutation changes on average one gene in a genome, by a tenth of its
+    /// range. These values are our choice.
     pub fn new(bounds: Vec<[f64; 2]>) -> Self {
         let mutation = RealMutation::Gaussian { rate: 1.0 / bounds.len().max(1) as f64, sigma: 0.1 };
         Self {
@@ -115,7 +116,7 @@ pub struct RealGaState {
 }
 
 impl RealGa {
-    /// The step size of each individual \[individuals\], as a share of the range.
+    /// Gets the step size of each individual \[individuals\], as a share of the range.
     pub fn step_sizes(&self) -> &[f64] {
         &self.state.steps
     }

@@ -6,24 +6,24 @@ use farsa_num::Stream;
 
 use crate::error::{EvoError, check_range, check_setting};
 
-/// The selection of parents. Each is drawn independently, so an individual may be selected twice.
+/// Method used to select parents. Each parent is drawn independently, so an individual may be selected twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Selection {
     /// The best of `size` individuals that are drawn uniformly, with replacement \[Goldberg1991\].
     Tournament {
-        /// Number of individuals that compete, 1 to population.
+        /// Number of individuals that compete, from 1 to the size of the population.
         size: usize,
     },
     /// Linear ranking \[Baker1985\]: of n individuals that of rank i, from 0, is chosen with probability
     /// (s - 2 (s - 1) i / (n - 1)) / n. Deviation: each parent is drawn by itself, as from a roulette wheel.
     Rank {
-        /// The selection pressure s: the children that the best individual expects, 1 to 2.
+        /// Selection pressure s, 1 to 2. This is the expected number of children of the best individual.
         pressure: f64,
     },
     /// Any of the best `parents`, all with the same probability \[Muhlenbein1993\].
     Truncation {
-        /// Number of the best, 1 to population.
+        /// Number of the best individuals to choose from, from 1 to the size of the population.
         parents: usize,
     },
 }

@@ -19,15 +19,15 @@ use crate::strategy::RecordKind;
 pub struct SteadyStateConfig {
     /// Range of each gene, from low to high \[genes\], -1e100 to 1e100. You can freeze a gene by giving it equal ends.
     pub bounds: Vec<[f64; 2]>,
-    /// Number of individuals, parents and offspring together: even. In the source `popsize`.
+    /// Total number of parents and offspring, which must be even. The source calls this `popsize`.
     pub population: usize,
     /// Probability (0 to 1) that a gene is mutated. 1 in the source.
     pub rate: f64,
-    /// The standard deviation of mutation, as a share of the gene's range, 0 to 1. In the source `mutation`, in the
-    /// gene's unit.
+    /// Standard deviation of mutation as a share of the gene's range, 0 to 1. The source calls this `mutation` and
+    /// gives it in the unit of the gene.
     pub sigma: f64,
-    /// Stochasticity, the largest amount that is added to or subtracted from the fitness of an individual before it is
-    /// ranked. In the unit of fitness, 0 to 1e100, 0 for none.
+    /// Largest amount that is randomly added to or subtracted from the fitness of an individual before it is ranked. It
+    /// is in the unit of fitness, 0 to 1e100. If this is 0, there is no noise.
     pub noise: f64,
 }
 

@@ -3,7 +3,8 @@
 use crate::error::EvoError;
 use crate::words::mutation::check_gene_bits;
 
-/// The range of consecutive genes. Gene 0 is the low end, the largest gene the high end, linear between.
+/// A range for a number of consecutive genes. Gene 0 decodes to the low end, the largest gene to the high end, and
+/// values in between are linear.
 ///
 /// The largest gene is 65535, of genes of fewer bits 2^bits - 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +19,7 @@ pub struct GeneRange {
 }
 
 impl GeneRange {
-    /// `count` genes that range from `low` to `high`, in the unit of the parameter.
+    /// Creates a range for `count` genes that decode to values from `low` to `high`, in the unit of the parameter.
     ///
     /// # Errors
     /// [`EvoError::Config`] when an end is not finite or `low > high`.
@@ -30,7 +31,7 @@ impl GeneRange {
         }
     }
 
-    /// Returns the range for genes of the given number of bits, 1 to 16.
+    /// Sets the number of bits of the genes, 1 to 16. Use this if your genes have fewer than 16 bits.
     ///
     /// ```
     /// use farsa_evo::words::GeneRange;
@@ -49,12 +50,13 @@ impl GeneRange {
         }
     }
 
-    /// Number of genes described.
+    /// Number of genes that this range describes.
     pub const fn count(self) -> usize {
         self.count
     }
 
-    /// The value of one gene, `low + (high - low) * gene / largest`, computed in f64 and rounded to f32 at the end.
+    /// Decodes a single gene as `low + (high - low) * gene / largest`. This is computed in f64 and rounded to f32 at
+    /// the end.
     ///
     /// It is never outside the range, exact at both ends, and never falls with the gene. A gene beyond the largest decodes
     /// to the high end.
@@ -101,7 +103,8 @@ impl TryFrom<SavedRange> for GeneRange {
     }
 }
 
-/// Decodes `genes` \[parameters\] into `out` \[parameters\], range after range, without allocating.
+/// Decodes `genes` \[parameters\] into `out` \[parameters\], range after range. This does not allocate, so you can call
+/// it for every evaluation.
 ///
 /// Parameters have 16 bits unless a range has fewer, linear as in \[Ferrauto2010\]. Deviation: the source does not define
 /// the value of the largest gene. It is the high end here, so a range has 65535 steps, not 65536.

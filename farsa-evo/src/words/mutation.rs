@@ -12,18 +12,19 @@ pub(crate) fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
     if (1..=u16::BITS).contains(&bits) { Ok(()) } else { Err(EvoError::gene_bits(bits)) }
 }
 
-/// The change of a bit that mutation hits.
+/// Determines what happens to a bit that is hit by mutation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mutation {
-    /// The bit is replaced by a newly drawn one, so it flips with half the rate, as in \[Ferrauto2010\].
+    /// Replaces the bit by a newly drawn one, as in \[Ferrauto2010\]. It therefore flips with half of the mutation
+    /// rate.
     #[default]
     Resample,
-    /// The bit flips.
+    /// Always flips the bit.
     Flip,
 }
 
-/// Mutation of every bit of a genome, independently and with the same probability.
+/// A mutation that hits every bit of a genome independently and with the same probability.
 ///
 /// Each bit is hit as in \[Ferrauto2010\], but only the bits that flip draw random numbers. The gap to the next flip is
 /// geometrically distributed (skip sampling). Deviation: [`Mutation::Resample`] at rate p is drawn as flips at rate p / 2,
@@ -37,7 +38,7 @@ pub struct BitMutation {
 }
 
 impl BitMutation {
-    /// Mutation that hits each bit with probability `rate`, 0 to 1.
+    /// Creates a mutation that hits each bit with probability `rate`, 0 to 1.
     ///
     /// # Errors
     /// [`EvoError::Config`] when `rate` is NaN or outside 0 to 1.
@@ -54,7 +55,7 @@ impl BitMutation {
         Ok(Self { log_keep, gene_bits: u64::from(u16::BITS) })
     }
 
-    /// Returns the mutation for genes of the given number of bits, 1 to 16. The other bits stay.
+    /// Sets the number of bits of the genes, 1 to 16. All other bits remain unchanged.
     ///
     /// # Errors
     /// [`EvoError::Config`].
@@ -63,7 +64,8 @@ impl BitMutation {
         Ok(Self { gene_bits: u64::from(bits), ..self })
     }
 
-    /// Mutates `genes` \[genes\], drawing a gap for each bit that flips and one for the end of the genome.
+    /// Mutates `genes` \[genes\] in place. This draws one gap for each bit that flips and another for the end of the
+    /// genome.
     ///
     /// Bits are counted from the first gene on, and from the least significant bit within a gene.
     pub fn apply(self, genes: &mut [u16], stream: &mut Stream) {
@@ -80,7 +82,7 @@ impl BitMutation {
     }
 }
 
-/// Draws every bit of `genes` \[genes\], two genes from each number, the lower half first.
+/// Draws every bit of `genes` \[genes\] at random. Two genes are taken from each number, the lower half first.
 pub fn randomize(genes: &mut [u16], stream: &mut Stream) {
     for pair in genes.chunks_mut(2) {
         let word = stream.next_u32();

@@ -21,23 +21,23 @@ pub(crate) const PARENT_AND_MUTANT: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OnePlusOneConfig {
-    /// Number of genes of a genome.
+    /// Number of genes in each genome.
     pub genes: usize,
-    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    /// Number of bits in a gene, 1 to 16. Genes range from 0 to 2^bits - 1.
     pub gene_bits: u32,
     /// Probability, 0 to 1, that mutation hits a bit of the mutant of generation 0.
     pub first_rate: f64,
-    /// The decrease of the probability from generation to generation, 0 to 1.
+    /// Amount by which the probability decreases from generation to generation, 0 to 1.
     pub rate_step: f64,
-    /// The probability below which it does not fall, 0 to the first.
+    /// Lower limit of the probability, from 0 to the first probability.
     pub last_rate: f64,
-    /// The change of a bit that mutation hits.
+    /// Determines what happens to a bit that is hit by mutation.
     pub mutation: Mutation,
 }
 
 impl OnePlusOneConfig {
-    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits. Half of all bits
-    /// flip at first, 1 % fewer every generation, down to 2 %.
+    /// Creates the configuration of the discrimination experiment of \[FARSA2\] for genomes with this many genes of 8
+    /// bits. At first half of all bits flip. This decreases by 1 % in every generation, down to 2 %.
     pub const fn new(genes: usize) -> Self {
         Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
     }
@@ -59,7 +59,7 @@ impl OnePlusOneConfig {
         Ok(())
     }
 
-    /// Probability (0 to 1) that mutation hits a bit of the mutant of a generation.
+    /// Computes the probability (0 to 1) that mutation hits a bit of the mutant of a generation.
     pub fn rate(&self, generation: u32) -> f64 {
         (self.first_rate - self.rate_step * f64::from(generation)).max(self.last_rate)
     }
@@ -110,7 +110,7 @@ pub struct OnePlusOne {
 }
 
 impl OnePlusOne {
-    /// A search at its random initial generation.
+    /// Creates a new search with a random initial generation.
     ///
     /// # Errors
     /// The errors of [`OnePlusOneConfig::validate`].
@@ -134,19 +134,19 @@ impl OnePlusOne {
         self.seed
     }
 
-    /// Returns true if the parent of the current generation was the mutant of the previous one.
+    /// Checks whether the parent of the current generation was the mutant of the previous one.
     pub fn replaced(&self) -> bool {
         self.survivor == 1
     }
 
-    /// The mean fitness of the current parent over its evaluations, and their number. `None` before the first generation is
-    /// reported.
+    /// Gets the mean fitness of the current parent over its evaluations, and the number of these evaluations. Before
+    /// the first generation is reported, this returns `None`.
     pub fn parent_fitness(&self) -> Option<(Fitness, u32)> {
         (self.evaluations > 0).then(|| (mean(self.sum, self.evaluations), self.evaluations))
     }
 
-    /// Returns the two values that the next [`tell`](Strategy::tell) of this fitness \[2\] compares. They are the mean over
-    /// the parent's evaluations, including the new one, and the mutant's fitness.
+    /// Computes the two values that the next [`tell`](Strategy::tell) of this fitness \[2\] would compare. They are the
+    /// mean over all evaluations of the parent, including the new one, and the fitness of the mutant.
     ///
     /// # Errors
     /// [`EvoError::Shape`].

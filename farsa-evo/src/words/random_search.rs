@@ -1,4 +1,4 @@
-//! The null model: search without selection.
+//! A search without selection, which serves as a baseline.
 
 use alloc::vec::Vec;
 
@@ -41,20 +41,20 @@ pub struct RandomSearch {
     population: Population,
 }
 
-/// Where, and how good, the best individual so far was.
+/// Best individual that a random search has found so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BestIndividual {
-    /// Its generation.
+    /// Generation in which it was evaluated.
     pub generation: u32,
-    /// Its index in that generation.
+    /// Index of the individual in that generation.
     pub individual: usize,
-    /// Its fitness, in the experiment's own unit.
+    /// Fitness of the individual, in the unit that the experiment uses.
     pub fitness: Fitness,
 }
 
 impl RandomSearch {
-    /// A search by generations of `population` genomes of `genes` genes, at its first.
+    /// Creates a new search whose generations have `population` genomes with `genes` genes each.
     ///
     /// # Errors
     /// [`EvoError::Config`].
@@ -64,7 +64,8 @@ impl RandomSearch {
         Ok(Self { seed, generation: 0, best: None, population })
     }
 
-    /// The best individual so far, the earliest among equals. `None` before the first generation is reported.
+    /// Gets the best individual so far. If several are equally good, this is the earliest. Before the first generation
+    /// is reported, this returns `None`.
     pub fn best(&self) -> Option<BestIndividual> {
         self.best
     }

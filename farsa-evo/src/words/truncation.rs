@@ -1,4 +1,4 @@
-//! The genetic algorithm of the reference experiments: the best survive and make mutated copies.
+//! A genetic algorithm in which the best individuals survive and make mutated copies. The reference experiments use it.
 
 use alloc::vec::Vec;
 
@@ -24,23 +24,24 @@ use crate::words::mutation::{BitMutation, Mutation, check_gene_bits, randomize_b
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "SavedConfig", into = "SavedConfig"))]
 pub struct GaConfig {
-    /// Number of genes of a genome.
+    /// Number of genes in each genome.
     pub genes: usize,
-    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    /// Number of bits in a gene, 1 to 16. Genes range from 0 to 2^bits - 1.
     pub gene_bits: u32,
     /// Number of individuals in each generation.
     pub population: usize,
-    /// Number of selected individuals. Each makes population / parents copies.
+    /// Number of individuals that are selected. Each of them makes population / parents copies.
     pub parents: usize,
     /// Probability, 0 to 1, that mutation hits a bit.
     pub mutation_rate: f64,
-    /// The change of a bit that mutation hits.
+    /// Determines what happens to a bit that is hit by mutation.
     pub mutation: Mutation,
 }
 
 impl GaConfig {
-    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits. The best 20 of 100 make five copies
-    /// each, one unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
+    /// Creates the configuration of \[Ferrauto2010\] for genomes with this many genes of 16 bits. The best 20 of 100
+    /// individuals make five copies each. One copy is unchanged and the other four are mutated with a rate of 1.5 % per
+    /// bit, [`Mutation::Resample`].
     pub const fn new(genes: usize) -> Self {
         let (gene_bits, mutation) = (u16::BITS, Mutation::Resample);
         Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
@@ -153,7 +154,8 @@ impl TruncationGa {
         Ok(Self { config, seed, generation: 0, state, population })
     }
 
-    /// The individuals selected from the previous generation, best first \[parents\]. Empty in generation 0.
+    /// Gets the individuals that were selected from the previous generation, best first \[parents\]. This is empty in
+    /// generation 0.
     pub fn selected(&self) -> &[u32] {
         &self.state.selected
     }

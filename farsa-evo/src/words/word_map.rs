@@ -5,37 +5,38 @@ use alloc::vec::Vec;
 use crate::error::EvoError;
 use crate::words::decode::GeneRange;
 
-/// The code of the bits of a gene.
+/// Code that the bits of a gene are written in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum WordCode {
-    /// The binary number that they are.
+    /// A plain binary number.
     #[default]
     Plain,
     /// The reflected binary code \[Gray1953\]. The codes of neighboring values differ by one bit.
     Gray,
 }
 
-/// The encoding of one parameter.
+/// Encoding of a single parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum WordGene {
     /// An integer gene. 0 is the low end, the largest number of its bits the high end, linear between.
     Word {
-        /// Number of bits, the lowest ones of the gene, 1 to 16. The others are ignored.
+        /// Number of bits, 1 to 16. These are the lowest bits of the gene, and the others are ignored.
         bits: u32,
-        /// The low end, in the unit of the parameter.
+        /// Low end of the range, in the unit of the parameter.
         low: f32,
-        /// The high end, not below the low one.
+        /// High end of the range, which must not be below the low end.
         high: f32,
-        /// The code of the bits.
+        /// Code that the bits are written in.
         code: WordCode,
     },
-    /// No word: the parameter is always this.
+    /// A parameter with a fixed value. It takes no gene.
     Frozen(f32),
 }
 
-/// The parameters that a genome of integers encodes, each with its bits, range and code, or frozen. It decodes and encodes.
+/// A map between genomes of integers and the parameters that they encode. Each parameter either has its bits, range and
+/// code, or it is frozen.
 ///
 /// Where a range has 16 bits and the plain code, the values are those of [`decode`](crate::words::decode).
 ///
@@ -64,7 +65,7 @@ pub struct WordMap {
 }
 
 impl WordMap {
-    /// The map of these genes \[parameters\].
+    /// Creates a map from the encoding of each parameter \[parameters\].
     ///
     /// # Errors
     /// [`EvoError::Config`] for no genes, bits outside 1 to 16, and ends or frozen values that are not finite or not low to high.
@@ -81,22 +82,22 @@ impl WordMap {
         Ok(Self { genes, ranges, words })
     }
 
-    /// The encoding of the parameters \[parameters\].
+    /// Gets the encoding of each parameter \[parameters\].
     pub fn genes(&self) -> &[WordGene] {
         &self.genes
     }
 
-    /// Number of words of a genome: parameters that are not frozen.
+    /// Number of integer genes in a genome. Frozen parameters are not counted.
     pub fn words(&self) -> usize {
         self.words
     }
 
-    /// Number of parameters.
+    /// Number of parameters, including frozen ones.
     pub fn parameters(&self) -> usize {
         self.genes.len()
     }
 
-    /// Decodes integer genes \[words\] into a row of parameters \[parameters\], without allocation.
+    /// Decodes integer genes \[words\] into a row of parameters \[parameters\]. This does not allocate.
     ///
     /// # Errors
     /// [`EvoError::Shape`]. The row is then unchanged.
@@ -112,8 +113,8 @@ impl WordMap {
         Ok(())
     }
 
-    /// Encodes a row of parameters \[parameters\] as the nearest integer genes \[words\]. A parameter out of range becomes
-    /// its end. Ignored bits are 0, and values of frozen parameters are ignored.
+    /// Encodes a row of parameters \[parameters\] as the nearest integer genes \[words\]. If a parameter is out of
+    /// range, it is set to the nearest end. Ignored bits become 0, and the values of frozen parameters are ignored.
     ///
     /// Decoding the result of an encoding of decoded parameters returns the same parameters. The genes are the same too,
     /// except for ignored bits and for ranges with fewer numbers than genes.

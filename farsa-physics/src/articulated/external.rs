@@ -1,4 +1,4 @@
-//! Forces from outside that act during one control step.
+//! External forces that act during one control step.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use crate::articulated::model::Model;
 use crate::articulated::spatial::{Vector, cross, sub};
 use crate::articulated::tree::jacobian;
 
-/// The forces of a control step, and what turns them into changes of velocity.
+/// Forces of a control step, together with the data that turns them into changes of velocity.
 #[derive(Clone, Debug)]
 pub struct Wrenches<R> {
     /// The moment about each link's center of mass and the force, in the world's axes.
@@ -25,7 +25,8 @@ pub struct Wrenches<R> {
 }
 
 impl<R: Real> Wrenches<R> {
-    /// Builds an empty set for one model, as [`Precision::step`](crate::articulated::Precision::step) requires it.
+    /// Creates an empty set of forces for a model. [`Precision::step`](crate::articulated::Precision::step) requires
+    /// one.
     pub fn new(model: &Model<R>) -> Self {
         let zero = R::from_f64(0.0);
         let mut diagonal = vec![zero; model.dofs];

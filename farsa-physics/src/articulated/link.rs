@@ -15,7 +15,7 @@ pub(crate) enum Motion {
     Floating,
 }
 
-/// A moving link as the kernels need it, each number rounded once from the robot's description.
+/// A moving link in the form that the kernels need. Each number of the description is rounded only once.
 #[derive(Clone, Copy, Debug)]
 pub struct Link<R> {
     pub(crate) parent: u16,
@@ -43,7 +43,7 @@ pub struct Link<R> {
     pub(crate) sliding: Option<Sliding<R>>,
 }
 
-/// The results of the sweeps for one link.
+/// Results that the sweeps compute for a single link.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkData<S> {
     pub(crate) rotation: Matrix<S>,
@@ -66,7 +66,7 @@ pub struct LinkData<S> {
 }
 
 impl<S: Scalar> LinkData<S> {
-    /// An empty one.
+    /// Creates empty results.
     pub fn new(simd: S::Simd) -> Self {
         let o = S::splat(simd, S::Real::from_f64(0.0));
         let zero = Spatial::zero(simd);

@@ -21,7 +21,7 @@ use crate::articulated::lane::{LINK_WORDS, Words};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::step::{Precision, Scratch, step};
 
-/// The numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
+/// Numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
 pub const LANES: [usize; 2] = [8, 16];
 
 /// Steps all worlds of a batch together.

@@ -1,4 +1,4 @@
-//! The constant part of an articulated world: links, colliders, pairs, actuators, options.
+//! Constant data of an articulated world, such as links, colliders, pairs, actuators and options.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -25,7 +25,8 @@ pub struct Options {
     pub gravity: [f64; 3],
     /// Number of sweeps over the contacts in each dynamics step.
     pub sweeps: u32,
-    /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]: what is left of creep.
+    /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]. This determines how much creep is
+    /// left.
     pub friction_compliance: f64,
     /// Natural frequency of a joint stop [rad/s]. It is based on the inertia of the joint at position 0.
     pub limit_frequency: f64,
@@ -273,7 +274,7 @@ impl<R: Real> Model<R> {
     pub fn links(&self) -> &[Link<R>] {
         &self.links
     }
-    /// Gravity [m/s2].
+    /// Gets the gravity [m/s2].
     pub fn gravity(&self) -> [R; 3] {
         self.gravity
     }

@@ -1,4 +1,4 @@
-//! The construction of a model from a description.
+//! Construction of models from descriptions.
 
 use alloc::vec;
 use alloc::vec::Vec;

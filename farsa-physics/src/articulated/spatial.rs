@@ -107,17 +107,17 @@ impl<S: Scalar> Spatial<S> {
         let z = S::splat(simd, farsa_num::Real::from_f64(0.0));
         Self { angular: [z; 3], linear: [z; 3] }
     }
-    /// Each component times `k`.
+    /// Multiplies each component by `k`.
     #[inline(always)]
     pub fn scale(self, k: S) -> Self {
         Self { angular: scale(self.angular, k), linear: scale(self.linear, k) }
     }
-    /// Scalar product of a motion and a force: the power [W].
+    /// Computes the scalar product of a motion and a force, which is the power [W].
     #[inline(always)]
     pub fn dot(self, other: Self) -> S {
         dot(self.angular, other.angular) + dot(self.linear, other.linear)
     }
-    /// Rate of change of a motion that is carried along by this one [Featherstone2008] eq. 2.31.
+    /// Computes the rate of change of a motion that is carried along by this one \[Featherstone2008\] eq. 2.31.
     #[inline(always)]
     pub fn cross_motion(self, m: Self) -> Self {
         Self {
@@ -125,7 +125,7 @@ impl<S: Scalar> Spatial<S> {
             linear: add(cross(self.angular, m.linear), cross(self.linear, m.angular)),
         }
     }
-    /// Rate of change of a force that is carried along by this motion [Featherstone2008] eq. 2.32.
+    /// Computes the rate of change of a force that is carried along by this motion \[Featherstone2008\] eq. 2.32.
     #[inline(always)]
     pub fn cross_force(self, f: Self) -> Self {
         Self {
@@ -133,12 +133,12 @@ impl<S: Scalar> Spatial<S> {
             linear: cross(self.angular, f.linear),
         }
     }
-    /// Velocity [m/s] of the body's point at `r` [m] from the reference point.
+    /// Computes the velocity [m/s] of the point of the body at `r` [m] from the reference point.
     #[inline(always)]
     pub fn at(self, r: [S; 3]) -> [S; 3] {
         add(self.linear, cross(self.angular, r))
     }
-    /// The force `f` [N] at the point `r` [m] from the reference point.
+    /// Creates the spatial force of `f` [N] at the point `r` [m] from the reference point.
     #[inline(always)]
     pub fn force_at(r: [S; 3], f: [S; 3]) -> Self {
         Self { angular: cross(r, f), linear: f }

@@ -17,7 +17,7 @@ use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale
 use crate::articulated::stop::{Stop, set_up_stops};
 use crate::articulated::tree::{Root, accelerations, forward_kinematics};
 
-/// The temporary results of a step for one model. Made once, reused for every step.
+/// Temporary results of a step. You create this once for a model and reuse it for every step.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Scalar> {
     pub(crate) links: Vec<LinkData<S>>,
@@ -41,7 +41,7 @@ pub struct Scratch<S: Scalar> {
 }
 
 impl<S: Scalar> Scratch<S> {
-    /// Room for the steps of one model.
+    /// Allocates the results for a model.
     pub fn new(simd: S::Simd, model: &Model<S::Real>) -> Self {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         Self {
@@ -66,18 +66,19 @@ impl<S: Scalar> Scratch<S> {
         }
     }
 
-    /// Where the links are, after [`Scratch::forward_kinematics`] or a step, for the kernels of [`crate::articulated`].
+    /// Gets the links in their current places, for the kernels of [`crate::articulated`]. Call
+    /// [`Scratch::forward_kinematics`] or make a step first.
     pub fn links(&mut self) -> &mut [LinkData<S>] {
         &mut self.links
     }
 
-    /// The factors of the floating links, for [`crate::articulated::accelerations`].
+    /// Gets the links and the factors of the floating ones, for [`crate::articulated::accelerations`].
     pub fn parts(&mut self) -> (&mut [LinkData<S>], &mut [Root<S>]) {
         (&mut self.links, &mut self.roots)
     }
 
-    /// Places the links of `state` [`Model::state_len`]. Needed once before the first step and after any change from
-    /// outside.
+    /// Computes the places of the links from `state` [`Model::state_len`]. You need to call this once before the first
+    /// step and whenever the state was changed from outside.
     #[inline(always)]
     pub fn forward_kinematics(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
         let (q, rest) = state.split_at(model.positions);
@@ -85,7 +86,7 @@ impl<S: Scalar> Scratch<S> {
     }
 }
 
-/// The precision of a [`crate::articulated::World`]: `f32` for speed, `f64` for reference.
+/// Precision of a [`crate::articulated::World`]. Use `f32` for speed and `f64` as a reference.
 ///
 /// The step is compiled here, once for each, and not again in every crate that steps a world.
 pub trait Precision: Real {
@@ -130,7 +131,7 @@ pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Par
     Parts { q, v, commands, points, rolling_impulses }
 }
 
-/// Lets one control step pass for every lane of `state` [`Model::state_len`].
+/// Advances every lane of `state` [`Model::state_len`] by one control step.
 ///
 /// `scratch` must have been made for the model, and [`Scratch::forward_kinematics`] called once since `state` was
 /// changed from outside.

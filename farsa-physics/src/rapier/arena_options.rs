@@ -1,4 +1,4 @@
-//! The options of a world of wheeled robots in rapier.
+//! Options for a world of wheeled robots in rapier.
 
 use crate::rapier::error::RapierError;
 use crate::rapier::options::Options;

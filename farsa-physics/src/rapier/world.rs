@@ -85,7 +85,7 @@ impl World {
         self.carrier(body).map(|carrier| carrier.body)
     }
 
-    /// Returns whether the world has not broken down.
+    /// Checks that the world has not broken down.
     pub fn is_finite(&self) -> bool {
         !self.lost
     }
