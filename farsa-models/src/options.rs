@@ -2,26 +2,33 @@
 
 use std::path::PathBuf;
 
-/// The largest size of a model, so that reading takes bounded time and memory.
+/// Limits on the size of a model, so that reading takes bounded time and memory.
+///
+/// You usually don't need to change these, unless your model is unusually large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Limits {
-    /// Bytes of a file.
+    /// Maximum size of a file [bytes].
     pub bytes: usize,
-    /// Bytes of all files, a mesh of a URDF counted each time that it is used.
+    /// Maximum size of all files together [bytes]. Note that a mesh of a URDF counts each time it is used.
     pub all_bytes: usize,
-    /// Elements of a model with its included files. Our URDF has 12 for a segment with a capsule and 4 for another
-    /// shape. A robot of more than 4000 segments may therefore exceed it.
+    /// Maximum number of elements in a model, including those of included files.
+    ///
+    /// If you write URDF with this crate, a segment with a capsule takes 12 elements, and any other shape takes 4. This
+    /// means that a robot with more than 4000 segments may exceed the default.
     pub elements: usize,
-    /// Nested elements. Bodies of an MJCF are within their carriers, so that depth equals the length of a chain.
+    /// Maximum depth of nested elements. Since bodies of an MJCF are nested, this also limits the length of a chain.
     pub depth: usize,
-    /// Attributes of an element, and name spaces of a model. All elements together may have eight each.
+    /// Maximum number of attributes of an element, and of namespaces in a model. All elements together may have eight
+    /// each.
     pub attributes: usize,
-    /// Elements in the `default` classes of an MJCF.
+    /// Maximum number of elements in the `default` classes of an MJCF.
     pub defaults: usize,
-    /// Geoms of an MJCF that may touch others, each of which is compared with each.
+    /// Maximum number of geoms in an MJCF that may touch others. Reading compares each pair of them, so its time grows
+    /// quadratically.
     pub contacts: usize,
-    /// Files that are opened: the model, included ones and meshes. Files of a URDF count at each use.
+    /// Maximum number of files to open, which includes the model itself, included files and meshes. Files of a URDF count
+    /// at each use.
     pub files: usize,
 }
 
@@ -42,50 +49,54 @@ impl Default for Limits {
     }
 }
 
-/// The treatment of meshes that may touch something.
+/// Treatment of meshes that may touch something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Meshes {
-    /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points. See
+    /// Replaces each mesh by a ball, capsule or box around all its points, whichever has the least volume. See
     /// [`Imported`](crate::Imported).
     #[default]
     Fit,
-    /// They are left out, without looking at their files, and noted.
+    /// Leaves them out with a warning. This doesn't open their files.
     Leave,
 }
 
-/// The treatment of masses that no body can have. By default they are errors.
+/// Treatment of masses and inertias that are physically impossible. By default they are errors.
 ///
-/// MJCF's `compiler` has the same settings (`boundmass`, `boundinertia`, `balanceinertia`), which are obeyed there anyway.
+/// Note that the `compiler` element of MJCF has the same settings (`boundmass`, `boundinertia`, `balanceinertia`). These
+/// are always respected.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Repair {
-    /// Least mass of what moves [kg].
+    /// Minimum mass of moving bodies [kg].
     pub least_mass: f64,
-    /// Least principal moment of inertia of what moves [kg m2].
+    /// Minimum principal moment of inertia of moving bodies [kg m2].
     pub least_inertia: f64,
-    /// Gives moments of which one exceeds the sum of the others their mean.
+    /// If one moment exceeds the sum of the others, replaces all three by their mean.
     pub balance: bool,
 }
 
-/// The options of a reader. [`ReadOptions::default`] reads strictly.
+/// Options for reading a model.
+///
+/// Use [`ReadOptions::default`] to read strictly.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReadOptions {
-    /// The folder that all files that the model names must lie in, or `None` for the folder of the model itself.
+    /// Folder that must contain all files used by the model. If this is `None`, the folder of the model is used.
     pub root: Option<PathBuf>,
-    /// Folders that hold packages, for `package://name/...`: each is looked in for a folder `name`.
+    /// Folders with packages, for paths like `package://name/...`. Each of them is searched for a folder `name`.
     pub packages: Vec<PathBuf>,
-    /// True if a URDF's root moves freely instead of standing fixed in the world. One called `world` is the world
-    /// anyway.
+    /// Lets the root of a URDF move freely instead of fixing it in the world. This has no effect on a root with the name
+    /// `world`, which always is the world.
     pub floating: bool,
-    /// The treatment of meshes.
+    /// Treatment of meshes.
     pub meshes: Meshes,
-    /// The treatment of impossible masses.
+    /// Treatment of impossible masses.
     pub repair: Repair,
-    /// The share of a body's mass and inertia that each of the segments between its joints gets, where it has several.
+    /// Fraction of mass and inertia for segments between the joints of a body. This only matters if a body has several
+    /// joints.
     pub between: f64,
-    /// The largest size of the model.
+    /// Limits on the size of the model.
     pub limits: Limits,
 }
 

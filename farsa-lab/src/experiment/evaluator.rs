@@ -40,7 +40,8 @@ pub struct TaskInfo {
     pub description: Description,
     /// Trials per evaluation. By default 1.
     pub trials: usize,
-    /// Step at which an episode is stopped and counts as failed. By default see [`step_budget`](Self::step_budget).
+    /// Step at which an episode is stopped and counts as failed. If this is `None`,
+    /// [`step_budget`](Self::step_budget) chooses a default.
     pub step_budget: Option<u64>,
     /// Names of the fitness terms in [`Outcome::terms`], in order. By default `fitness`.
     pub terms: Vec<String>,
@@ -68,7 +69,9 @@ pub struct TaskInfo {
 }
 
 impl TaskInfo {
-    /// A task of one population and one trial with these parameters and this recording.
+    /// Creates the data of a task with one population and one trial.
+    ///
+    /// All optional abilities are off. Use the update syntax of structs to change single fields, as in the example above.
     pub fn new(parameters: Vec<Parameter>, schema: Schema) -> Self {
         let description = Description { parameters: parameters.len(), ..Description::default() };
         Self {
@@ -86,9 +89,10 @@ impl TaskInfo {
         }
     }
 
-    /// Returns the step at which an episode is stopped, so that every episode ends.
+    /// Gets the step at which an episode is stopped, so that every episode ends.
     ///
-    /// Without a `step_budget` this is the number of steps in the description, or ten million.
+    /// If the field `step_budget` is `None`, this is the number of steps in the description. It is ten million if the
+    /// description has no steps either.
     pub fn step_budget(&self) -> u64 {
         self.step_budget.unwrap_or(match self.description.steps {
             0 => 10_000_000,
@@ -99,41 +103,47 @@ impl TaskInfo {
 
 /// A task: its data, its fitness, and the abilities of some tasks.
 pub trait Task: Send {
-    /// Returns the data of the task. The same settings must give the same data.
+    /// Describes the task. Note that the same settings must always give the same data.
     fn info(&self) -> TaskInfo;
 
-    /// Returns the fitness of an individual from its trials, in the order of trials.
+    /// Computes the fitness of an individual from its trials, in the order of trials.
     ///
-    /// By default the sum of all terms. `farsa test` also calls it with single trials.
+    /// The default implementation adds up all terms of all trials. If you override it, note that `farsa test` also
+    /// calls it with single trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         trials.iter().flat_map(|outcome| &outcome.terms).sum()
     }
 
-    /// Returns further objectives and measures of an individual, if the task has any.
+    /// Further objectives and measures of an individual, if the task has any.
+    ///
+    /// You don't need to implement this if your strategy only uses the fitness.
     fn behavior(&self) -> Option<&dyn Behavior> {
         None
     }
 
-    /// Returns the exports of the task, if it has any.
+    /// Data for `farsa export`, if the task has any.
     fn exports(&self) -> Option<&dyn Exports> {
         None
     }
 
-    /// Returns the construction of bodies from parameters, if bodies evolve.
+    /// Construction of bodies from parameters. Implement this if bodies evolve.
     fn bodies(&self) -> Option<&dyn Bodies> {
         None
     }
 }
 
-/// The data of `farsa export`. Each method returns nothing by default.
+/// Data for `farsa export`.
+///
+/// All methods are optional, since each of them returns `None` by default.
 pub trait Exports {
-    /// Returns the options of the robot's MuJoCo model.
+    /// Options of the MuJoCo model of the robot.
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         None
     }
 
-    /// Returns the robot for other programs, if it differs from the one of the [`schema`](TaskInfo::schema). Bodies
-    /// that evolve are built from the parameters.
+    /// Robot for other programs, if it differs from the one of the [`schema`](TaskInfo::schema).
+    ///
+    /// If bodies evolve, they are built from `parameters`.
     ///
     /// Its MuJoCo model steps by [`MjcfOptions::default`] unless [`mjcf_options`](Self::mjcf_options) differs.
     fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
@@ -141,51 +151,58 @@ pub trait Exports {
         None
     }
 
-    /// The controller with these parameters and its channels.
+    /// Exports the controller with these parameters, together with its channels.
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let _ = parameters;
         None
     }
 
-    /// Returns the controller of an individual of a population, if the channels of populations differ.
+    /// Exports the controller of an individual in the given population.
+    ///
+    /// You only need to implement this if the channels of populations differ. By default it ignores the population and
+    /// calls [`controller`](Self::controller).
     fn controller_of(&self, population: usize, parameters: &[f32]) -> Option<ControllerExport> {
         let _ = population;
         self.controller(parameters)
     }
 
-    /// Returns the start of an episode.
+    /// Exports the start of an episode.
     fn start(&self, id: EpisodeId) -> Option<StartExport> {
         let _ = id;
         None
     }
 }
 
-/// Bodies that are made of parameters.
+/// Construction of bodies from parameters, for tasks in which bodies evolve.
 pub trait Bodies {
-    /// Returns the schema of one evaluation's episodes. Its channels are those of [`TaskInfo::schema`] for any
-    /// parameters.
+    /// Builds the schema for episodes with these parameters.
+    ///
+    /// Its channels must not depend on the parameters, and must be the same as in [`TaskInfo::schema`].
     fn schema_with(&self, parameters: &[f32]) -> Schema;
 }
 
-/// One trial that is to be evaluated.
+/// A single trial to evaluate.
+///
+/// Use [`Evaluation::new`] and change the fields that you need.
 #[derive(Debug, Clone, Copy)]
 pub struct Evaluation<'p> {
-    /// Its number among those that are evaluated together.
+    /// Number of this trial among all that are evaluated together.
     pub number: usize,
     /// The parameters \[[`TaskInfo::parameters`]\].
     pub parameters: &'p [f32],
     /// Parameters of the opponents, one of each other population in order. Empty for a single population.
     ///
-    /// Which population the parameters are of follows from the episode, [`EpisodeId::population`].
+    /// Use [`EpisodeId::population`] to find out which population the parameters belong to.
     pub opponents: &'p [&'p [f32]],
     /// Statistics of the observations of all previous generations, if observations are normalized
     /// \[[`TaskInfo::observations`]\].
     pub normalisation: Option<&'p ObservationStatistics>,
-    /// Which episode.
+    /// Episode to run.
     pub id: EpisodeId,
     /// Case of a test protocol \[[`TaskInfo::protocols`]\]. None in a run and in a plain test.
     ///
-    /// All cases of a protocol have the same episodes, so that they differ in nothing but the case.
+    /// This doesn't change the episodes. All cases of a protocol share them, so any difference in the outcome is due to
+    /// the case.
     pub case: Option<CaseId>,
     /// Further change of the controller in a test \[[`TaskInfo::anatomy`]\].
     pub intervention: Option<&'p Intervention>,
@@ -198,7 +215,10 @@ pub struct Evaluation<'p> {
 }
 
 impl<'p> Evaluation<'p> {
-    /// A trial of these parameters, number 0, without opponents, normalised observations, a case or anything that is done to it.
+    /// Creates a plain trial of these parameters.
+    ///
+    /// It has number 0 and neither opponents nor a case. Observations are not normalized, and nothing disturbs the
+    /// episode.
     pub fn new(parameters: &'p [f32], id: EpisodeId) -> Self {
         Self {
             number: 0,
@@ -217,35 +237,40 @@ impl<'p> Evaluation<'p> {
 
 /// Evaluates trials of an experiment in one thread: its robot, world and scratch memory.
 ///
-/// An outcome depends on the [`Evaluation`] alone, never on previous evaluations. This makes runs repeatable, resumable
-/// and equal on any number of threads. A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set, so that
-/// no run shares its numbers. The individual is then the first of its population, and the generation counts the earlier
-/// episodes of the same trial.
+/// An implementation must make sure that an outcome depends only on the [`Evaluation`], and never on previous
+/// evaluations. This makes runs repeatable and resumable, and lets you use any number of threads without changing the
+/// results.
+///
+/// Seeds of a run are below 2^63. In `farsa test` the seed has bit 63 set, so that tests never share random numbers with
+/// a run. The individual is then the first of its population, and the generation counts the earlier episodes of the same
+/// trial.
 pub trait Evaluator: Task {
     /// Runs one trial from its start to its end.
     ///
-    /// A recorder receives the values of the [`schema`](TaskInfo::schema) at every step and must not change the
-    /// outcome. A trial that failed is [`Outcome::failed`]. A trial that panics counts as failed, and this value is
-    /// then dropped and built again. [`InWorld`](crate::InWorld) ends a trial at its [step
-    /// budget](TaskInfo::step_budget). A custom loop must end by itself.
+    /// If there is a recorder, it receives the values of the [`schema`](TaskInfo::schema) at every step. Recording must
+    /// not change the outcome.
+    ///
+    /// Return [`Outcome::failed`] if a trial fails. If this method panics, the trial also counts as failed, and the
+    /// evaluator is dropped and built again. Note that a custom loop must end by itself, while
+    /// [`InWorld`](crate::InWorld) ends a trial at its [step budget](TaskInfo::step_budget).
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
-    /// Returns whether evaluations can move bodies. By default they cannot.
+    /// Checks whether evaluations support [`Evaluation::displacements`]. This is `false` by default.
     fn displaces(&self) -> bool {
         false
     }
 
-    /// Returns whether evaluations can push bodies. By default they cannot.
+    /// Checks whether evaluations support [`Evaluation::pushes`]. This is `false` by default.
     fn pushes(&self) -> bool {
         false
     }
 
-    /// Returns the evaluation in lanes, if there is one.
+    /// Gives access to the evaluation in lanes, if this evaluator supports it.
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         None
     }
 
-    /// Returns the training for the strategy [`Learning`](crate::strategy::Learning).
+    /// Gives access to the training for the strategy [`Learning`](crate::strategy::Learning), if there is any.
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         None
     }
@@ -253,16 +278,17 @@ pub trait Evaluator: Task {
 
 /// Evaluates trials side by side, one in each lane.
 pub trait InLanes {
-    /// Prepares for a number of lanes. With one lane nothing is kept.
+    /// Prepares for the given number of lanes. With a single lane nothing is kept.
     ///
     /// # Errors
-    /// Whatever keeps the lanes from being built.
+    /// Returns an error if the lanes cannot be built.
     fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error>;
 
-    /// Evaluates until `next` returns none. `done` receives the number of each evaluation and its outcome, equal to
-    /// that of [`Evaluator::evaluate`].
+    /// Evaluates trials until `next` returns `None`.
     ///
-    /// `next` may be asked in any order of `done`: other threads draw from the same evaluations.
+    /// For each trial `done` is called with its number and its outcome, which must be equal to that of
+    /// [`Evaluator::evaluate`]. The calls of `next` and `done` may be interleaved in any order, since other threads draw
+    /// from the same evaluations.
     fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
@@ -270,28 +296,33 @@ pub trait InLanes {
     );
 }
 
-/// Learns from demonstrations: its state is a row of numbers that iterations change.
+/// Learns from demonstrations. Its state is a row of numbers, which each iteration changes.
 pub trait Learner {
-    /// The state from which learning starts: all that [`iterate`](Self::iterate) depends on besides seed and generation.
+    /// Creates the state from which learning starts.
+    ///
+    /// It must contain everything that [`iterate`](Self::iterate) depends on, except for the seed and the generation.
     fn initial_state(&self, seed: u64) -> Vec<f64>;
 
-    /// Changes the state by one iteration and returns its errors. Returns `None` for a state without anything to learn
-    /// from.
+    /// Changes the state by one iteration and returns its errors.
     ///
-    /// The same state, seed and generation must become the same state, whatever this value did before.
+    /// If there is nothing to learn from, this returns `None`. The new state must only depend on the old state, the seed
+    /// and the generation, and not on earlier calls.
     fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration>;
 
-    /// Returns a value for each of the task's [`parameters`](TaskInfo::parameters). It is rounded to the nearest gene
-    /// and evaluated.
+    /// Converts the state to a value for each of the [`parameters`](TaskInfo::parameters) of the task.
+    ///
+    /// These values are then rounded to the nearest gene and evaluated.
     fn learned(&self, state: &[f64]) -> Vec<f64>;
 }
 
 /// Errors and successes of an iteration, [`Learner::iterate`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Iteration {
-    /// Root of the mean squared error of motor values before it, on demonstrations that have never been learned from.
+    /// Root mean squared error of motor values before the iteration.
+    ///
+    /// This is measured on demonstrations that have never been used for learning.
     pub before: f64,
-    /// The same on the same demonstrations after it.
+    /// Error after the iteration, on the same demonstrations.
     pub after: f64,
     /// Share of the demonstrations that succeeded \[0..1\].
     pub successes: f64,

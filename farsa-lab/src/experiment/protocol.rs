@@ -13,10 +13,10 @@ const MAX_STATES: usize = 256;
 /// Most bytes of a protocol's name, and of a row's or a column's.
 const MAX_NAME_BYTES: [usize; 2] = [64, 120];
 
-/// A test of an individual: a table of cases, each of which is run on the same starts.
+/// A test of an individual, given as a table of cases that all use the same starts.
 ///
-/// `farsa test DIR --protocol NAME` runs it, and [`Evaluation::case`](crate::Evaluation::case) names the case of a
-/// trial. A list of cases is a table of one column.
+/// Use `farsa test DIR --protocol NAME` to run it. Your evaluator finds the case of a trial in
+/// [`Evaluation::case`](crate::Evaluation::case). If you only need a list of cases, this is a table of one column.
 ///
 /// ```
 /// use farsa_lab::advanced::Protocol;
@@ -31,16 +31,17 @@ const MAX_NAME_BYTES: [usize; 2] = [64, 120];
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Protocol {
-    /// Its name, of small letters, digits and hyphens.
+    /// Name of the protocol, which may contain lowercase letters, digits and hyphens.
     pub name: String,
     /// Purpose, in one line.
     pub summary: String,
-    /// Trials of each case where no others are asked for.
+    /// Default number of trials per case.
     pub trials: u32,
     /// Titles of rows and columns: `["action", "object"]`. Empty for none.
     pub axes: [String; 2],
-    /// Cells of the table, in the order of evaluation. Rows and columns are shown in order of first appearance. A table
-    /// may have holes.
+    /// Cells of the table, in the order of evaluation.
+    ///
+    /// Rows and columns are shown in order of first appearance. Note that a table may have holes.
     pub cases: Vec<Case>,
     /// Neurons of the [`Schema`](farsa_view::Schema) that form the internal state. The first trials of each case are
     /// recorded, and reports draw the first two principal components. Empty for no recording.
@@ -59,18 +60,18 @@ pub struct Case {
 }
 
 impl Case {
-    /// A case that individuals evolved with.
+    /// Creates a case that was part of evolution, so `held_out` is `false`.
     pub fn new(row: impl Into<String>, column: impl Into<String>) -> Self {
         Self { row: row.into(), column: column.into(), held_out: false }
     }
 
-    /// Returns the name in a line of text: `TOUCH red`.
+    /// Formats the name of the case, for example `TOUCH red`. In a list this is just the row.
     pub fn name(&self) -> String {
         if self.column.is_empty() { self.row.clone() } else { format!("{} {}", self.row, self.column) }
     }
 }
 
-/// Which case of which protocol a trial belongs to.
+/// Identifies the case that a trial belongs to, together with its protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseId {
     /// Index of the protocol in [`TaskInfo::protocols`](crate::TaskInfo::protocols).
@@ -80,12 +81,15 @@ pub struct CaseId {
 }
 
 impl Protocol {
-    /// A protocol without cases, of 20 trials a case.
+    /// Creates a protocol without cases, and with 20 trials per case.
+    ///
+    /// Note that a protocol without cases does not pass [`check`](Self::check). Add some using
+    /// [`with_case`](Self::with_case).
     pub fn new(name: impl Into<String>, summary: impl Into<String>) -> Self {
         Self { name: name.into(), summary: summary.into(), trials: 20, ..Self::default() }
     }
 
-    /// One of a list of cases.
+    /// Creates a protocol from a list of cases.
     pub fn from_list<R: Into<String>>(
         name: impl Into<String>,
         summary: impl Into<String>,
@@ -95,7 +99,9 @@ impl Protocol {
         Self { cases, ..Self::new(name, summary) }
     }
 
-    /// One of a full table, row after row: the case of row r and column c is number `r * columns + c`.
+    /// Creates a protocol from a full table, row by row.
+    ///
+    /// This means that the case in row `r` and column `c` has index `r * columns + c`.
     pub fn from_table<R: Into<String>, C: Into<String>>(
         name: impl Into<String>,
         summary: impl Into<String>,
@@ -117,26 +123,28 @@ impl Protocol {
         Self { trials, ..self }
     }
 
-    /// The same with names for what rows and columns are.
+    /// Sets the titles of rows and columns.
     #[must_use]
     pub fn with_axes(self, rows: impl Into<String>, columns: impl Into<String>) -> Self {
         Self { axes: [rows.into(), columns.into()], ..self }
     }
 
-    /// The same, recording the states of these neurons in the first trials of each case.
+    /// Sets the neurons whose states are recorded in the first trials of each case.
     #[must_use]
     pub fn with_states(self, states: Range<usize>) -> Self {
         Self { states, ..self }
     }
 
-    /// The same with one more case.
+    /// Appends a case.
     #[must_use]
     pub fn with_case(mut self, case: Case) -> Self {
         self.cases.push(case);
         self
     }
 
-    /// The same where the cases of which this is true, by row and column, were held out.
+    /// Marks the cases for which `held_out` returns `true` as absent from evolution.
+    ///
+    /// The closure is called with the row and the column of each case. This overwrites earlier marks.
     #[must_use]
     pub fn with_held_out(mut self, held_out: impl Fn(&str, &str) -> bool) -> Self {
         for case in &mut self.cases {
@@ -178,7 +186,7 @@ impl Protocol {
     /// Checks the names, cases and trials of all protocols.
     ///
     /// # Errors
-    /// [`Error::Other`] that names the protocol and what is wrong with it.
+    /// Returns [`Error::Other`] with the name of the first invalid protocol and the reason.
     pub fn check(protocols: &[Self]) -> Result<(), Error> {
         let mut names = BTreeSet::new();
         for protocol in protocols {

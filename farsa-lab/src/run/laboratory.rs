@@ -10,7 +10,9 @@ use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::known;
 
-/// Experiments and strategies by name, with the command over them.
+/// A collection of experiments and strategies, and the command that runs them.
+///
+/// Use it in the `main` function of your program:
 ///
 /// ```no_run
 /// use std::process::ExitCode;
@@ -30,13 +32,13 @@ pub struct Laboratory<'e> {
     module: Option<(&'static [u8], &'static [&'static str])>,
 }
 
-/// Builds an experiment from the text of a file with the given name. The text may name the given strategies.
+/// Builds an experiment from the text of a file with the given name. The text may use the given strategies.
 ///
-/// Files named by the text are read from `folder`. The text stored in a run has no folder. It contains everything it needs and
-/// reads no file.
+/// If the text refers to other files, they are read from `folder`. Note that the text stored in a run has no folder, since
+/// it already contains everything and reads no file.
 ///
 /// # Errors
-/// An error in the text, with file, line and key, or in a file that it names.
+/// Returns an error with file, line and key if the text is invalid, or an error in one of the files that it refers to.
 pub type ReadExperiment = fn(
     name: &str,
     text: &str,
@@ -47,30 +49,31 @@ pub type ReadExperiment = fn(
 /// Converts the content of `file`, in another format, into the text of an experiment file `name`.
 ///
 /// # Errors
-/// An error in the text, with file, line and key.
+/// Returns an error with file, line and key if the text is invalid.
 pub type ImportExperiment = fn(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error>;
 
-/// The functions that read experiments from files.
+/// Functions that read experiments from files.
 #[derive(Clone, Copy)]
 pub struct ExperimentFiles {
     /// Builds an experiment from a text.
     pub read: ReadExperiment,
-    /// The schema of the files, as JSON.
+    /// Generates the schema of the files, as JSON.
     pub schema: fn() -> String,
-    /// The templates for a new file, the default first.
+    /// Templates for a new file. Put the default template first.
     pub templates: &'static [Template],
-    /// Converts a configuration of the 2013 program into such a file. `None` in programs without `farsa import FILE.ini`.
+    /// Converts a configuration of the 2013 program into such a file. Use `None` if your program does not need
+    /// `farsa import FILE.ini`.
     pub import: Option<ImportExperiment>,
 }
 
 /// A template for a new experiment file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Template {
-    /// The name of the template.
+    /// Name of the template.
     pub name: &'static str,
-    /// The experiment in one line.
+    /// Short description of the experiment, in one line.
     pub summary: &'static str,
-    /// The text of the file.
+    /// Text of the new file.
     pub text: &'static str,
 }
 
@@ -80,12 +83,14 @@ pub(crate) const FILE: &str = ".toml";
 pub(crate) const MAX_BYTES: u64 = 1_000_000;
 
 impl<'e> Laboratory<'e> {
-    /// Creates a laboratory of experiments, in the order in which they are listed, with the strategies of this crate.
+    /// Creates a laboratory with the given experiments and all strategies of this crate.
+    ///
+    /// This order is also the one in which experiments are listed.
     pub fn new(experiments: &[&'e dyn Experiment]) -> Self {
         Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None, module: None }
     }
 
-    /// Adds a strategy for `--strategy NAME`. It replaces a strategy with the same name.
+    /// Adds a strategy for `--strategy NAME`. If there already is a strategy with this name, it is replaced.
     #[must_use]
     pub fn with_strategy(mut self, strategy: &'static dyn StrategyDefinition) -> Self {
         self.strategies.retain(|other| other.name() != strategy.name());
@@ -93,14 +98,16 @@ impl<'e> Laboratory<'e> {
         self
     }
 
-    /// Adds experiments from files: `farsa run NAME.toml`.
+    /// Adds support for experiments from files, as in `farsa run NAME.toml`.
     #[must_use]
     pub fn with_files(self, files: ExperimentFiles) -> Self {
         Self { files: Some(files), ..self }
     }
 
-    /// Adds interactive pages: `farsa live`. `module` is a program with these experiments as WebAssembly, compressed by gzip or
-    /// xz. `lacking` names the worlds ([`ENGINE`](crate::advanced::ENGINE)) that it does not include.
+    /// Adds interactive pages for `farsa live`.
+    ///
+    /// The `module` is a program with these experiments, compiled to WebAssembly and compressed by gzip or xz. Use `lacking`
+    /// to name the worlds ([`ENGINE`](crate::advanced::ENGINE)) that it does not include.
     #[must_use]
     pub fn with_live_module(self, module: &'static [u8], lacking: &'static [&'static str]) -> Self {
         Self { module: Some((module, lacking)), ..self }
@@ -111,12 +118,12 @@ impl<'e> Laboratory<'e> {
         self.module
     }
 
-    /// Returns the experiments.
+    /// Gets the experiments, in the order in which they are listed.
     pub fn experiments(&self) -> &[&'e dyn Experiment] {
         &self.experiments
     }
 
-    /// Returns the strategies.
+    /// Gets all strategies, including those added by [`with_strategy`](Self::with_strategy).
     pub fn strategies(&self) -> &[&'static dyn StrategyDefinition] {
         &self.strategies
     }

@@ -17,28 +17,29 @@ const TICKS: usize = 1024;
 /// A contact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touching {
-    /// The pair.
+    /// Pair of shapes that touch.
     pub pair: PairId,
-    /// The point in the world \[m\].
+    /// Point of contact, in world coordinates \[m\].
     pub point: [f32; 3],
-    /// The force on the pair's first body \[N\].
+    /// Force on the first body of the pair \[N\].
     pub force: [f32; 3],
 }
 
 /// A ray of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastRay {
-    /// The start \[m\].
+    /// Start of the ray \[m\].
     pub from: [f32; 3],
-    /// The end \[m\].
+    /// End of the ray \[m\].
     pub to: [f32; 3],
-    /// True if the ray hit something at its end.
+    /// This is `true` if the ray hit something at its end.
     pub met: bool,
 }
 
 /// A recorded episode, tick by tick, for a [`Page`](crate::Page) or for analysis.
 ///
-/// Values without a name in the schema are not stored. Values that were not recorded are NaN.
+/// Note that values without a name in the schema are silently dropped. If a value is in the schema but was not recorded,
+/// it is NaN.
 ///
 /// ```
 /// use farsa_body::Recorder;
@@ -92,7 +93,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Creates an empty recording.
+    /// Creates an empty recording. Memory for 1024 ticks is reserved in advance.
     pub fn new(schema: Schema) -> Self {
         let (images, grounds) = (Images::new(&schema.images), GroundImages::new(&schema.images));
         let mut recording = Self { schema, images, grounds, ..Self::default() };
@@ -107,7 +108,9 @@ impl Recording {
         recording
     }
 
-    /// Limits the memory of ticks [bytes]. Later ticks are not stored.
+    /// Limits the memory of ticks [bytes].
+    ///
+    /// Once the limit is exceeded, further ticks are not stored. Use [`is_cut`](Self::is_cut) to check for this.
     ///
     /// ```
     /// use farsa_body::Recorder;
@@ -122,12 +125,12 @@ impl Recording {
         Self { room: Some(bytes), ..self }
     }
 
-    /// Returns true if ticks exceeded the memory limit of [`with_room`](Self::with_room).
+    /// Checks whether ticks are missing because of the limit set by [`with_room`](Self::with_room).
     pub fn is_cut(&self) -> bool {
         self.cut
     }
 
-    /// Returns the bytes of all ticks without images.
+    /// Computes the memory of all ticks [bytes]. This does not include images.
     pub fn bytes(&self) -> usize {
         let singles = self.poses.len() + self.points.len() + self.values.len();
         let doubles = self.scalars.len() + self.times.len();
@@ -156,6 +159,8 @@ impl Recording {
     }
 
     /// Records the poses of all bodies with a shape, and all contacts.
+    ///
+    /// This belongs to the current tick, so call it before [`tick`](Recorder::tick).
     pub fn world<W>(&mut self, world: &W) -> &mut Self
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
@@ -165,22 +170,24 @@ impl Recording {
         self
     }
 
-    /// Returns the schema.
+    /// Gets the schema of this recording.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// Returns the parameters of the controller, empty if not recorded.
+    /// Gets the parameters of the controller. This is empty if they were not recorded.
     pub fn controller_parameters(&self) -> &[f32] {
         &self.parameters
     }
 
-    /// Returns the time of every tick \[s\].
+    /// Gets the time of each stored tick \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Returns the pose of a body at a tick, NaN if not recorded, `None` for an unknown body or tick.
+    /// Gets the pose of a body at a tick.
+    ///
+    /// If the body or the tick does not exist, this returns `None`. A pose that was not recorded is NaN.
     pub fn pose_at(&self, tick: usize, body: BodyId) -> Option<Pose> {
         let at = POSE * (tick * self.bodies() + body.index());
         if tick >= self.times.len() || body.index() >= self.bodies() {
@@ -190,7 +197,7 @@ impl Recording {
         Some(Pose { position: [words[0], words[1], words[2]], rotation: [words[3], words[4], words[5], words[6]] })
     }
 
-    /// Returns the position of a point at a tick.
+    /// Gets the position of a point at a tick, or `None` if there is no such point or tick.
     pub fn point_at(&self, tick: usize, point: usize) -> Option<[f32; 3]> {
         let at = 3 * (tick * self.schema.points.len() + point);
         if tick >= self.times.len() || point >= self.schema.points.len() {
@@ -199,20 +206,21 @@ impl Recording {
         self.points.get(at..at + 3).map(|words| [words[0], words[1], words[2]])
     }
 
-    /// Returns the contacts of a tick.
+    /// Gets the contacts of a tick. If there is no such tick, the slice is empty.
     pub fn contacts_at(&self, tick: usize) -> &[Touching] {
         self.contacts.get(ended(&self.contact_ends, tick)).unwrap_or(&[])
     }
 
-    /// Returns the rays of a tick.
+    /// Gets the rays of a tick. If there is no such tick, the slice is empty.
     pub fn rays_at(&self, tick: usize) -> &[CastRay] {
         self.rays.get(ended(&self.ray_ends, tick)).unwrap_or(&[])
     }
 
-    /// Returns an image at a tick as red, green and blue from the upper left pixel on, within 1/62.
+    /// Iterates over the pixels of an image at a tick, as red, green and blue.
     ///
-    /// Returns `None` if it was not recorded and after 2^22 stored pixels. A repeated image takes no memory. An image on the
-    /// ground is the last recorded one.
+    /// Pixels start at the upper left and are accurate within 1/62. If the image was not recorded, or after 2^22 stored
+    /// pixels, this returns `None`. Repeating an image takes no memory. For an image on the ground, you get the last
+    /// recorded one.
     pub fn image_at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
         let of_camera = self.images.at(tick, image);
         let of_ground = self.grounds.at(tick, image);
@@ -230,7 +238,7 @@ impl Recording {
         &self.images
     }
 
-    /// Returns all values of a tick in the order of [`Schema::columns`].
+    /// Iterates over all values of a tick, in the order of [`Schema::columns`].
     pub fn row(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
         fn of_tick<T>(values: &[T], tick: usize, width: usize) -> &[T] {
             values.get(tick * width..(tick + 1) * width).unwrap_or(&[])
