@@ -72,6 +72,7 @@ impl Driving {
     /// Stops the motor and writes the corresponding values [its channels].
     pub(crate) fn rest<W: PlanarWorld>(&mut self, y: &mut [f32], world: &mut W) {
         match self {
+            // Channels for speeds of both signs rest at 1/2, and those for forward speeds at 0.
             Self::Wheels(_) => y.fill(0.5),
             Self::SpeedAndTurn(_, forwards) => {
                 y.fill(0.5);

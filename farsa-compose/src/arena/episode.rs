@@ -92,6 +92,7 @@ impl ArenaEpisode {
             };
             self.agents.ledger.count(number, value);
         }
+        // Terms that look back are never late, so the late pass may find the positions already updated.
         if self.looks_back && !late {
             for (before, pose) in self.before.iter_mut().zip(&self.poses) {
                 *before = [0, 1].map(|k| f64::from(pose.position[k]));
@@ -110,8 +111,10 @@ impl ArenaEpisode {
             let quick = term.quick(world, &member.parts, pose, numbers);
             let share = quick.unwrap_or_else(|| self.value(world, term, robot));
             let share = tally.share(robot, share);
+            // 0 + x would turn -0 into 0, so the sum starts with the first share.
             value = if robot == 0 { share } else { value + share };
         }
+        // Shares outside the mean are 0, so the divisor is the number of robots in the mean.
         value / tally.robots()
     }
 
@@ -286,6 +289,7 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
                 field.step(robot, [0, 1].map(|k| f64::from(pose.position[k])));
             }
         }
+        // Food changes before the terms are measured, so a delivery counts in the same step.
         self.measure(world, false);
         (self.agents.ledger.is_over() || self.has_event(world)).then(|| self.conclude(world))
     }

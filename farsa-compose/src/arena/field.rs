@@ -68,7 +68,9 @@ impl Field {
         forager.energy = (1.0 - self.cost * f64::from(forager.away)).max(0.0);
         // Cell of the place: floor(p / size * cells).
         let [column, row] = [0, 1].map(|k| at[k] / self.size[k] * self.cells as f64);
+        // The upper end is excluded, because a robot exactly on it would be in a cell that does not exist.
         let on_field = |x: f64| x >= 0.0 && x < self.cells as f64;
+        // A robot that dies in this step takes nothing.
         if on_field(column) && on_field(row) && (nest || forager.energy > 0.0) {
             let food = &mut self.food[row as usize * self.cells + column as usize];
             forager.carried += u32::from(core::mem::take(food));

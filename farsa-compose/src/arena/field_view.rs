@@ -95,7 +95,9 @@ fn marks(number: usize, robot: &MobileRobot, name: &str) -> Vec<SceneObject> {
         on("dead", cover, Pose::at([0.0, 0.0, 0.5 * above]), COVER),
         on("dead", bar, Pose::at([0.0, 0.0, above + thick]), BAR),
     ];
+    // A dead robot has exactly the energy 0, and a robot in action has more.
     let dead = dead.map(|mark| mark.shown_while(&energy(number), 0.0, 0.0));
+    // Any load shows the ball. The upper bound of 1e9 is no limit in practice.
     [load.shown_while(&carried(number), 1.0, 1e9)].into_iter().chain(dead).collect()
 }
 

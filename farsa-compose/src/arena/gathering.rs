@@ -30,11 +30,13 @@ impl Gathering {
             .sum();
         // Every robot begins as a cluster. Neighbors take the smaller number until nothing changes.
         let mut cluster: Vec<usize> = (0..robots.len()).collect();
+        // Numbers only decrease, so the loop ends.
         let mut changed = true;
         while changed {
             changed = false;
             for (i, a) in robots.iter().enumerate() {
                 for (j, b) in robots.iter().enumerate() {
+                    // Surfaces less than a diameter apart, |p_i - p_j| - 2 r < 2 r.
                     if f64::from(distance(a, b)) < 4.0 * radius && cluster[j] < cluster[i] {
                         cluster[i] = cluster[j];
                         changed = true;
@@ -45,6 +47,7 @@ impl Gathering {
         let size = |number: usize| cluster.iter().filter(|member| **member == number).count();
         let sizes = (0..robots.len()).map(size).filter(|size| *size > 0);
         Self {
+            // sum |p_i - c|^2 / (2 r)^2 [Gauci2014].
             dispersion: squares / (4.0 * radius * radius),
             clusters: sizes.clone().count(),
             largest: sizes.max().unwrap_or(0),

@@ -256,9 +256,11 @@ fn bare(
         }
         SensorKind::Signal { range, sectors, mean } => signal(body, *range as f32, *sectors, *mean)?,
         SensorKind::Attachment {} => Sensing::Attachment(AttachmentSensor::new(body)),
+        // In an arena, the pair with the number of a body covers all contacts of that body.
         SensorKind::Touch { .. } => Sensing::Touch(Touch::new([PairId(body.0)], 1.0)?),
         SensorKind::ContactForce { .. } => Sensing::ContactForce(ContactForce::new([PairId(body.0)])),
         SensorKind::TargetPosition { axes, scale, .. } => {
+            // `sensor` has already resolved the target of this kind.
             let [target, from] = [target.unwrap_or(body), body].map(Point::origin);
             Sensing::Target(TargetPosition::new(target, from, (*axes).into(), *scale as f32)?)
         }
@@ -266,6 +268,7 @@ fn bare(
         SensorKind::BodyVelocity { axes, .. } => Sensing::Velocity(BodyVelocity::new(body, (*axes).into())),
         SensorKind::Height { .. } => Sensing::Height(Height::new(Point::origin(body))),
         SensorKind::JointPosition { from, to, .. } => {
+            // `check` has rejected missing ends.
             let [from, to] = [from, to].map(|end| end.unwrap_or(f64::INFINITY) as f32);
             let made = wheels.iter().map(|wheel| JointPosition::new(*wheel, from, to));
             Sensing::JointPosition(made.collect::<Result<_, _>>()?)

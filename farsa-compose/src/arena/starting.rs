@@ -198,6 +198,7 @@ impl Starting {
         world.clear();
         let Self { rules, size, outside, standing, before, chosen } = self;
         let absent = &outside[present..];
+        // Absent robots move outside before any draw, so that they are no obstacles.
         for (body, at) in absent {
             world.place_body(*body, Pose::planar(*at, 0.0), Twist::default());
             world.finish_placement();
@@ -211,15 +212,18 @@ impl Starting {
                     How::Anywhere { apart, .. } | How::Near { apart, .. } => apart,
                     _ => 0.0,
                 };
+                // The distance belongs to the rule that places, not to the bodies placed earlier.
                 for (_, far) in &mut before.others {
                     *far = apart as f32;
                 }
                 let at = place(rule, number, chosen, *size, world, before, stream)?;
+                // The heading is drawn after the place. Another order would change all later draws of the stream.
                 let heading = match (rule.turned, &rule.how) {
                     (_, How::Fixed { heading: Some(heading), .. }) => *heading as f32,
                     (true, _) => stream.range(-PI, PI),
                     (false, _) => 0.0,
                 };
+                // The search for a free place reads the world, so each body is finished before the next draw.
                 world.place_body(body, Pose::planar(at, heading), Twist::default());
                 world.finish_placement();
                 if rule.solid {
@@ -236,6 +240,7 @@ impl Starting {
 /// Returns places outside the arena for all robots, beyond the range of sensors.
 fn outside(scene: &Scene, robots: &[BodyId]) -> Vec<(BodyId, [f32; 2])> {
     let size = scene.size[0].max(scene.size[1]) as f32;
+    // Five times the longer side is beyond every wall. Four radii per robot keep absent robots apart.
     let place = |robot: usize| [-5.0 * size - 4.0 * scene.robots[robot].radius as f32 * robot as f32; 2];
     robots.iter().enumerate().map(|(robot, body)| (*body, place(robot))).collect()
 }
@@ -298,6 +303,7 @@ fn place<W: PlanarWorld>(
         }
         How::Around { of, distance: [near, far] } => {
             // p = c + r (cos a, sin a), with r and a uniform.
+            // This is denser near the center than a draw uniform in area.
             let distance = stream.range(*near as f32, *far as f32);
             let (sine, cosine) = sin_cos(stream.range(-PI, PI));
             let [x, y, _] = world.pose(*of).position;
@@ -313,6 +319,7 @@ fn place<W: PlanarWorld>(
     let margin = rule.edge + walls;
     let low = size.map(|x| margin.min(0.5 * x) as f32);
     let high = size.map(|x| (x - margin).max(0.5 * x) as f32);
+    // The box of the disc around the thing, cut to the allowed centers. Places outside the disc are rejected later.
     let region = near.map_or([low, high], |(at, far)| {
         [-far, far].map(|far| [0, 1].map(|k| Scalar::clamp(at[k] + far, low[k], high[k])))
     });
@@ -336,6 +343,7 @@ fn place<W: PlanarWorld>(
             if *apart == 0.0 || lacks <= 0.0 {
                 return Ok(at);
             }
+            // The least overlap of all attempts shows in the error how much is missing.
             short = Scalar::min(short, lacks);
         }
     }

@@ -121,6 +121,7 @@ impl Term {
         Some(match &self.measure {
             Measure::Near { radius, within } => {
                 let distance = length(self.way(pose)) - numbers.radius - radius;
+                // NaN makes the trial fail. The comparison alone would turn a broken position into 0.
                 if distance.is_finite() { yes(distance < *within) } else { f64::NAN }
             }
             Measure::Touch => yes(world.touches(PairId(parts.body.0))),
@@ -152,6 +153,7 @@ impl Term {
 
     /// Returns the distance from a robot to the thing [m], with the difference formed in double precision.
     fn distance(&self, pose: &Pose) -> f64 {
+        // The rotation leaves the length as it is, except for rounding.
         length(turned(pose, [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(pose.position[k]))))
     }
 
@@ -270,6 +272,7 @@ impl Term {
             Measure::FullestArea(areas) => {
                 let mut robots = vec![0_u32; areas.len()];
                 for pose in rows.poses {
+                    // A robot in two overlapping areas counts for the first one only.
                     if let Some(area) = areas.iter().position(|area| is_in(area, pose, world)) {
                         robots[area] += 1;
                     }
@@ -298,6 +301,7 @@ fn is_in<W: PlanarWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
     if *disc {
         return distance(robot, &area) <= half[0] as f32;
     }
+    // In the axes of the rectangle, where its sides are parallel to u and v.
     let [u, v] = turned(&area, [0, 1].map(|k| f64::from(robot.position[k] - area.position[k])));
     u.abs() <= half[0] && v.abs() <= half[1]
 }

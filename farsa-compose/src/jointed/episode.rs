@@ -57,6 +57,7 @@ impl JointedEpisode {
                 continue;
             }
             let value = term.value(world, &self.markers, &self.agents);
+            // Stored after the measurement, which compares with the previous step.
             term.remember(world, &self.markers);
             self.agents.ledger.count(number, value);
         }
@@ -81,6 +82,7 @@ fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
     let mut objects = scene.drawn.clone();
     for marker in &scene.markers {
         let nothing = MassProperties::sphere(0.0, marker.radius);
+        // A marker has no body in the world. Its body in the drawing is massless and has a number above all others.
         let floating = Joint::floating(Pose::identity());
         let body = robot.add_segment(Segment::new(&marker.name, None, floating, nothing));
         let ball = Geometry::Sphere { radius: marker.radius };
@@ -127,6 +129,7 @@ impl Body for JointedEpisode {
 
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         let world = &self.agents.document.world;
+        // MuJoCo steps once per dynamics step, not once per control step.
         let time_step = world.time_step / f64::from(world.substeps);
         Some(MjcfOptions { time_step, gravity: world.gravity, ..MjcfOptions::default() })
     }
@@ -168,6 +171,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.agents.ledger.steps += 1;
         self.measure(world, false);
+        // Terms may be finite in a world that is not, so the bodies are checked separately.
         self.agents.ledger.failed |= !self.is_sane(world);
         let Agents { document, ledger, .. } = &self.agents;
         let ends = |ending: &Ending| match ending {

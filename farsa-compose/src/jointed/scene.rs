@@ -89,6 +89,7 @@ impl Scene {
         }
         for (number, thing) in self.things.iter().enumerate() {
             let Some(collider) = thing.collider else { continue };
+            // Two colliders that never move need no pair.
             let of_robot = (0..colliders).filter(|robot_collider| movable[*robot_collider] || movable[collider]);
             // Against a wall the mass is that of the robot.
             let smaller = if thing.mass > 0.0 { thing.mass } else { mass };
@@ -97,6 +98,7 @@ impl Scene {
             pairs.extend(floor.map(|floor| ([collider, floor], surface(thing.mass, thing.friction))));
             for other in &self.things[..number] {
                 let Some(second) = other.collider.filter(|_| thing.mass > 0.0 || other.mass > 0.0) else { continue };
+                // The lighter body determines the damping, because the damping of the heavier one would overdamp it.
                 let mass = if other.mass > 0.0 { other.mass.min(smaller) } else { smaller };
                 pairs.push(([second, collider], surface(mass, thing.friction.max(other.friction))));
             }

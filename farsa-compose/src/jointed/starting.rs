@@ -97,9 +97,11 @@ impl Starting {
         markers.copy_from_slice(resting);
         before.clear();
         for (number, Rule { what, reach, how }) in rules.iter().enumerate() {
+            // Only positions placed earlier in this loop limit a draw. The world is finished once, after all of them.
             let pose = match how {
                 How::Turned { low, high } => {
                     if let Placed::Joint(joint) = what {
+                        // A joint takes no room, so no later rule keeps a distance from it.
                         world.place_joint(*joint, stream.range(*low as f32, *high as f32), 0.0);
                     }
                     continue;
@@ -205,6 +207,7 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Sour
             let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {
                 return Err(source.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
             };
+            // A turn by h about z is the quaternion (0, 0, sin(h/2), cos(h/2)). The document has degrees.
             let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
             let pose = Pose { position: point, rotation: [0.0, 0.0, sine, cosine] };
             Ok(How::Fixed(pose.cast()))

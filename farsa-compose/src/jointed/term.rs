@@ -101,6 +101,7 @@ impl Term {
         match &self.measure {
             Measure::Near(point_named, point, within) => {
                 let distance = distance(point_named, point);
+                // NaN makes the trial fail. The comparison alone would turn a broken position into 0.
                 if distance.is_finite() { yes(distance < *within) } else { f64::NAN }
             }
             Measure::Distance(point_named, point) => distance(point_named, point),
@@ -108,6 +109,7 @@ impl Term {
             Measure::Approach(point_named, point) => self.far - distance(point_named, point),
             Measure::Touch(pairs) => yes(pairs.iter().any(|pair| world.touches(*pair))),
             Measure::Displacement(_) | Measure::Moved(_) => apart(self.place(world, markers), self.began),
+            // From the dynamics, unlike in an arena, where it is the difference of two positions.
             Measure::Speed(body) => length(world.velocity(*body).linear.map(f64::from)),
             // x component of R^T (p - p'), with p' of the previous step.
             Measure::Forward(body) => {
@@ -131,6 +133,7 @@ impl Term {
             }
             Measure::Sensor([first, end]) => {
                 let channels = agents.x.get(*first..*end).unwrap_or_default();
+                // The largest channel. Negative channels count as 0.
                 channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
             }
             Measure::Effort => mean(agents.y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum(), agents.y.len()),
@@ -168,6 +171,7 @@ fn measure(
     Ok(match kind {
         RewardKind::Near { object, within, body, point: at } => {
             let (point_named, reach) = point_named(object)?;
+            // Distances are those of centers, so the reach of the thing is a part of the limit.
             Measure::Near(point_named, point(body, at)?, reach + within)
         }
         RewardKind::Distance { object, body, point: at } => Measure::Distance(point_named(object)?.0, point(body, at)?),

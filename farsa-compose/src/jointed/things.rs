@@ -66,6 +66,7 @@ impl Thing {
     ) -> Result<Self, Error> {
         let Object { name, at, heading, kind, .. } = object;
         let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
+        // Without a height in the document, a thing rests on the plane z = 0.
         let pose = |height| Pose { position: in_space(at.as_deref(), height), rotation: [0.0, 0.0, sine, cosine] };
         let mut moving = |shape: Shape, geometry: Geometry, inertia: MassProperties, pose, color| {
             let body = robot.add_segment(Segment::new(name, None, Joint::floating(pose), inertia));
@@ -85,6 +86,7 @@ impl Thing {
                 let half = size.map(|x| 0.5 * x);
                 let inertia = MassProperties::cuboid(mass, half);
                 let made = moving(Shape::Box { half }, Geometry::Box { half }, inertia, pose(half[2]), color);
+                // The corners of a box are its points farthest from the center.
                 (length(half), friction, mass, made)
             }
             ObjectKind::Wall { size: [along, across], height, color } => {

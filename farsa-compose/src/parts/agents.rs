@@ -66,11 +66,13 @@ impl Agents {
         let case = self.interventions.named(case).filter(|(name, _)| *name == TEAM_SIZE);
         let size = case.and_then(|(_, case)| team_sizes(robots).get(case).copied());
         self.present = size.unwrap_or(robots);
+        // A smaller team lacks its last robots, which may be evolving ones.
         self.evolving = [ranges[tested][0], ranges[tested][1].min(self.present)];
         self.watched = watched.map_or(self.evolving[0], |robot| (robot as usize).min(robots - 1));
         self.ledger.evolve(self.evolving);
         let mut others = opponents.iter().copied();
         let mut loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
+            // Without opponents, the tested parameters also control the other populations.
             let given = if population == tested { parameters } else { others.next().unwrap_or(parameters) };
             let Some(all) = self.spec.searched.all(given) else { return false };
             let mut networks = self.networks[first..end].iter_mut();

@@ -49,6 +49,7 @@ impl<const N: usize> Choice<N> {
         taken: impl Fn(&[f32; N]) -> bool,
         draw: impl FnOnce(u32) -> u32,
     ) -> Option<usize> {
+        // A choice that follows another one leaves the stream as it is.
         if let Some(rule) = self.like {
             return chosen.get(rule).copied();
         }

@@ -35,6 +35,7 @@ impl EvonetNetwork {
         source: &Source,
     ) -> Result<Self, Error> {
         let weight = weights[0].abs().max(weights[1].abs()) as f32;
+        // The search has one range for all numbers, that of the weights. Biases and leaks are scaled from it.
         if weight <= 0.0 {
             return Err(Error::Other("weights are all 0, so that biases and leaks have no size".into()));
         }
@@ -82,6 +83,7 @@ impl EvonetNetwork {
         let mut seen = vec![false; count];
         let mut order = Vec::new();
         for index in layout.evonet_order() {
+            // A repeated index belongs to a second update of a neuron in one step.
             if std::mem::replace(&mut seen[index], true) {
                 return Err(Error::Other("updates a neuron with a leak twice in a step".into()));
             }

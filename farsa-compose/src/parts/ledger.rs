@@ -55,6 +55,8 @@ impl Ledger {
         };
         let (success, failure) = (conditions("success", &document.success)?, conditions("failure", &document.failure)?);
         let end = conditions("end", &document.end)?;
+        // A late term has no value before the end of the trial, so nothing within the trial may depend on it. Success
+        // matters within the trial only if it ends the trial.
         let ends_with_success = document.episode.ends.contains(&Ending::Success);
         let watched =
             success.iter().filter(|_| ends_with_success).chain(&failure).chain(&end).map(|wanted| wanted.term);
@@ -103,6 +105,7 @@ impl Ledger {
     #[inline]
     pub(crate) fn count(&mut self, number: usize, value: f64) {
         self.failed |= !value.is_finite();
+        // A condition names an earlier term only, and terms count in their order.
         let (others, tally) = self.tallies.split_at_mut(number);
         tally[0].count(value, others);
     }
@@ -125,6 +128,7 @@ impl Ledger {
     /// Returns true if all conditions of success hold.
     pub(crate) fn would_succeed(&self) -> bool {
         let mut wanted = self.success.iter().filter(|wanted| wanted.is_for(self.evolving)).peekable();
+        // `all` is true for an empty list, but a document without conditions has no success.
         wanted.peek().is_some() && wanted.all(|wanted| wanted.holds(&self.tallies))
     }
 
@@ -188,6 +192,7 @@ impl Ledger {
 /// Leaks the name of a note, once for equal ones.
 fn lasting(name: &str) -> &'static str {
     static KEPT: Mutex<BTreeSet<&str>> = Mutex::new(BTreeSet::new());
+    // Notes have static names. The set limits the leak to one copy of each distinct name.
     let mut names = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(name) {
         return known;

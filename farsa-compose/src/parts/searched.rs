@@ -98,6 +98,7 @@ impl Searched {
 
     /// Checks that the network accepts the fixed values.
     pub(crate) fn check(&self, network: &AnyNetwork, source: &Source) -> Result<(), Error> {
+        // Ends of searched ranges are valid, so a rejection is due to a fixed value.
         let least = self.origins.iter().map(|origin| match origin {
             Origin::Searched(number) => self.parameters[*number].ends[0] as f32,
             Origin::Fixed(value) => *value,

@@ -37,6 +37,7 @@ impl<T: Channels> Wrapped<T> {
         source: &Source,
     ) -> Result<Self, Error> {
         let steps = if let Wrapper::Delay { steps } = wrapper { *steps as usize } else { 0 };
+        // Each wrapper has one value per channel, and a delay one more per step.
         budget.take((1 + steps).saturating_mul(inner.channels()) + ITSELF, path, source)?;
         Self::around(inner, wrapper).map_err(|error| source.wrong(path, error))
     }

@@ -90,12 +90,14 @@ impl RewardTotals {
     /// Adds a step of the trial. Set `late` to true if the step belongs to the final period.
     pub fn add(&mut self, instruction: Instruction, now: Observation, late: bool) {
         let seen = Color::ALL.map(|color| now.in_view(color));
+        // A view without any object keeps the previous entry.
         if seen.contains(&true) {
             self.last_seen = seen;
         }
         self.last = now;
         let target = instruction.color;
         if now.centred(target) {
+            // The arm may touch with its side while its tip is away. Both count as distance 0.
             let away = if now.touched[target.index()] { 0.0 } else { now.tip[target.index()] };
             self.nearest = Some(self.nearest.map_or(away, |nearest| nearest.min(away)));
         }
@@ -137,6 +139,7 @@ impl RewardTotals {
         let within = |span: f64, distance: f64| 1.0 - ((distance - judging.still) / span).clamp(0.0, 1.0);
         let near = |distance: f64| within(judging.span, distance);
         let [ahead, left] = self.last.ahead[target.index()];
+        // |bearing| / pi is in [0, 1], so half of the term pays for turning before the target is in view.
         let angle = atan2(left, ahead).abs();
         let centering = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.centred);
         let undisturbed = near(other);

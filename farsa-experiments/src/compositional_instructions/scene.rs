@@ -67,6 +67,7 @@ impl Scene {
         let Config { arm, objects, .. } = &config;
         let height = objects.radius;
         let mut robot = Robot::new("arm and three objects");
+        // The arm moves at the height of the centers of the objects, so that contacts are horizontal.
         let mut at = Pose::at([0.0, 0.0, height]);
         let mut parent = None;
         let mut shapes = Vec::new();
@@ -104,6 +105,7 @@ impl Scene {
             robot.add_pair([balls[one], balls[other]], surface);
         }
         robot.validate().map_err(wrong)?;
+        // A sliding body has two segments, for x and y, and its identifier is that of the second.
         let slider = |body: BodyId, before: u16| JointId(body.0 - before);
         let sliders = bodies.map(|body| [slider(body, 1), slider(body, 0)]);
         Ok(Self { robot, config, objects: bodies, sliders })
@@ -117,6 +119,7 @@ impl Scene {
 
     /// Returns the contact pair of an object and the second segment.
     pub fn pair_on_second(&self, color: Color) -> PairId {
+        // Each color adds its pairs with the first and the second segment, before the pairs of objects.
         PairId((2 * color.index() + 1) as u16)
     }
 
@@ -130,6 +133,7 @@ impl Scene {
     pub fn start_pose(&self, id: EpisodeId) -> StartPose {
         let Config { objects, start, .. } = &self.config;
         let first = Stream::new(id.seed, Domain::Start, ALL_TRIALS, 0, id.generation).below(ORDERS.len() as u32);
+        // A generation draws the first order, and six successive trials use each order once.
         let order = (u64::from(id.trial) + u64::from(first)) as usize % ORDERS.len();
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         let mut around = |middle: f64, spread: f64| stream.range_f64(middle - spread, middle + spread);

@@ -102,6 +102,7 @@ impl Senses {
             *value = f32::from(u8::from(side));
         }
         for ((value, joint), range) in x[12..14].iter_mut().zip(Scene::JOINTS).zip(self.ranges) {
+            // (q + r) / (2 r) maps the range [-r, r] to [0, 1].
             *value = ((f64::from(world.position(joint)) + range) / (2.0 * range)) as f32;
         }
         self.write_words(instruction, x);
@@ -127,11 +128,13 @@ impl Senses {
             return None;
         }
         let [along, left, _] = second.transform_back(place).map(f64::from);
+        // The nearest point on the axis of the segment. `reach` contains the radius of the segment.
         let near = along.clamp(0.0, self.length);
         let apart = Scene::distance([along, left], [near, 0.0]);
         if apart >= self.reach {
             return None;
         }
+        // Past the end of the axis the contact is on the round tip.
         let beyond = along > self.length;
         Some(if beyond {
             1

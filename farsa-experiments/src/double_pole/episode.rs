@@ -82,6 +82,7 @@ impl CartEpisode {
             *x = sensed as f32;
         }
         self.network.step(&self.x, &mut self.y);
+        // With a positive `least_force`, output 0 pushes to the positive side. No network can leave the cart alone.
         let push = force * f64::from(self.y[0]);
         self.force = if push.abs() >= least_force {
             push
@@ -94,6 +95,7 @@ impl CartEpisode {
             self.state = cart.step(&self.state, self.force, time_step);
         }
         if self.in_balance() {
+            // Slot steps % 100 is overwritten up to step 1000, so the buffer ends with steps 901 to 1000.
             if self.steps < DAMPED {
                 let CartState { position, velocity, angles, angular_velocities } = self.state;
                 let unrest = position.abs() + velocity.abs() + angles[0].abs() + angular_velocities[0].abs();
@@ -130,6 +132,7 @@ impl CartEpisode {
     pub fn damping(&self) -> [f64; 2] {
         let steps = self.steps.min(DAMPED);
         let sum: f64 = self.unrest.iter().sum();
+        // 0.75 / sum of |x| + |v| + |a| + |w|. The bound of 1e-9 keeps the quotient finite for a cart at rest.
         let rest = if steps < LAST { 0.0 } else { 0.75 / sum.max(1e-9) };
         [0.1 * f64::from(steps) / f64::from(DAMPED), 0.9 * rest]
     }

@@ -128,6 +128,7 @@ impl<C: Reacher> ReachEpisode<C> {
         let target = self.target();
         self.x = [0, 1, 2].map(|k| match condition {
             Condition::Steady => {
+                // The position of the target in the volume, as a share of each side.
                 let [low, high] = volume.ends(k);
                 ((target[k] - low) / (high - low)) as f32
             }
@@ -166,9 +167,11 @@ where
                     (low + (high - low) * f64::from(y)) as f32
                 }
                 (Condition::Steady, false) => one.start as f32,
+                // y = 1/2 is rest. Commands are speeds in rad/s.
                 (Condition::Velocity, true) => (2.0 * y - 1.0) * speed as f32,
                 (Condition::Velocity, false) => {
                     let most = speed as f32;
+                    // v = k (q0 - q) returns to the start angle, at most at the speed of driven joints.
                     (hold_rate as f32 * (one.start as f32 - world.position(one.joint))).clamp(-most, most)
                 }
             };
@@ -184,6 +187,7 @@ where
         let Config { steps, .. } = self.scene.config;
         let distance = self.look(world);
         if self.asked.jump == Some(self.steps) {
+            // Totals restart at the jump, so that only the second reach counts.
             self.totals = RewardTotals::new(distance);
         } else {
             self.totals.add(distance, self.steps + self.scene.config.window_steps() > steps);

@@ -89,6 +89,7 @@ impl Scene {
     fn burden(robot: &mut Robot) -> Vec<Burdened> {
         let mut burdened = Vec::new();
         let mut next = Some(Self::PALM);
+        // Only joints between the palm and the root carry the load.
         while let Some(body) = next {
             let segment = &robot.segments[body.index()];
             next = segment.parent;
@@ -120,6 +121,7 @@ impl Scene {
     where
         W: Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
     {
+        // tau = a . (r x F) for each joint, with its axis a and the vector r from the joint to the hand.
         for Burdened { body, axis, actuator } in &self.burdened {
             let pose = world.pose(*body).cast::<f64>();
             let [x, y, _] = [0, 1, 2].map(|k| hand[k] - pose.position[k]);
@@ -172,6 +174,7 @@ impl Scene {
     }
 
     fn stream(&self, id: EpisodeId) -> Stream {
+        // Individual 0 below makes the targets equal for all individuals of a generation.
         let generation = if self.config.same_targets { 0 } else { id.generation };
         Stream::new(id.seed, Domain::Start, id.trial, 0, generation)
     }
@@ -179,6 +182,7 @@ impl Scene {
     /// By rejection from the half ellipsoid's box. Half of the points are in it.
     fn draw(&self, stream: &mut Stream) -> [f64; 3] {
         loop {
+            // Rejection gives uniform draws in the half ball x >= 0. It accepts a share of pi / 6.
             let parts = [stream.range_f64(0.0, 1.0), stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
             if parts.iter().fold(0.0, |sum, x| sum + x * x) <= 1.0 {
                 return self.config.volume.at(parts);

@@ -55,6 +55,7 @@ pub fn opposition(directions: &[[f64; 3]]) -> f64 {
     let mut most = 0.0_f64;
     for (i, a) in directions.iter().enumerate() {
         for b in &directions[..i] {
+            // (1 - cos) / 2 is 0 for equal and 1 for opposite directions.
             let dot = |u: &[f64; 3], v: &[f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
             let lengths = Scalar::sqrt(dot(a, a) * dot(b, b));
             if lengths > 0.0 {
@@ -92,11 +93,13 @@ impl Score {
     pub fn add(&mut self, config: &Config, seen: &Observation) {
         self.steps += 1;
         if self.start > 0.0 {
+            // 1 - d(t) / d(0). Distances above the initial one count as 0.
             self.nearness += (1.0 - seen.distance / self.start).clamp(0.0, 1.0);
         }
         let height = if seen.is_held() { seen.height.max(0.0) } else { 0.0 };
         self.highest = self.highest.max(height);
         self.held = if height >= config.height { self.held + 1 } else { 0 };
+        // True in exactly the last `window_steps` steps, because `steps` includes this one.
         if self.steps + config.window_steps() > config.steps {
             self.touch += seen.touch();
             self.lift += (height / config.height).min(1.0);

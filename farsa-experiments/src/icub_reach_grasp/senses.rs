@@ -35,6 +35,7 @@ impl<W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized> Sensor<W> for P
         out.fill(0.0);
         if world.touches(self.on_ball) {
             let [x, y, _] = world.pose(Scene::PALM).transform_back(world.pose(Scene::BALL).position);
+            // Larger x is nearer to the fingers, and larger y is nearer to the thumb.
             let patch = 2 * usize::from(x < self.middle[0]) + usize::from(y < self.middle[1]);
             out[patch] = 1.0;
         }
@@ -76,6 +77,7 @@ impl Senses {
         let tip = |finger: Finger| {
             let fingertip = scene.icub.fingertip(Side::Right, finger).0;
             let mine = |collider: &usize| scene.robot.colliders[*collider].body == Some(fingertip);
+            // Fixed colliders and the ball. Other parts of the robot do not count.
             let foreign =
                 |collider: &usize| scene.robot.colliders[*collider].body.is_none_or(|body| body == Scene::BALL);
             let pairs = scene.robot.pairs.iter().enumerate();

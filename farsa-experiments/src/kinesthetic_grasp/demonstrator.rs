@@ -160,6 +160,7 @@ impl<C: Controller> Episode<World<f32>> for Guided<'_, C> {
         let follows = posture.iter().zip(&self.positions).all(|(wanted, q)| (wanted - q).abs() < PATIENCE);
         self.time += if follows { self.scene.config.time_step } else { 0.0 };
         let [x, y, z] = world.pose(Tabletop::SPHERE).position.map(f64::from);
+        // The plan grasps at the initial place, so a sphere that has rolled away on the table is lost for it.
         let lies = z < self.scene.config.sphere_radius + 0.01;
         let rolled = (x - sphere[0]).abs().max((y - sphere[1]).abs()) > ROLLED;
         if lies && rolled {
@@ -188,6 +189,7 @@ fn wanted(statics: &Statics, plan: &GraspPlan, positions: &[f64], torques: &[f64
 /// pair's range is clamped.
 fn with_tonus(muscle: &MusclePair<f64>, q: f64, torque: f64) -> [f64; 2] {
     let at = |activations| muscle.effort(q, 0.0, activations).torque;
+    // Muscles also pull without activation, by passive tension.
     let passive = at([0.0, 0.0]);
     // The effect of full activations: the agonist pulls towards the lower limit.
     let (down, up) = (at([1.0, 0.0]) - passive, at([0.0, 1.0]) - passive);

@@ -110,6 +110,7 @@ impl Trainer {
         let of_sensors = self.layout.range(LeakyParameter::SensorWeight);
         // The network learned x / unit, so a weight of x is the learned one divided by the unit.
         let unit = |index: usize| if of_sensors.contains(&index) { self.units[index / hidden] } else { 1.0 };
+        // The averaged parameters are the last ones of the learner's state.
         let mean = &state[state.len().saturating_sub(self.layout.parameter_count())..];
         mean.iter().enumerate().map(|(index, p)| (p / f64::from(unit(index))) as f32).collect()
     }
@@ -130,9 +131,11 @@ impl Trainer {
             0 => 0.0,
             iterations => (f64::from(generation) / f64::from(iterations)).min(1.0),
         };
+        // At least 1, because a single demonstration would divide 0 by 0.
         let last = (self.records.len() - 1).max(1) as f64;
         let mut successes = 0;
         for (number, record) in self.records.iter_mut().enumerate() {
+            // Trial numbers above those of a test draw other displacements.
             let id = EpisodeId { seed, generation, individual: 0, trial: (TRIALS + number) as u32 };
             // From the demonstrator alone to the network's full share. Consecutive demonstrations take the four starts
             // in turn.

@@ -69,6 +69,8 @@ impl AgentEpisode {
     pub fn arrange(&mut self, id: EpisodeId) {
         let Config { trials, offset, diameter, side, .. } = self.config;
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
+        // Stratified draws. Trials 2 k and 2 k + 1 share part k of [0, offset], the first with a circle and the second
+        // with a diamond.
         let parts = trials.div_ceil(2).max(1);
         let part = f64::from(id.trial / 2 % parts);
         let distance = offset * (part + stream.range_f64(0.0, 1.0)) / f64::from(parts);
@@ -87,6 +89,7 @@ impl AgentEpisode {
         let [object, agent] = self.places;
         let Config { body, ray_length, .. } = self.config;
         self.rays.map(|[sine, cosine]| {
+            // Rays start on the circular hull of the agent. Coordinates are relative to the center of the object.
             let from = [agent - object + 0.5 * body * sine, 0.5 * body * cosine - height];
             self.object.meet(from, [sine, cosine]).map_or(ray_length, |distance| distance.min(ray_length))
         })
@@ -95,9 +98,11 @@ impl AgentEpisode {
     /// Performs one step of the network and moves the agent and the object.
     pub fn step(&mut self) {
         let Config { width, time_step, ray_length, input_gain, velocity_gain, .. } = self.config;
+        // I = g (L - l) / L, which is 0 for a free ray of length L and g for an object at the hull.
         self.x = self.free().map(|free| (input_gain * (ray_length - free) / ray_length) as f32);
         self.network.step(&self.x, &mut self.y);
         let [right, left] = self.y.map(f64::from);
+        // Equal outputs cancel, so the agent is at rest without a difference between its motors.
         let moved = self.places[1] + time_step * velocity_gain * (right - left);
         self.places[1] = moved.clamp(-0.5 * width, 0.5 * width);
         self.steps += 1;
@@ -111,6 +116,7 @@ impl AgentEpisode {
     /// Returns the height of the center of the object above the center of the agent.
     pub fn height(&self) -> f64 {
         let Config { start_height, speed, time_step, .. } = self.config;
+        // Computed from the number of steps, so that rounding does not accumulate over a trial.
         start_height - f64::from(self.steps) * speed * time_step
     }
 

@@ -51,10 +51,12 @@ impl Judge {
         let config = &self.scene.config;
         self.seen = self.scene.observe(world);
         self.earned = self.trial.judge(&self.seen, &config.judgement);
+        // A single NaN term makes the total NaN, so the other terms of a broken trial are irrelevant.
         if !self.seen.is_finite() {
             self.trial.rewards = Rewards { reach: f64::NAN, ..Rewards::default() };
             return Some(f64::NAN);
         }
+        // Height counts from the table top, so a sphere that rests on the table is at its radius.
         self.trial.fallen = self.seen.height < 0.0;
         if self.trial.fallen || self.trial.steps >= config.steps {
             self.trial.end();

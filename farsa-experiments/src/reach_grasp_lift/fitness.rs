@@ -36,6 +36,7 @@ impl ContactTerm {
     pub fn value(self, contacts: u32) -> f64 {
         let quarter = f64::from(contacts) / 4.0;
         match self {
+            // The fourth phalanx completes the term. Further contacts add nothing.
             Self::Capped if contacts >= 4 => 0.2,
             Self::Capped => 0.2 * quarter,
             Self::Literal => 0.2 / (1.0 + quarter),
@@ -88,9 +89,12 @@ impl Rewards {
         let mut earned = Self::default();
         match phase {
             Phase::Reach => {
+                // 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot), with ds in centimeters [Ferrauto2010, 2.3.4]. The
+                // second part falls off faster, so the posture of the hand matters only near the sphere.
                 let ds = seen.reach_distance;
                 earned.reach = 0.5 / (1.0 + ds / 4.0) + 0.25 / (1.0 + ds) * (seen.openness + seen.palm_down);
             }
+            // graspQ is in centimeters. Every contact term is at most 0.2, so a step earns at most 0.6.
             Phase::Grasp => earned.grasp = 0.4 / (1.0 + seen.grasp_distance) + term.value(seen.contacts),
             Phase::Lift => earned.lift = if seen.lifted() { 1.0 } else { 0.0 },
         }
@@ -113,6 +117,7 @@ impl Rewards {
         if sum.is_nan() {
             return f64::NAN;
         }
+        // Bonuses have no cap. Four lifted trials add 2400 to the caps, whose sum is 2820.
         self.reach.min(REACH_CAP) + self.grasp.min(GRASP_CAP) + self.lift.min(LIFT_CAP) + self.bonus
     }
 }
@@ -146,8 +151,10 @@ impl Trial {
         let earned = Rewards::from_step(self.phase, seen, by.contact_term);
         self.rewards.add(&earned);
         self.steps += 1;
+        // Both counters restart at 0 in a step without lifting, so they count consecutive steps up to the last one.
         self.lifted = if seen.lifted() { self.lifted + 1 } else { 0 };
         self.held = if seen.lifted() && seen.height >= by.success_height { self.held + 1 } else { 0 };
+        // The first height replaces the default of 0, which would hide heights below the table top.
         self.highest = if self.steps == 1 { seen.height } else { self.highest.max(seen.height) };
         earned
     }

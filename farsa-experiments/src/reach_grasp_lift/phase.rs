@@ -89,7 +89,9 @@ impl Phase {
     pub fn next(self, seen: &Observation) -> Self {
         let g = seen.g();
         match self {
+            // g >= 0.5 means graspQ <= 5 ln 2 = 3.5 cm. The negation lets NaN pass, but the episode ends on NaN.
             Self::Reach if !(seen.r() > g || g < 0.5) => Self::Grasp,
+            // g > 0.7 means graspQ < 1.8 cm, and l > 0.6 means at least four phalanges.
             Self::Grasp if g > 0.7 && seen.l() > 0.6 => Self::Lift,
             stays => stays,
         }

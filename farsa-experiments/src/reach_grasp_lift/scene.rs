@@ -177,17 +177,20 @@ impl Scene {
     pub fn start_from(&self, id: EpisodeId, starts: [usize; 2]) -> ([f64; 27], [f64; 2]) {
         let config = &self.config;
         let [posture, place] = starts.map(|trial| trial % TRIALS);
+        // Individual 0 for all gives one draw per generation, so that selection compares equal starts.
         let individual = match config.displacement {
             Displacement::PerGeneration => 0,
             Displacement::PerIndividual => id.individual,
         };
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, individual, id.generation);
         let mut displaced = |at: f64, by: f64| at + by * f64::from(stream.range(-1.0, 1.0));
+        // Poses and displacements are in degrees. Clamping comes last, because a displaced angle may leave its range.
         let joints = core::array::from_fn(|i| {
             let pose = if i < 4 { config.arm_poses[4 * posture + i] } else { 0.0 };
             let [low, high] = self.robot.segments[i].joint.range;
             displaced(pose, config.joint_displacement).to_radians().clamp(low, high)
         });
+        // The displacement is in centimeters and the start in meters.
         let sphere = config.sphere_start(place).map(|x| displaced(x, config.sphere_displacement / 100.0));
         (joints, sphere)
     }
@@ -205,6 +208,7 @@ impl Scene {
             }
         };
         MjcfOptions {
+            // MuJoCo steps once per dynamics step, not once per control step.
             time_step: config.time_step / f64::from(config.substeps),
             gravity: [0.0, 0.0, -config.gravity],
             keyframes: (0..TRIALS).map(start).collect(),
@@ -261,15 +265,19 @@ impl Scene {
                 grasp_centre[k] += at[k];
             }
         }
+        // Six points with equal weights, the palm and five fingertips.
         let grasp_centre = grasp_centre.map(|x| x / 6.0);
+        // Fingers are extended at the upper limit, which therefore reads 1.
         let [low, high] = self.arm.flexion_range;
         let openness = |joint: &JointId| ((f64::from(world.position(*joint)) - low) / (high - low)).clamp(0.0, 1.0);
         let touches = |pair: PairId| world.touches(pair);
         Observation {
+            // Lengths change from meters to centimeters. The table top is at z = 0.
             reach_distance: 100.0 * distance(palm, [sphere[0], sphere[1], sphere[2] + 0.05]),
             grasp_distance: 100.0 * distance(grasp_centre, sphere),
             contacts: self.sphere_on_phalanges.iter().filter(|pair| touches(**pair)).count() as u32,
             openness: ArmAndHand::flexion_joints().iter().map(openness).sum::<f64>() / 15.0,
+            // The cosine to the downward vertical is minus the z component of the palm's unit normal.
             palm_down: -palm_pose.rotate(ArmAndHand::PALM_NORMAL)[2],
             on_table: touches(self.sphere_on_table),
             height: 100.0 * sphere[2],

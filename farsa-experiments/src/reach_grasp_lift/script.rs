@@ -121,6 +121,7 @@ impl Statics {
                 nearest = i;
             }
         }
+        // The solver converges to a solution near its start, which therefore is a posture with the palm down.
         let mut from = self.tree.zero();
         for (q, degrees) in from.iter_mut().zip(PALM_DOWN[nearest]) {
             *q = degrees.to_radians();
@@ -180,8 +181,10 @@ impl GraspPlan {
         // Where the fingers point.
         let [x, y, _] = statics.tree.poses(&over)[ArmAndHand::PALM.index()].rotate([1.0, 0.0, 0.0]);
         let length = farsa_num::Scalar::sqrt(x * x + y * y);
+        // The palm is `ahead` meters behind the sphere, against the horizontal direction of the fingers.
         let back = timetable.ahead / length;
         let place = |height: f64| [sphere[0] - back * x, sphere[1] - back * y, height];
+        // Each solution starts from the previous one, so that no joint changes to another branch.
         let way_point = statics.palm_down(place(timetable.way_point), &over)?;
         let down = statics.palm_down(place(timetable.palm), &way_point)?;
         let up = statics.palm_down(place(timetable.palm + timetable.lift), &down)?;
@@ -219,6 +222,7 @@ impl GraspPlan {
         let mut torques = self.statics.gravity_torques(&positions);
         for i in 0..7 {
             let speed = f64::from(world.speed(joints[i]));
+            // tau = g(q) + k (q_wanted - q) - d w. With gravity compensated, small gains k suffice.
             torques[i] += self.timetable.stiffness[i] * (wanted[i] - positions[i]) - self.timetable.damping[i] * speed;
         }
         (positions, torques)

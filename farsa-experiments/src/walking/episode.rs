@@ -136,12 +136,14 @@ impl Brain {
         self.senses.read(world, &mut self.x);
         self.network.step(&self.x, &mut self.y);
         self.motor.drive(&self.y, world);
+        // Output y in [0, 1] is a torque in [-largest, largest] (in N m), with rest at 1/2.
         self.torque = (2.0 * f64::from(self.y[0]) - 1.0) * self.largest;
         self.angle = f64::from(world.position(self.hinge));
     }
 
     /// The work of the motor since the last tick \[J\].
     fn work<W: Joints<Joint = JointId> + ?Sized>(&self, world: &W) -> f64 {
+        // W = torque times the turn of the hinge. The torque is constant within a step.
         self.torque * (f64::from(world.position(self.hinge)) - self.angle)
     }
 
@@ -209,6 +211,7 @@ impl WalkerEpisode {
     pub fn distance(&self) -> f64 {
         match self.gait.end() {
             Some(End::Broken) => f64::NAN,
+            // A walk on energy that the simulation has created must not pay.
             Some(End::Gained) => 0.0,
             _ => self.gait.distance(),
         }
@@ -262,6 +265,7 @@ where
     /// generation.
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        // r (1 + noise u), with u uniform in [-1, 1), is a relative disturbance of each rate.
         let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
         let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
         self.gait.start(world, 0, &posture);
@@ -283,6 +287,7 @@ where
         let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
         let end = self.gait.judge(world, work);
         let [before, last] = self.gait.footfalls();
+        // Rates settle some ticks after their footfall. `noted` is the last step in the ring of paces.
         if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.noted) {
             let (period, length) = (last.time - before.time, last.place - before.place);
             self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };

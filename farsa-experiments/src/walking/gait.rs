@@ -157,6 +157,7 @@ impl Gait {
         posture.place(world, &self.parts);
         let fresh = Self::new(self.walker, self.parts, self.rules, self.gravity, self.time_step);
         *self = Self { stance, ..fresh };
+        // Only the stance foot has ground until the swing foot is ahead.
         self.ground(world, 1 - stance, false);
         self.last = Posture::from_world(world, &self.parts);
         self.started = self.sole(&self.last, stance)[0];
@@ -209,6 +210,7 @@ impl Gait {
         }
         // The scale of energies is weight times leg: m g l.
         let size = walker.mass() * self.gravity[2].abs() * longer;
+        // Strikes and friction only dissipate. A gain beyond the motor's work is an artifact of the simulation.
         if energy - self.energy - self.work > rules.largest_gain * size {
             return Some(End::Gained);
         }
@@ -239,6 +241,8 @@ impl Gait {
         let longer = self.walker.legs[0].length.max(self.walker.legs[1].length);
         let is_ahead = ahead - hind > self.rules.shortest_step * longer;
         match self.phase {
+            // The swing foot passes through the ground next to the stance foot [Garcia1998]. Its plate is aside until the
+            // foot is above the ground again, because a contact that starts in depth would throw it up.
             Phase::Passes if is_ahead && height > 0.0 => {
                 self.phase = Phase::Falls;
                 self.ground(world, swing, true);
@@ -259,6 +263,7 @@ impl Gait {
                 self.phase = Phase::Both;
                 self.change(world, touching);
             }
+            // The leg swung back before its foot landed, so the foot may pass again.
             Phase::Falls if !is_ahead => {
                 self.phase = Phase::Passes;
                 self.ground(world, swing, false);
@@ -275,10 +280,13 @@ impl Gait {
             return;
         }
         let since = f64::from(self.ticks) * self.time_step - fall.time;
+        // The walking model measures angles with the opposite sign.
         let rates = [-now.rates[self.stance], -now.rates[1 - self.stance]];
         match self.settled {
             None if since >= self.rules.settling => self.settled = Some((since, rates)),
             Some((first, early)) if since >= 2.0 * self.rules.settling => {
+                // A compliant strike disturbs the rates for a moment. Two later rates r1 and r2 give the rate at the
+                // strike by linear extrapolation, r(0) = r1 - (r2 - r1) / (t2 - t1) t1.
                 let back = |k: usize| early[k] - (rates[k] - early[k]) / (since - first) * first;
                 fall.rates = Some([back(0), back(1)]);
             }

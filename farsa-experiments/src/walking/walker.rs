@@ -130,6 +130,7 @@ impl Walker {
     /// the given angle (in radians).
     pub fn gravity(size: f64, slope: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(slope);
+        // Axis x points down the slope, and z is its normal. Walking ahead is walking down.
         [size * sine, 0.0, -size * cosine]
     }
 
@@ -138,6 +139,7 @@ impl Walker {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let mut robot = Robot::new("walker");
         let axle = MassProperties::cuboid(self.hip_mass, [THIN, 0.5 * self.hip_spacing.max(THIN), THIN]);
+        // Two slides in series need a body between them. Its mass is a billionth of the hip's.
         let rail = MassProperties::sphere(RAIL * self.hip_mass, THIN);
         let slide = |name: &str, axis| Joint::prismatic(name, axis, Pose::identity(), everywhere);
         let guide = robot.add_segment(Segment::new("rail", None, slide("forward", [1.0, 0.0, 0.0]), rail));
@@ -152,6 +154,7 @@ impl Walker {
             friction: self.friction,
             rolling_friction: 0.0,
             stiffness: self.stiffness,
+            // c = 2 zeta sqrt(k m), with the mass of the complete walker on one sole.
             damping: 2.0 * self.damping_ratio * Scalar::sqrt(self.stiffness * self.mass()),
         };
         let mut plates = [JointId(0); 2];
@@ -163,6 +166,7 @@ impl Walker {
             let plate = robot.add_segment(Segment::new(&format!("{name} plate"), None, joint, plate));
             plates[i] = JointId(plate.0);
             let legs = &self.legs[i];
+            // The half height is THICKNESS, so the surface of the plate is at z = 0.
             let below = Pose::at([0.0, 0.0, -THICKNESS]);
             let ground = Collider::new(&format!("{name} ground"), Some(plate), Shape::Box { half }, below);
             let centre = Pose::at([0.0, 0.0, legs.foot_radius - legs.length]);
@@ -190,6 +194,7 @@ impl Walker {
     pub fn energy(&self, posture: &Posture, gravity: [f64; 3]) -> f64 {
         let mut energy = 0.0;
         let mut add = |mass: f64, [x, z]: [f64; 2], [u, w]: [f64; 2]| {
+            // m v^2 / 2 - m g . p, with gravity in the axes of the slope.
             energy += 0.5 * mass * (u * u + w * w) - mass * (gravity[0] * x + gravity[2] * z);
         };
         add(self.hip_mass, posture.hip, posture.velocity);
@@ -201,8 +206,10 @@ impl Walker {
             let (sine, cosine) = sin_cos(posture.angles[i]);
             let (arm, rate) = (-body.centre[2], posture.rates[i]);
             let [x, z] = [-arm * sine, -arm * cosine];
+            // A rotation about +y moves a point at (x, z) from the hip with (rate z, -rate x).
             let velocity = [posture.velocity[0] + rate * z, posture.velocity[1] - rate * x];
             add(body.mass, [posture.hip[0] + x, posture.hip[1] + z], velocity);
+            // I w^2 / 2 about the center of mass, where only y is an axis of rotation.
             turning += 0.5 * body.inertia[1] * rate * rate;
         }
         energy + turning
@@ -234,6 +241,7 @@ impl Posture {
         Self {
             hip: parts.slides.map(at),
             velocity: parts.slides.map(speed),
+            // The inner hinge turns relative to the outer legs. Angles of a posture are relative to the slope's normal.
             angles: [outer, outer + at(parts.hinges[1])],
             rates: [rate, rate + speed(parts.hinges[1])],
         }
