@@ -110,6 +110,7 @@ impl Scene {
             arena.collisions = CollisionRule::Circles;
         }
         let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
+        // Robots in a row next to the arena, with more than a meter between their hulls.
         let apart = BESIDE + 3.0 * widest;
         for (number, robot) in robots.iter().enumerate() {
             arena.add_robot(robot.clone(), [width + BESIDE + apart * number as f64, 0.0], 0.0);
@@ -182,6 +183,7 @@ impl Scene {
             let thing = Thing::Robot { body: arena.parts(number).body, radius: robot.radius };
             things.push((format!("{ROBOT}-{}", number + 1), thing));
             let group = groups.of(number);
+            // A group of one robot is a thing by the name of the group, too.
             if groups.named(group) == Some([number, number + 1]) && group != ROBOT {
                 things.push((group.to_owned(), thing));
             }
@@ -207,6 +209,7 @@ impl Scene {
         if !things.is_empty() {
             return Ok(things);
         }
+        // A robot alone is not offered as a thing for its measures.
         let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
         let names = self.things[..named].iter().map(|(name, _)| name.as_str());
         Err(Error::unknown(&source.of(path), "object", name, names))
@@ -252,6 +255,7 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
         }
         ObjectKind::Block { size, mass, friction, color } => {
             blocks.push(Block { centre: at, heading, size, mass, friction, color });
+            // Half the diagonal is the greatest distance from the center at any heading.
             Thing::Block { body, reach: 0.5 * farsa_num::Scalar::sqrt(size[0] * size[0] + size[1] * size[1]) }
         }
         // Rejected by `Scene::new`.
@@ -341,6 +345,7 @@ fn mobile_robot(robot: &Robot) -> MobileRobot {
     };
     mobile.radius = robot.radius.unwrap_or(mobile.radius);
     mobile.infrared.range = robot.infrared_range.unwrap_or(mobile.infrared.range);
+    // From m/s to rad/s, v / r.
     mobile.max_wheel_speed = robot.speed.map_or(mobile.max_wheel_speed, |speed| speed / mobile.wheel_radius);
     mobile
 }

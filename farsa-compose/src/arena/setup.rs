@@ -84,6 +84,7 @@ impl Setup {
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
         let ledger = Ledger::new(&document, &of_steps, &scene.groups, source)?;
         let foraging = foraging(&document, &scene, &terms, source)?;
+        // Positions of things are constant in a trial unless robots carry or push them, or a robot is the thing.
         let moving = document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
             || !scene.blocks.is_empty()
             || terms.iter().any(|term| term.is_about_robot(&scene));
@@ -149,6 +150,7 @@ fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Part<Sensing>]) ->
         SensorKind::Infrared { first: count, .. } => {
             let mut robot = robot.clone();
             let sensors = robot.infrared.angles.len();
+            // Without a number, all sensors of the ring are drawn.
             robot.infrared.angles.truncate(if *count == 0 { sensors } else { *count as usize });
             Some((place, InfraredDrawing::for_robot(&robot, robot.infrared.angles.len())))
         }

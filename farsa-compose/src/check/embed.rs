@@ -69,12 +69,14 @@ pub(crate) fn embedded(
             return Err(source.wrong(&path, format!("is one file more than {MAX_FILES}, which are the most")));
         }
         let relative = Path::new(name);
+        // No root and no parent folder. A backslash would separate folders on other systems.
         let within = relative.components().all(|part| matches!(part, Component::Normal(_)));
         if !within || name.is_empty() || name.contains('\\') {
             return Err(source.wrong(&path, format!("`{name}` is no file in the folder of {file} or below it")));
         }
         let target = folder.join(relative);
         // Links may lead anywhere. A missing file is reported when it is read.
+        // The folder of a bare file name is empty, and an empty path has no canonical form.
         let root = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let ends = target.canonicalize().and_then(|target| Ok((target, root.canonicalize()?)));
         let inside = ends.is_ok_and(|(target, root)| target.starts_with(root)) || !target.exists();

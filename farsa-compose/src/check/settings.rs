@@ -57,6 +57,7 @@ fn one(part: Part<'_>, value: &Value, [key, path]: [&str; 2], found: &mut Vec<En
             put(Setting::number(key, number.as_f64().unwrap_or(0.0), numbers), false);
         }
         (Kind::Whole, Value::Number(number)) => {
+            // The cast saturates, so a missing end becomes the least or the greatest i64.
             let range = *numbers.start() as i64..=*numbers.end() as i64;
             put(Setting::whole(key, number.as_i64().unwrap_or(0), range), true);
         }
@@ -95,6 +96,7 @@ pub(crate) fn names(items: &[Value]) -> Vec<String> {
         if taken.insert(name.clone()) {
             return name;
         }
+        // The first name has no number, so the second begins with 2.
         let number = numbers.entry(name.clone()).or_insert(2);
         loop {
             let name = format!("{name}-{number}");

@@ -79,6 +79,7 @@ impl Source {
             if let Some(&line) = self.lines.get(path) {
                 return self.of_line(line);
             }
+            // A value may be a default that the file does not contain. Its nearest enclosing part has a line.
             match path.rsplit_once('/') {
                 Some((above, _)) => path = above,
                 None => return self.file.clone(),
@@ -122,6 +123,7 @@ impl Lines {
 
     /// Returns the line of a byte, from 1.
     pub(crate) fn of(&self, offset: usize) -> usize {
+        // The number of lines that start at or before the byte is its line, counted from 1.
         self.0.partition_point(|&start| start <= offset)
     }
 }

@@ -26,6 +26,7 @@ pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Sou
     let mut walk = Walk { lines: &lines, source: &mut source, errors: Vec::new() };
     let value = walk.table(part, table.get_ref(), "", table.span().start);
     let mut errors = walk.errors;
+    // Messages follow the lines of the file, whatever the order of the keys is.
     errors.sort_by_key(|(offset, _)| *offset);
     let mut errors: Vec<Error> = errors.into_iter().map(|(_, error)| error).collect();
     match value {
@@ -67,6 +68,7 @@ impl Walk<'_> {
             (Kind::Whole | Kind::Number | Kind::Any, DeValue::Integer(number)) => {
                 let number = i64::from_str_radix(number.as_str(), number.radix());
                 let number = number.map_err(|_| wrong("is too large a number".into()))?;
+                // Integers above 2^53 are rounded here, which matters only next to the end of a range.
                 within(part, number as f64).map_err(wrong)?;
                 Ok(Value::from(number))
             }
@@ -123,6 +125,7 @@ impl Walk<'_> {
         for (name, value) in table {
             let (offset, name) = (name.span().start, name.get_ref().as_ref());
             let line = self.lines.of(offset);
+            // An unknown key may have any length, and its path is part of a message.
             let path = format!("{path}/{}", name.chars().take(60).collect::<String>());
             let known = keys.named.iter().find(|(key, _)| *key == name).map(|(_, part)| *part);
             let Some(part) = known.or_else(|| part.any_key()) else {

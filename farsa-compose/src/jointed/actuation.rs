@@ -15,6 +15,7 @@ fn own(scene: &Scene, joint: JointId, kind: fn(&Law<f64>) -> bool) -> Option<(Ac
 }
 
 pub(crate) fn is_velocity(law: &Law<f64>) -> bool {
+    // A spring without stiffness is a damper, d (v - w), and so a motor of velocity without a limit.
     matches!(law, Law::Velocity(_)) || matches!(law, Law::Held(held) if held.stiffness == 0.0)
 }
 

@@ -47,6 +47,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Channe
         SensorKind::Touch { .. } => ChannelQuantity::new("whether something is touched", "1", [0.0, 1.0]),
         SensorKind::ContactForce { .. } => ChannelQuantity::new("force", "N", [0.0, 1.0]),
         SensorKind::TargetPosition { target, scale, body: own, .. } => {
+            // A channel is scale times the distance, so it is 1 at 1 / scale meters.
             let end = if *scale == 0.0 { 1.0 } else { 1.0 / scale };
             let way = format!("{} of the way from {} to {target}", AXES[channel % 3], body(own));
             ChannelQuantity::new(way, "m", [0.0, end])
@@ -101,6 +102,7 @@ pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> Channel
             ChannelQuantity::new(format!("position of {name}"), unit, [from.unwrap_or(low), to.unwrap_or(high)])
         }
         MotorKind::Muscles { joints, tension, .. } => {
+            // A pair of muscles has two channels.
             let (_, (name, ..)) = joint(joints, channel / 2, tension.is_some(), actuation::is_muscles);
             let which = ["agonist", "antagonist"][channel % 2];
             ChannelQuantity::new(format!("activation of the {which} of {name}"), "1", [0.0, 1.0])

@@ -17,11 +17,13 @@ use crate::parts::eye::band;
 fn camera(eye: &Eye, size: [usize; 2], scene: &Scene, path: &str, source: &Source) -> Result<Camera, Error> {
     let (body, frame) = scene.body(eye.body.as_ref(), &format!("{path}/eye/body"), source)?;
     let about = |axis: usize| {
+        // A turn by a about axis k is the quaternion with sin(a/2) at k and cos(a/2) last. The document has degrees.
         let (sine, cosine) = sin_cos(0.5 * eye.turned[axis].to_radians());
         let mut rotation = [0.0, 0.0, 0.0, cosine];
         rotation[axis] = sine;
         Pose { rotation, ..Pose::identity() }
     };
+    // R = Rz Ry Rx, so the turn about x is applied first.
     let turned = about(2).compose(&about(1)).compose(&about(0));
     let placement = frame.compose(&Pose::at(eye.at)).compose(&turned);
     let made = Camera::new(body, placement.cast(), size, eye.field_of_view.to_radians(), eye.range as f32);
@@ -72,6 +74,7 @@ pub(crate) fn offset(
 /// Returns the quantity of an image channel.
 pub(crate) fn of_image(eye: &Eye, channel: usize) -> ChannelQuantity {
     let color = ["red", "green", "blue"][channel % 3];
+    // Pixels are row by row, with three colors each.
     let (column, row) = (channel / 3 % eye.columns as usize, channel / 3 / eye.columns as usize);
     ChannelQuantity::new(format!("{color} of the pixel in column {column}, row {row}"), "1", [0.0, 1.0])
 }

@@ -39,6 +39,7 @@ impl<W: SpatialWorld> Sensor<W> for MarkerPosition {
         let pose = world.pose(self.from.body);
         let from = pose.transform(self.from.at);
         let way = [0, 1, 2].map(|k| self.place[k] - from[k]);
+        // R^T (p - q) in the axes of the body, otherwise p - q in those of the world.
         let way = if self.axes == Axes::Body { pose.rotate_back(way) } else { way };
         out.iter_mut().zip(way).for_each(|(o, x)| *o = x * self.scale);
     }

@@ -67,6 +67,7 @@ impl RobotModel {
                 *x += by;
             }
         };
+        // All other poses are relative to a parent and move with it.
         let roots = self.robot.segments.iter_mut().filter(|segment| segment.parent.is_none());
         roots.for_each(|segment| moved(&mut segment.joint.placement));
         let standing = self.robot.colliders.iter_mut().filter(|collider| collider.body.is_none());

@@ -44,6 +44,7 @@ impl Setup {
         let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
         let make = |kind, path: &str| sensor(kind, &scene, path, source);
         let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
+        // Motors come after sensors, because they may add actuators to the scene.
         let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
         let make = |kind, path: &str| motor(kind, &mut scene, path, source);
         let motors = Part::list("motors", motors, make, &mut budget, source)?;

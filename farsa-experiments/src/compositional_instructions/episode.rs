@@ -194,6 +194,7 @@ where
     fn act(&mut self, world: &mut W) {
         self.x = self.next;
         if self.instructions.noise > 0.0 {
+            // Words are exact. Only sensors and joints have noise.
             for x in &mut self.x[..WORDS] {
                 *x += self.instructions.noise * self.stream.normal();
             }
@@ -201,16 +202,19 @@ where
         self.controller.step(&self.x, &mut self.y);
         let speeds = self.scene.config.arm.speeds;
         for ((motors, actuator), largest) in self.y.chunks_exact(2).zip(Scene::ACTUATORS).zip(speeds) {
+            // The difference of two outputs in [0, 1] is a share of the largest speed (in rad/s).
             world.command(actuator, [(motors[0] - motors[1]) * largest as f32, 0.0]);
         }
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
+        // The instruction of the action. The step number below already belongs to the next one.
         let held = self.instructions.at(self.steps);
         self.steps += 1;
         let now = self.sense(world);
         let window = self.scene.config.window_steps();
         let withdrawn = self.instructions.change.is_some_and(|(at, _)| self.steps == at);
+        // The window of late steps precedes the change for the first instruction and the end for the second.
         let end = self
             .instructions
             .change
@@ -222,6 +226,7 @@ where
         if withdrawn {
             let judging = &self.scene.config.judging;
             self.before_change = Some((self.totals.parts(held, judging), self.totals.succeeds(held, judging)));
+            // Totals and reference places restart, so the second instruction is judged alone.
             self.totals = RewardTotals::default();
             self.places = self.place_of_objects(world);
         }

@@ -95,6 +95,7 @@ impl Wiring {
         symmetry.expand(&numbered, &mut places).map_err(wrong)?;
         let origin = |place: f32| match (place as usize).checked_sub(FIRST) {
             Some(gene) => Origin::Gene(gene as u16),
+            // Constants of the layout are smaller than every number of a gene.
             None => Origin::Constant(place),
         };
         let origins = places.into_iter().map(origin).collect();
@@ -143,6 +144,7 @@ impl Wiring {
                 self.relay
             } else {
                 let Some(value) = values.next() else { return false };
+                // tau = 10^gene, so that the search covers each power of ten alike.
                 if *kind == CtrnnParameter::TimeConstant { exp(LN_10 * f64::from(*value)) as f32 } else { *value }
             };
             if *kind == CtrnnParameter::Gain && first_gain == 0 {
@@ -153,6 +155,7 @@ impl Wiring {
         // Biases of the five kinds of sensory neurons lie before those of inner and motor neurons, and gains after them all.
         let first_bias = first_gain - (ALIKE.len() + INNER + MOTORS);
         for kind in 0..ALIKE.len() {
+            // Neurons add the bias before the gain, g (y + b). The gene is the product g b, so b = gene / g.
             genes[first_bias + kind] /= genes[first_gain + kind];
         }
         for (parameter, origin) in parameters.iter_mut().zip(&self.origins) {

@@ -88,8 +88,10 @@ impl Script {
         let Instruction { action, color } = self.heard(x);
         let seen = [0, 1, 2].map(|sector| x[3 * sector + color.index()] > 0.0);
         let touching = x[9..12].iter().any(|value| *value > 0.0);
+        // The inverse of the reading (q + r) / (2 r), in rad.
         let joint = |i: usize| f64::from(x[12 + i]) * 2.0 * self.ranges[i] - self.ranges[i];
         let [first, second] = [joint(0), joint(1)];
+        // The side of the second joint at the first step holds for the trial, although the joint may pass 0 later.
         let folded_left = *self.folded_left.get_or_insert(second > 0.0);
         let inwards = if folded_left { -1.0 } else { 1.0 };
         let aim = match seen {
@@ -101,6 +103,7 @@ impl Script {
         };
         self.stage = match self.stage {
             Stage::Search { .. } if seen.contains(&true) => Stage::Centre,
+            // The search sweeps between both turning points until the color is in view.
             Stage::Search { left } if left && first > TURN_BACK => Stage::Search { left: false },
             Stage::Search { left } if !left && first < -TURN_BACK => Stage::Search { left: true },
             Stage::Centre if !seen.contains(&true) => Stage::Search { left: first < 0.0 },
@@ -114,6 +117,7 @@ impl Script {
                 _ => Stage::Hold,
             },
             Stage::Hold if !touching => Stage::Stretch,
+            // `left` is the turn of the second joint that remains (in rad), in either direction.
             Stage::Push { left, before } => {
                 let left = left - (second - before).abs();
                 if left > 0.0 { Stage::Push { left, before: second } } else { Stage::Release { steps: 12 } }
@@ -161,6 +165,7 @@ impl Controller for Script {
             // Two motor neurons differ by the share of the largest speed.
             let part = if largest > 0.0 { (wanted / largest).clamp(-1.0, 1.0) } else { 0.0 };
             for (motor, sign) in motors.iter_mut().zip([0.5, -0.5]) {
+                // Outputs 1/2 + s/2 and 1/2 - s/2 differ by the share s and stay in [0, 1].
                 *motor = (0.5 + sign * part) as f32;
             }
         }

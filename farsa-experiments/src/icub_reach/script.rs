@@ -75,6 +75,7 @@ impl Script {
         let gravity = self.tree.gravity_torques(&self.poses, GRAVITY);
         core::array::from_fn(|i| {
             let [low, high] = self.ranges[i];
+            // A servo of stiffness k sags by g / k under the gravity torque g. The command is ahead by this angle.
             ((angles[i] + gravity[i] / self.stiffness[i] - low) / (high - low)).clamp(0.0, 1.0) as f32
         })
     }
@@ -88,6 +89,7 @@ impl Script {
         let mut speeds = [0.0; 6];
         // At most one joint more is at its limit each time.
         for _ in 0..=6 {
+            // Rows 3 to 5 of the Jacobian are linear velocities. A joint at its limit has a zero column.
             let columns: [[f64; 3]; 6] =
                 core::array::from_fn(
                     |i| {
@@ -103,6 +105,7 @@ impl Script {
                         .fold(if a == b { DAMPING * DAMPING } else { 0.0 }, |sum, column| sum + column[a] * column[b]);
                 }
             }
+            // z = (J J^T + damping^2 1)^-1 v [Wampler1986]. The damping keeps the matrix regular.
             let z = solve(square, wanted);
             speeds = columns.map(|column| (0..3).fold(0.0, |sum, k| sum + column[k] * z[k]));
             let out = |i: usize| {
@@ -114,6 +117,7 @@ impl Script {
                 None => break,
             }
         }
+        // One scale for all joints keeps the direction of the hand's velocity.
         let fastest = speeds.iter().fold(self.config.speed, |most, speed| most.max(speed.abs()));
         speeds.map(|speed| (0.5 + 0.5 * speed / fastest) as f32)
     }
@@ -127,6 +131,7 @@ fn solve(a: [[f64; 3]; 3], b: [f64; 3]) -> [f64; 3] {
     let column = |k: usize| [a[0][k], a[1][k], a[2][k]];
     let [u, v, w] = [0, 1, 2].map(column);
     let whole = dot(u, cross(v, w));
+    // Cramer's rule, with determinants as triple products of columns.
     [dot(b, cross(v, w)) / whole, dot(u, cross(b, w)) / whole, dot(u, cross(v, b)) / whole]
 }
 
@@ -138,6 +143,7 @@ impl Reacher for Script {
     fn step(&mut self, x: &[f32; 3], joints: &[f32; 6], y: &mut [f32; 6]) {
         *y = match (self.config.condition, self.found) {
             (Condition::Velocity, _) => self.velocity(x, joints),
+            // The solution depends only on the input, so it is computed again only for another target.
             (Condition::Steady, Some((sensed, motors))) if sensed == *x => motors,
             (Condition::Steady, _) => {
                 let motors = self.steady(x);

@@ -96,6 +96,7 @@ impl Score {
             // 1 - d(t) / d(0). Distances above the initial one count as 0.
             self.nearness += (1.0 - seen.distance / self.start).clamp(0.0, 1.0);
         }
+        // Only the height of a held ball counts. A ball that bounces up earns nothing.
         let height = if seen.is_held() { seen.height.max(0.0) } else { 0.0 };
         self.highest = self.highest.max(height);
         self.held = if height >= config.height { self.held + 1 } else { 0 };
@@ -104,6 +105,7 @@ impl Score {
             self.touch += seen.touch();
             self.lift += (height / config.height).min(1.0);
         }
+        // Height is 0 for a ball on the table, so this is a center below the table top.
         self.fallen = seen.height < -config.ball_radius;
     }
 

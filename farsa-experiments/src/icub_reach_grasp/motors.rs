@@ -62,7 +62,9 @@ impl Motors {
             let [thumb, fingers] = config.flexion;
             match number {
                 OPPOSITION => hand.push(servo(&joint, config.opposition.map(f64::to_radians))?),
+                // Abduction has no channel. Its servos hold the angle 0.
                 _ if ABDUCTION.contains(&number) => held.push((scene.actuator(&joint)?, 0.0)),
+                // Joints are extended at 0 and flex towards negative angles.
                 _ if THUMB.contains(&number) => hand.push(servo(&joint, [0.0, -thumb.to_radians()])?),
                 _ => hand.push(servo(&joint, [0.0, -fingers.to_radians()])?),
             }
@@ -74,6 +76,7 @@ impl Motors {
         let [upwards, leftwards] = [scene.range("neck_pitch")?, scene.range("neck_yaw")?];
         let head = if config.tracking {
             let servos = [servo("neck_yaw", leftwards)?, servo("neck_pitch", upwards)?];
+            // From rad/s to rad per step.
             let most = (config.head_speed * config.time_step) as f32;
             let eye = (Icub::HEAD, Senses::eye());
             let head =

@@ -147,6 +147,7 @@ impl Scene {
     fn place_of(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2], size: [f64; 2]) -> [f64; 2] {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         [0, 1].map(|k| {
+            // A uniform place within cell k of n, as a share (k + u) / n of the side. Sides are centered on the area.
             let share = (f64::from(cell[k]) + stream.range_f64(0.0, 1.0)) / f64::from(cells[k]);
             self.config.area_centre[k] + size[k] * (share - 0.5)
         })
@@ -186,10 +187,13 @@ impl Scene {
         Observation {
             palm,
             ball,
+            // From the center of the palm to the surface of the ball, 0 inside.
             distance: (apart - ball_radius).max(0.0),
+            // 0 for a ball that rests on the table.
             height: ball[2] - ball_radius - table_top,
             touching: touching as u32,
             opposition: opposition(&directions[..touching]),
+            // Contact with anything except the hand, such as the table.
             supported: self.others.iter().any(|pair| world.touches(*pair)),
         }
     }

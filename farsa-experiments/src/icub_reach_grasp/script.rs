@@ -107,13 +107,16 @@ impl Script {
             posture.joints.try_into().ok()
         };
         let place = |gap: f64, above: f64, fingers: [f64; 3]| {
+            // The palm is a radius and a gap behind the ball along its normal, and AHEAD m back along the fingers.
             let mut place = [0, 1, 2].map(|k| ball[k] - normal[k] * (self.ball_radius + gap) - AHEAD * fingers[k]);
             place[2] += above;
             place
         };
         // The first posture gives the direction of the fingers.
+        // Here the direction of the fingers is still unknown, so they are left out.
         let first = solve(place(BEFORE[0], BEFORE[1], [0.0; 3]), &self.start)?;
         let fingers = self.tree.poses(&first)[Scene::PALM.index()].rotate([1.0, 0.0, 0.0]);
+        // Each solution starts from the previous one, so that no joint changes to another branch.
         let before = solve(place(BEFORE[0], BEFORE[1], fingers), &first)?;
         let at = solve(place(0.0, 0.0, fingers), &before)?;
         let lifted = solve(place(0.0, LIFT, fingers), &at)?;
@@ -144,6 +147,7 @@ fn arm(scene: &Scene) -> Result<Robot, Error> {
     robot.pairs.clear();
     let roll = scene.joint("torso_roll")?.index();
     let joint = &mut robot.segments[roll].joint;
+    // No channel drives the roll of the torso, so the solver must not use it.
     *joint = joint.locked(scene.config.torso[1].to_radians());
     Ok(robot)
 }
@@ -153,6 +157,7 @@ impl Grasper for Script {
         let (sine, cosine) = sin_cos(DOWN.to_radians());
         let plan = TURNS.into_iter().find_map(|turn| {
             let (across, along) = sin_cos(turn.to_radians());
+            // A unit vector that points down by DOWN degrees, turned about the vertical.
             self.plan(ball, [-across * cosine, along * cosine, -sine])
         });
         self.found = plan.is_some();
@@ -167,6 +172,7 @@ impl Grasper for Script {
         self.tree.poses_into(&wanted, &mut self.poses);
         let gravity = self.tree.gravity_torques(&self.poses, GRAVITY);
         for (i, [low, high]) in self.ranges.into_iter().enumerate() {
+            // A servo of stiffness k sags by g / k under the gravity torque g. The command is ahead by this angle.
             let angle = wanted[i] + gravity[i] / self.stiffness[i];
             y[i] = ((angle - low) / (high - low)).clamp(0.0, 1.0) as f32;
         }

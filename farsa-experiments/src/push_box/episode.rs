@@ -99,10 +99,12 @@ impl<C: Controller> PushEpisode<C> {
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, parts, cube, .. } = self;
+        // Individual 0 for all makes starts equal within a generation.
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         world.clear();
         world.place_body(*cube, Pose::planar([0.0; 2], stream.range(-PI, PI)), Twist::default());
         let away = stream.range(config.apart[0] as f32, config.apart[1] as f32);
+        // `apart` is the gap between hulls. The cube counts as a circle around its base at any heading.
         let away = away + (config.robot.radius + config.around()) as f32;
         let (sine, cosine) = sin_cos(stream.range(-PI, PI));
         let at = [away * cosine, away * sine];
@@ -193,12 +195,14 @@ where
             let [u, v] = [x - u, y - v].map(f64::from);
             Scalar::sqrt(u * u + v * v)
         };
+        // `moved` is the distance from the start, and `way` is the length of the path.
         trial.moved = apart(places[0]);
         trial.way += apart(places[1]);
         places[1] = [x, y];
         let [u, v, _] = world.velocity(self.cube).linear.map(f64::from);
         trial.fastest = Scalar::max(trial.fastest, Scalar::sqrt(u * u + v * v));
         trial.touched += u32::from(world.touches(self.pair));
+        // `way` is a sum, so a single NaN stays in it.
         trial.failed |= !(trial.way.is_finite() && trial.fastest.is_finite());
         (trial.failed || trial.steps >= config.steps).then(|| self.fitness())
     }

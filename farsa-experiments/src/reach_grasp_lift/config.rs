@@ -205,6 +205,7 @@ impl Config {
 
     /// Builds the description of the arm and the hand.
     pub fn arm(&self) -> ArmAndHand {
+        // Torque is force times the radius of the tendon (in N m).
         let limit = self.servo_force * self.tendon_radius;
         ArmAndHand {
             shoulder: self.shoulder,

@@ -127,6 +127,7 @@ impl Config {
         let values: &[f32; BODY_PARAMETERS] = parameters.first_chunk()?;
         let [length, ratio, hip, mass, foot_mass, foot_radius, spacing, angle, rate, swing] = values.map(f64::from);
         let legs = [length, length * ratio].map(|length| Legs { length, mass, foot_mass, foot_radius });
+        // Genes are rates in units of sqrt(g / l), those of a pendulum of the outer legs.
         let per_second = Scalar::sqrt(self.walk.gravity / length);
         let launch = Launch { angles: [angle, -angle], rates: [rate * per_second, swing * per_second] };
         Some((Walker { legs, hip_mass: hip, hip_spacing: spacing, ..self.walker }, launch))
@@ -249,6 +250,7 @@ impl Experiment for BodyEvolution {
             *range = [low, high];
         }
         let [[outer, _], [ratio, _], .., [_, widest], _, _, _, _] = config.ranges;
+        // The shortest leg of all genotypes. A larger radius would put the center of a sole above the hip.
         let shortest = outer * ratio.min(1.0);
         if widest > shortest {
             let why = format!("up to {widest} m: at most the shortest leg, {shortest} m");
