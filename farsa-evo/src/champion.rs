@@ -10,8 +10,8 @@ use crate::statistics::Statistics;
 
 /// Best individual that a search has found so far, together with its genome.
 ///
-/// A strategy does not keep it. Where fitness is noisy, the best individual so far is also the luckiest. A search that
-/// needs it keeps it like this:
+/// A strategy does not keep its champion by itself. Note that if fitness is noisy, the best individual so far is also
+/// the luckiest one. If you need it anyway, you can keep it like this:
 ///
 /// ```
 /// use farsa_evo::{Champion, Fitness, Strategy};
@@ -47,7 +47,7 @@ impl<G: Gene> Champion<G> {
     /// its population. Note that an equally good individual does not replace an earlier one.
     ///
     /// # Errors
-    /// [`EvoError::Shape`]. The best individual so far is then unchanged.
+    /// Returns [`EvoError::Shape`]. The best individual so far is then unchanged.
     pub fn keep(
         best: &mut Option<Self>,
         generation: u32,

@@ -7,9 +7,9 @@ use crate::error::EvoError;
 
 /// Result of an evaluation, in whatever unit the experiment uses. Larger is better, and the value is never NaN.
 ///
-/// It is a total order, so all pairs can be compared. Minus zero is stored as zero, so equal values have equal bits. Under
-/// the feature `serde` it is an optional number, absent for a failed evaluation, because text formats such as JSON have no
-/// infinity.
+/// Fitness has a total order, so any two values can be compared. Since minus zero is stored as zero, equal values also
+/// have equal bits. With the feature `serde`, a fitness is serialized as an optional number that is absent for a failed
+/// evaluation. This is because text formats such as JSON cannot represent infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Option<f64>", into = "Option<f64>"))]
@@ -81,7 +81,7 @@ impl TryFrom<f64> for Fitness {
     /// Converts a value that must not be NaN.
     ///
     /// # Errors
-    /// [`EvoError::NanFitness`].
+    /// Returns [`EvoError::NanFitness`].
     fn try_from(value: f64) -> Result<Self, EvoError> {
         Self::new(value).ok_or(EvoError::NanFitness)
     }

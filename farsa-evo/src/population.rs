@@ -48,7 +48,7 @@ impl<G: Gene> Population<G> {
     /// Creates a population with the given number of `individuals` and `genome_len` genes each. All genes are zero.
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn new(individuals: usize, genome_len: usize) -> Result<Self, EvoError> {
         Population::check(individuals, genome_len)?;
         Ok(Self { genome_len, genes: vec![G::default(); individuals * genome_len] })

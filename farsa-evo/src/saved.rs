@@ -23,7 +23,7 @@ impl<C> SavedStrategy<C> {
     /// forged configuration may claim any number of them.
     ///
     /// # Errors
-    /// [`EvoError::State`].
+    /// Returns [`EvoError::State`].
     pub(crate) fn holds(&self, individuals: usize, genes: usize) -> Result<(), EvoError> {
         let (expected, found) = (individuals.saturating_mul(genes).saturating_mul(2), self.state.len());
         if expected <= found { Ok(()) } else { Err(EvoError::state_length(expected, found)) }

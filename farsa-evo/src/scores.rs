@@ -10,7 +10,7 @@ impl ScoreShape {
     /// Checks that another shape is the same as this one.
     ///
     /// # Errors
-    /// [`EvoError::Shape`].
+    /// Returns [`EvoError::Shape`].
     pub fn check(self, found: Self) -> Result<(), EvoError> {
         if self.objectives == found.objectives && self.measures == found.measures {
             Ok(())
@@ -53,7 +53,8 @@ impl Scores {
     /// d)]. If a row contains a NaN, an infinite measure or an objective of minus infinity, its evaluation has failed.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for a shape without objectives, [`EvoError::Shape`] for a last row that is not whole.
+    /// Returns [`EvoError::OutOfRange`] for a shape without objectives, [`EvoError::Shape`] for a last row that is not
+    /// whole.
     pub fn nan_as_failed(shape: ScoreShape, mut values: Vec<f64>) -> Result<Self, EvoError> {
         if shape.objectives == 0 {
             return Err(EvoError::OutOfRange { field: "the number of objectives", value: 0.0, allowed: "1 or more" });
@@ -86,7 +87,7 @@ impl Scores {
     /// would be a bug in your evaluation.
     ///
     /// # Errors
-    /// [`EvoError::NanFitness`], and those of [`nan_as_failed`](Self::nan_as_failed).
+    /// Returns [`EvoError::NanFitness`], and those of [`nan_as_failed`](Self::nan_as_failed).
     pub fn new(shape: ScoreShape, values: Vec<f64>) -> Result<Self, EvoError> {
         if values.iter().any(|x| x.is_nan()) {
             return Err(EvoError::NanFitness);
@@ -146,7 +147,7 @@ impl Scores {
     /// Checks that the scores have the given shape and number of individuals.
     ///
     /// # Errors
-    /// [`EvoError::Shape`].
+    /// Returns [`EvoError::Shape`].
     pub fn check(&self, shape: ScoreShape, individuals: usize) -> Result<(), EvoError> {
         shape.check(self.shape)?;
         let (expected, found) = (individuals, self.len());

@@ -89,7 +89,7 @@ pub trait Algorithm: Clone + fmt::Debug + PartialEq {
     /// Restores a saved state. If this fails, the state may be incomplete.
     ///
     /// # Errors
-    /// [`EvoError::State`].
+    /// Returns [`EvoError::State`].
     fn restore(
         &mut self,
         _step: &Step<'_, Self::Config>,
@@ -122,8 +122,8 @@ pub trait Algorithm: Clone + fmt::Debug + PartialEq {
 
 /// A search that runs an algorithm `A` on a single population.
 ///
-/// Use it by the names of its kinds, such as [`RealGa`](crate::real::RealGa), [`Snes`](crate::gradient::Snes) and
-/// [`TruncationGa`](crate::words::TruncationGa).
+/// You usually use this through one of its aliases, such as [`RealGa`](crate::real::RealGa),
+/// [`Snes`](crate::gradient::Snes) or [`TruncationGa`](crate::words::TruncationGa).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search<A: Algorithm> {
     pub(crate) config: A::Config,
@@ -137,7 +137,7 @@ impl<A: Algorithm> Search<A> {
     /// Creates a new search at its first generation.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first wrong number of the configuration.
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first wrong number of the configuration.
     pub fn new(config: A::Config, seed: u64) -> Result<Self, EvoError> {
         let step = Step { config: &config, seed, generation: 0 };
         let (mut state, mut population) = A::start(&step)?;

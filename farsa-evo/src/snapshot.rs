@@ -16,7 +16,7 @@ pub trait Snapshot {
     /// [`save`](Self::save) returns the same bytes.
     ///
     /// # Errors
-    /// [`EvoError::State`]. The strategy is then unchanged.
+    /// Returns [`EvoError::State`]. The strategy is then unchanged.
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError>;
 
     /// The largest number of generations between two states of a [`Record`](crate::Record), at least 1, for strategies that

@@ -4,7 +4,8 @@ use crate::fitness::Fitness;
 
 /// A summary of the fitness of one generation, in the unit that the experiment uses.
 ///
-/// Failed evaluations count in [`Statistics::failed`] only. When all failed, best, mean and worst are minus infinity.
+/// Failed evaluations are only counted in [`Statistics::failed`]. If all evaluations failed, then best, mean and worst
+/// are minus infinity.
 ///
 /// ```
 /// use farsa_evo::{Fitness, Statistics};

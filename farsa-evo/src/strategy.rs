@@ -29,14 +29,16 @@ pub enum RecordKind {
 
 /// A search by ask and tell over genomes of integers (`u16`) or reals (`f64`).
 ///
-/// The caller evaluates the genomes of [`ask`](Strategy::ask) in any order and on any number of threads, then calls
-/// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and the reported fitness. A
-/// [`Record`](crate::Record) of the fitness therefore rebuilds any past generation without evaluations. Implementations
-/// draw random numbers only from [`farsa_num::Stream`]s that seed, individual and generation name.
+/// You evaluate the genomes of [`ask`](Strategy::ask) in any order and on any number of threads, and then call
+/// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and the reported
+/// fitness. This means that a [`Record`](crate::Record) of the fitness can rebuild any past generation without
+/// evaluations. If you implement a strategy, draw random numbers only from a [`farsa_num::Stream`] that is identified
+/// by seed, individual and generation.
 ///
-/// Three methods are required. The defaults of the others fit a strategy with one population that depends on the values of
-/// fitness. A strategy with several objectives, or with measures, returns another [`score_shape`](Strategy::score_shape)
-/// and takes [`Scores`] in [`tell_scores`](Strategy::tell_scores). Its fitness in logs is the first objective.
+/// Only three methods are required. The defaults of the others are suitable for a strategy with one population that
+/// depends on the values of fitness. If your strategy has several objectives or uses measures, it must return another
+/// [`score_shape`](Strategy::score_shape) and take [`Scores`] in [`tell_scores`](Strategy::tell_scores). In that case
+/// the first objective is shown as fitness in logs.
 pub trait Strategy<G: Gene = u16> {
     /// Gets the number of the generation that is waiting for its fitness, starting at 0.
     fn generation(&self) -> u32;
@@ -48,8 +50,8 @@ pub trait Strategy<G: Gene = u16> {
     /// Takes the fitness \[individuals\] of the current generation and advances to the next one.
     ///
     /// # Errors
-    /// [`EvoError::Shape`] for a wrong number of values, or if the strategy requires scores. [`EvoError::LastGeneration`]. The
-    /// strategy is then unchanged.
+    /// Returns [`EvoError::Shape`] for a wrong number of values, or if the strategy requires scores.
+    /// [`EvoError::LastGeneration`]. The strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
     /// Number of objectives and measures that the strategy requires for each individual. By default this is a single
@@ -63,7 +65,7 @@ pub trait Strategy<G: Gene = u16> {
     /// [`tell`](Strategy::tell) as fitness.
     ///
     /// # Errors
-    /// [`EvoError::Shape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
+    /// Returns [`EvoError::Shape`] for another shape, and the errors of [`tell`](Strategy::tell). The strategy is then
     /// unchanged.
     fn tell_scores(&mut self, scores: &Scores) -> Result<(), EvoError> {
         ScoreShape::FITNESS.check(scores.shape())?;
@@ -135,7 +137,7 @@ pub trait Strategy<G: Gene = u16> {
     /// which a NaN becomes a failed evaluation.
     ///
     /// # Errors
-    /// The errors of [`tell`](Strategy::tell).
+    /// Returns the errors of [`tell`](Strategy::tell).
     fn tell_values(&mut self, values: &[f64]) -> Result<(), EvoError> {
         let fitness: Vec<Fitness> = values.iter().copied().map(Fitness::nan_as_failed).collect();
         self.tell(&fitness)
@@ -146,7 +148,7 @@ pub trait Strategy<G: Gene = u16> {
     /// If it writes a NaN, the evaluation has failed.
     ///
     /// # Errors
-    /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
+    /// Returns [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
     fn evolve(&mut self, generations: u32, mut judge: impl FnMut(&[G], &mut [f64])) -> Result<Champion<G>, EvoError>
     where
         Self: Sized,
@@ -177,7 +179,7 @@ pub trait Strategy<G: Gene = u16> {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::Shape`] for a strategy that requires scores. The errors of [`evolve`](Strategy::evolve).
+    /// Returns [`EvoError::Shape`] for a strategy that requires scores. The errors of [`evolve`](Strategy::evolve).
     fn maximize(&mut self, generations: u32, mut evaluate: impl FnMut(&[G]) -> f64) -> Result<Champion<G>, EvoError>
     where
         Self: Sized,
@@ -197,9 +199,9 @@ pub trait Genealogy {
 /// A strategy that chooses the opponents of each individual, see [`Strategy::opponents`](crate::Strategy::opponents).
 /// Use this for strategies with several populations that depend on the fitness against each opponent.
 ///
-/// The scores of such a strategy have 1 + m objectives for m opponents. The first is the fitness of all trials, the others
-/// are the fitness of the trials against each opponent. In trial `t` the opponent is number `t` modulo m, so at least m
-/// trials are required.
+/// With m opponents, the scores of such a strategy have 1 + m objectives. The first objective is the fitness over all
+/// trials, and the others are the fitness over the trials against each opponent. Trial `t` is played against opponent
+/// `t` modulo m, so you need at least m trials.
 pub trait Opponents<G: Gene = u16> {
     /// Number of opponents m that each individual has in a generation. This is always at least 1.
     fn count(&self) -> usize;
@@ -212,7 +214,7 @@ pub trait Opponents<G: Gene = u16> {
 
 /// An individual that a strategy keeps, either an elite of an archive or a member of a front.
 ///
-/// Where it comes from, its generation and index, is enough to find its genes in a [`Record`](crate::Record).
+/// Together, its generation and index are enough to find its genes in a [`Record`](crate::Record).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member<'a> {
     /// Number of its cell, if the collection is divided into cells.

@@ -79,7 +79,8 @@ impl<C: Cells> Archive<C> {
     /// Creates an empty archive for genomes with the given number of genes.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no genes, no cells, or more genes or measures of all cells than [`Population::MAX_GENES`].
+    /// Returns [`EvoError::Config`] for no genes, no cells, or more genes or measures of all cells than
+    /// [`Population::MAX_GENES`].
     pub fn new(cells: C, genes: usize) -> Result<Self, EvoError> {
         Population::check(cells.cells(), genes)?;
         Population::check(cells.cells(), cells.measures())?;
@@ -123,7 +124,7 @@ impl<C: Cells> Archive<C> {
     /// measures are not finite.
     ///
     /// # Errors
-    /// [`EvoError::Shape`] for another number of genes or measures.
+    /// Returns [`EvoError::Shape`] for another number of genes or measures.
     pub fn add(&mut self, genes: &[f64], objective: f64, measures: &[f64]) -> Result<Addition, EvoError> {
         if genes.len() != self.genes {
             return Err(EvoError::lengths(genes.len(), self.genes, self.genes));

@@ -49,7 +49,7 @@ impl CvtCells {
     /// cells, and ten points for each cell are usually enough.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no ranges, no cells or too many, [`EvoError::OutOfRange`] for other numbers.
+    /// Returns [`EvoError::Config`] for no ranges, no cells or too many, [`EvoError::OutOfRange`] for other numbers.
     pub fn new(cells: usize, bounds: &[[f64; 2]], points: usize, seed: u64) -> Result<Self, EvoError> {
         check_bounds(cells, bounds)?;
         check_setting(points >= cells, "the number of points", points as f64, "as many as cells, or more")?;
@@ -65,8 +65,8 @@ impl CvtCells {
     /// magnitude of up to 10^100.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for d = 0, no centroids or too many. [`EvoError::Shape`] for an incomplete last one.
-    /// [`EvoError::OutOfRange`] for a coordinate.
+    /// Returns [`EvoError::Config`] for d = 0, no centroids or too many. [`EvoError::Shape`] for an incomplete last
+    /// one. [`EvoError::OutOfRange`] for a coordinate.
     pub fn from_centroids(centroids: Vec<f64>, d: usize) -> Result<Self, EvoError> {
         let cells = centroids.len().checked_div(d).ok_or_else(EvoError::no_genes)?;
         Population::check(cells, d)?;

@@ -20,8 +20,8 @@ pub trait Cells {
 
 /// A grid that divides the range of each measure into parts of the same width.
 ///
-/// Values out of a range belong to its first or last part. The last measure counts fastest in the numbers of cells. There
-/// are at most [`Population::MAX_GENES`] cells.
+/// If a value is out of its range, it belongs to the first or last part. Cells are numbered so that the last measure
+/// varies fastest. Note that a grid can have at most [`Population::MAX_GENES`] cells.
 ///
 /// Source: \[Mouret2015\].
 ///
@@ -47,7 +47,7 @@ impl GridCells {
     /// parts \[d\].
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no ranges or too many cells, [`EvoError::OutOfRange`] for other numbers.
+    /// Returns [`EvoError::Config`] for no ranges or too many cells, [`EvoError::OutOfRange`] for other numbers.
     pub fn new(bounds: Vec<[f64; 2]>, parts: Vec<usize>) -> Result<Self, EvoError> {
         check_bounds(1, &bounds)?;
         let (found, wanted) = (parts.len(), bounds.len());

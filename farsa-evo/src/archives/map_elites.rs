@@ -52,7 +52,7 @@ impl MapElitesConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no emitters or wrong sizes, [`EvoError::OutOfRange`] for other numbers.
+    /// Returns [`EvoError::Config`] for no emitters or wrong sizes, [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_bounds(self.population(), &self.bounds)?;
         self.emitters.iter().try_for_each(|emitter| emitter.check(&self.bounds))?;
@@ -66,12 +66,13 @@ impl MapElitesConfig {
     }
 }
 
-/// MAP-Elites. An archive keeps the best individual of each cell of behaviors, and emitters make new individuals from it.
-/// With improvement emitters it is CMA-ME.
+/// The MAP-Elites algorithm. It keeps the best individual of each cell of behaviors in an archive, and emitters make
+/// new individuals from this archive. If you use improvement emitters, this is CMA-ME.
 ///
-/// Scores are one objective and the measures of its cells. The individuals of a generation are added in the order of their
-/// index. A better individual replaces the elite of its cell, an equal one does not. A failed evaluation is not added, and
-/// no individual is evaluated again. Champions are the best of a generation by the objective.
+/// Scores consist of one objective and the measures that the cells require. Individuals of a generation are added in
+/// the order of their index. An individual replaces the elite of its cell only if it is better, not if it is equally
+/// good. Failed evaluations are never added, and no individual is evaluated again. Champions are the best individuals
+/// of a generation by the objective.
 ///
 /// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The draws are
 /// its elite, the second elite for the iso-line emitter, one normal number for the line, then a row of normal numbers.
@@ -111,7 +112,7 @@ impl<C: Cells + Clone> MapElites<C> {
     /// Creates a new search with an empty archive of these cells.
     ///
     /// # Errors
-    /// The errors of [`MapElitesConfig::validate`] and of [`Archive::new`].
+    /// Returns the errors of [`MapElitesConfig::validate`] and of [`Archive::new`].
     pub fn new(config: MapElitesConfig, cells: C, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let archive = Archive::new(cells, config.bounds.len())?;

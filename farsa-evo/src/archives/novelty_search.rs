@@ -64,7 +64,7 @@ impl NoveltyConfig {
     /// [`NoveltySearch::new`] does it for you.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::OutOfRange`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let (d, k) = (self.measures, self.neighbors);
         check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
@@ -84,12 +84,14 @@ const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
 
 /// Novelty search, which passes the novelty of each individual's behavior to an inner strategy instead of its fitness.
 ///
-/// The novelty of a behavior is the mean distance of its measures to the k nearest among the generation and an archive of
-/// earlier ones. Scores are the fitness, which is only logged, and the measures. A failed evaluation has no behavior, and
-/// the inner strategy receives a failed fitness.
+/// Novelty is the mean distance of the measures of a behavior to its k nearest neighbors. These neighbors are searched
+/// for in the current generation and in an archive of earlier behaviors. Scores consist of the fitness, which is only
+/// logged, and the measures. If an evaluation fails, it has no behavior, and the inner strategy receives a failed
+/// fitness.
 ///
-/// After `tell_scores`, behaviors enter the archive by index. Where they do so by chance, individual `i` of generation `g`
-/// draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). The archive grows without limit.
+/// Behaviors enter the archive in `tell_scores`, in the order of their index. If they do so by chance, individual `i`
+/// of generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). Note that the archive grows
+/// without limit.
 ///
 /// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: the inner strategy is any strategy, where
 /// the source has NEAT. An archive by chance is ours. All behaviors of a generation are compared with the archive before
@@ -131,7 +133,7 @@ impl<S> NoveltySearch<S> {
     /// Creates a search around an inner strategy. The archive is empty at first.
     ///
     /// # Errors
-    /// The errors of [`NoveltyConfig::validate`]. [`EvoError::Record`] or [`EvoError::Shape`] for an inner
+    /// Returns the errors of [`NoveltyConfig::validate`]. [`EvoError::Record`] or [`EvoError::Shape`] for an inner
     /// strategy that is past generation 0 or requires scores.
     pub fn new<G: Gene>(config: NoveltyConfig, inner: S, seed: u64) -> Result<Self, EvoError>
     where
@@ -154,8 +156,8 @@ impl<S> NoveltySearch<S> {
     /// taken, which is useful if their scales differ.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for another number of units, or one outside 1e-100 to 1e100. [`EvoError::Record`] after
-    /// generation 0.
+    /// Returns [`EvoError::OutOfRange`] for another number of units, or one outside 1e-100 to 1e100.
+    /// [`EvoError::Record`] after generation 0.
     pub fn with_units<G: Gene>(self, units: &[f64]) -> Result<Self, EvoError>
     where
         S: Strategy<G>,

@@ -78,7 +78,7 @@ impl CosyneConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { population, parents, offspring, range, mutation_rate, mutation_scale, .. } = *self;
         Population::check(population, self.genes())?;

@@ -129,7 +129,7 @@ impl GeneralistCoevolution {
     /// Creates a new co-evolution with a random initial generation.
     ///
     /// # Errors
-    /// The errors of [`GeneralistConfig::validate`].
+    /// Returns the errors of [`GeneralistConfig::validate`].
     pub fn new(config: GeneralistConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let (mutation, size) = (config.bit_mutation()?, config.size());

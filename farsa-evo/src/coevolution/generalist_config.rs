@@ -40,7 +40,7 @@ impl GeneralistConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, members, newcomers, opponents, iterations, .. } = *self;
         Population::check(members, genes)?;

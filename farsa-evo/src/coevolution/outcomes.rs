@@ -50,8 +50,8 @@ impl Outcomes {
     /// NaN, that evaluation has failed.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no opponents, no values or too many. [`EvoError::Shape`] if the last individual has fewer values
-    /// than there are opponents.
+    /// Returns [`EvoError::Config`] for no opponents, no values or too many. [`EvoError::Shape`] if the last individual
+    /// has fewer values than there are opponents.
     pub fn new(opponents: usize, values: Vec<f64>) -> Result<Self, EvoError> {
         if opponents == 0 || values.is_empty() {
             return Err(EvoError::no_individuals());
@@ -94,7 +94,7 @@ impl Outcomes {
     /// do not count.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for none, or more than there are.
+    /// Returns [`EvoError::OutOfRange`] for none, or more than there are.
     pub fn differing_opponents(&self, count: usize, stream: &mut Stream) -> Result<Vec<usize>, EvoError> {
         let possible = (1..=self.opponents).contains(&count);
         check_setting(possible, "the number of opponents", count as f64, "1 to all opponents")?;
@@ -121,7 +121,7 @@ impl Outcomes {
     /// many of the best individuals stay as there are members, and worse newcomers replace worse members.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for as many newcomers as individuals, or more.
+    /// Returns [`EvoError::OutOfRange`] for as many newcomers as individuals, or more.
     pub fn replacements(&self, newcomers: usize) -> Result<Vec<Replacement>, EvoError> {
         let all = self.individuals();
         check_setting(newcomers < all, "the number of newcomers", newcomers as f64, "0 to all individuals but one")?;

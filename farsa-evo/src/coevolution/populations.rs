@@ -73,7 +73,7 @@ impl Populations<TruncationGa, u16> {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::Config`] for fewer than two populations, unequal sizes or too many genes, and the errors of
+    /// Returns [`EvoError::Config`] for fewer than two populations, unequal sizes or too many genes, and the errors of
     /// [`GaConfig::validate`].
     pub fn truncation(configs: &[GaConfig], seed: u64) -> Result<Self, EvoError> {
         let [GaConfig { population: first, .. }, _, ..] = *configs else {
@@ -105,8 +105,8 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Populations<S, G> {
     /// drawn from the stream (`seed`, [`Domain::General`], trial 0, `p`, generation 0).
     ///
     /// # Errors
-    /// [`EvoError::Config`] for fewer than two populations, unequal sizes or too many genes. [`EvoError::Shape`] for genomes of
-    /// unequal lengths. The errors of `search`.
+    /// Returns [`EvoError::Config`] for fewer than two populations, unequal sizes or too many genes.
+    /// [`EvoError::Shape`] for genomes of unequal lengths. The errors of `search`.
     pub fn new(populations: usize, seed: u64, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Self, EvoError> {
         if populations < 2 {
             return Err(EvoError::few_populations(populations));

@@ -17,8 +17,8 @@ use crate::strategy::{Strategy, next_generation};
 /// Covariance matrix adaptation with a Cholesky factor. A generation of many genes takes a fraction of the time of
 /// [`CmaEs<Full>`](CmaEs), which spends most of it on the axes.
 ///
-/// It differs from [`CmaEs<Full>`](CmaEs) in one thing. The path of the step size turns steps by A^-1 of C = A A^T instead of
-/// C^-1/2. The two paths differ once C is no multiple of the identity.
+/// There is only one difference to [`CmaEs<Full>`](CmaEs). Here, the path of the step size turns steps by A^-1 of C = A
+/// A^T instead of C^-1/2. Both paths differ once C is no longer a multiple of the identity.
 ///
 /// Source: \[Krause2016\], which updates the factor in every generation. Here it is computed from C every
 /// 1 / (10 n (`c_1` + `c_mu`)) generations. Deviations: those of `CmaEs`, and squares on the factor's diagonal are at least
@@ -38,8 +38,9 @@ pub type CholeskyCmaEs = CmaEs<Cholesky>;
 
 /// Covariance matrix adaptation with a diagonal matrix. Each gene has its own variance and genes stay independent.
 ///
-/// The time of a generation rises with the number of genes instead of its square, and the search learns (n + 2) / 3 times as
-/// fast as [`CmaEs<Full>`](CmaEs). It is for many genes, or for genes that matter one by one.
+/// Since the time of a generation is proportional to the number of genes instead of its square, this is suitable for
+/// very many genes. It also learns (n + 2) / 3 times as fast as [`CmaEs<Full>`](CmaEs). Note that it cannot learn
+/// correlations between genes.
 ///
 /// Source: \[Ros2008\], with the weights and rates of \[Hansen2016\] table 1. The rates of the covariance are multiplied by
 /// (n + 2) / 3 and sum to at most 1. Deviations: larger fitness is better, and variances are at least 10^-30 of the largest. No
@@ -56,16 +57,17 @@ pub type CholeskyCmaEs = CmaEs<Cholesky>;
 /// ```
 pub type SeparableCmaEs = CmaEs<Diagonal>;
 
-/// Covariance matrix adaptation. Individuals are drawn from a normal distribution, whose mean, step size and covariance follow
-/// the better ones. Genes are unbounded reals.
+/// Covariance matrix adaptation (CMA-ES) over unbounded real genes. Individuals are drawn from a normal distribution,
+/// and its mean, step size and covariance follow the better ones.
 ///
-/// The search depends on the order of the individuals only. It is invariant to rotations of the genes, and learns their scales
-/// and correlations. An update takes n^2 operations an individual. The axes of the distribution take n^3, once every
-/// 1 / (10 n (`c_1` + `c_mu`)) generations. It is for up to about a thousand genes.
+/// Only the order of the individuals matters for this search. It is invariant to rotations of the genes, and it learns
+/// their scales and correlations. An update takes n^2 operations for each individual. Computing the axes of the
+/// distribution takes n^3 operations, but this is done only once every 1 / (10 n (`c_1` + `c_mu`)) generations. Use
+/// this for up to about a thousand genes.
 ///
-/// Equal individuals rank by index, failed evaluations last. A generation of which all evaluations failed leaves the
-/// distribution unchanged, and the next one is drawn from it again. Records therefore contain values: an order does not show
-/// that a generation failed.
+/// Individuals that are equally good are ranked by index, and failed evaluations come last. If all evaluations of a
+/// generation failed, the distribution remains unchanged and the next generation is drawn from it again. This is why
+/// records contain values, since an order does not show that a generation failed.
 ///
 /// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0,
 /// `i`, `g`), in generation 0 from [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome).
@@ -100,7 +102,7 @@ impl CmaEs {
     /// [`with_covariance`](Self::with_covariance).
     ///
     /// # Errors
-    /// The errors of [`CmaEsConfig::validate`].
+    /// Returns the errors of [`CmaEsConfig::validate`].
     pub fn new(config: CmaEsConfig, seed: u64) -> Result<Self, EvoError> {
         Self::with_covariance(config, seed)
     }
@@ -110,7 +112,8 @@ impl<C: Covariance> CmaEs<C> {
     /// Creates a new search whose kind of covariance matrix is given by the type.
     ///
     /// # Errors
-    /// The errors of [`CmaEsConfig::validate`] or [`SeparableCmaEsConfig::validate`](crate::covariance::SeparableCmaEsConfig::validate).
+    /// Returns the errors of [`CmaEsConfig::validate`] or
+    /// [`SeparableCmaEsConfig::validate`](crate::covariance::SeparableCmaEsConfig::validate).
     pub fn with_covariance(config: C::Config, seed: u64) -> Result<Self, EvoError> {
         config.check()?;
         let (mean, sigma, population) = config.start();

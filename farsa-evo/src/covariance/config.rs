@@ -20,7 +20,7 @@ pub trait Start: Clone + core::fmt::Debug + PartialEq {
     /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
-    /// An error that names the first wrong number.
+    /// Returns an error that names the first wrong number.
     fn check(&self) -> Result<(), EvoError>;
 }
 
@@ -57,8 +57,8 @@ impl CmaEsConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no genes, no individuals, or more genes of a population or elements of the covariance matrix
-    /// than [`Population::MAX_GENES`]. [`EvoError::OutOfRange`] for other numbers.
+    /// Returns [`EvoError::Config`] for no genes, no individuals, or more genes of a population or elements of the
+    /// covariance matrix than [`Population::MAX_GENES`]. [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         let genes = self.mean.len();
         check_start(&self.mean, self.sigma, self.population)?;
@@ -117,7 +117,7 @@ impl SeparableCmaEsConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_start(&self.mean, self.sigma, self.population)
     }

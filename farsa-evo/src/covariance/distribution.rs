@@ -59,7 +59,7 @@ pub trait Covariance: Clone + core::fmt::Debug + PartialEq {
     /// Restores a state. On error the state is incomplete.
     ///
     /// # Errors
-    /// [`EvoError::State`].
+    /// Returns [`EvoError::State`].
     fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError>;
 }
 

@@ -53,8 +53,8 @@ impl CmaEsRestartsConfig {
     /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
-    /// The errors of [`CmaEsConfig::validate`]. [`EvoError::Config`] if the largest run, of 512 times as many individuals
-    /// as the first, has more genes than [`Population::MAX_GENES`].
+    /// Returns the errors of [`CmaEsConfig::validate`]. [`EvoError::Config`] if the largest run, of 512 times as many
+    /// individuals as the first, has more genes than [`Population::MAX_GENES`].
     pub fn validate(&self) -> Result<(), EvoError> {
         self.first.validate()?;
         let most = self.first.population.saturating_mul(MOST_BLOCKS as usize);
@@ -84,7 +84,7 @@ struct Run {
 /// Covariance matrix adaptation in runs. When one terminates, the next begins at another mean, with more individuals or
 /// with few.
 ///
-/// It is for fitness with many optima, which few individuals overlook.
+/// Use this if the fitness has many optima, which a search with few individuals would overlook.
 ///
 /// A strategy has the same number of genomes in all generations, but runs differ in theirs. A generation of this strategy
 /// is therefore a block of as many individuals as the first run has. A generation of a run is one to 512 blocks, and the
@@ -135,7 +135,7 @@ impl CmaEsRestarts {
     /// Creates a new search at the first generation of its first run.
     ///
     /// # Errors
-    /// The errors of [`CmaEsRestartsConfig::validate`].
+    /// Returns the errors of [`CmaEsRestartsConfig::validate`].
     pub fn new(config: CmaEsRestartsConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let CmaEsConfig { mean, sigma, population, .. } = &config.first;

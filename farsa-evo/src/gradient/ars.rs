@@ -40,7 +40,7 @@ impl ArsConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.directions.saturating_mul(2), self.mean.len())?;
         let within = (1..=self.directions).contains(&self.top_directions);
@@ -54,7 +54,7 @@ impl ArsConfig {
 /// Augmented random search, with mirrored noise of one size around one point. The point moves by the differences of rewards
 /// along the best directions, divided by the standard deviation of these rewards.
 ///
-/// The simplest of the strategies for many genes. It depends on the values of fitness, though not on their unit or
+/// This is the simplest strategy for many genes. It depends on the values of fitness, although not on their unit or
 /// zero.
 ///
 /// Source: \[Mania2018\] algorithm 1, V1, and V1-t with fewer top directions. For V2 normalize observations with

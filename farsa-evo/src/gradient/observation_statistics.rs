@@ -51,7 +51,7 @@ impl ObservationStatistics {
     /// Creates empty statistics for the given number of channels.
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for none, or more than [`Population::MAX_GENES`].
+    /// Returns [`EvoError::OutOfRange`] for none, or more than [`Population::MAX_GENES`].
     pub fn new(channels: usize) -> Result<Self, EvoError> {
         if channels == 0 || channels > Population::MAX_GENES {
             return Err(EvoError::OutOfRange { field: "channels", value: channels as f64, allowed: "1 to 2^28" });
@@ -62,7 +62,7 @@ impl ObservationStatistics {
     /// Restores statistics from a [saved](Snapshot::save) state. The number of channels is taken from the state.
     ///
     /// # Errors
-    /// [`EvoError::State`] for bytes that are no such state.
+    /// Returns [`EvoError::State`] for bytes that are no such state.
     pub fn from_saved(state: &[u8]) -> Result<Self, EvoError> {
         let channels = state.len().saturating_sub(8) / 16;
         let mut statistics = Self::new(channels).map_err(|_| EvoError::state_length(24, state.len()))?;
@@ -119,8 +119,8 @@ impl ObservationStatistics {
     /// from it \[channels\].
     ///
     /// # Errors
-    /// [`EvoError::OutOfRange`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
-    /// above 1e250, or more than 2^64 - 1 observations. Nothing is added then.
+    /// Returns [`EvoError::OutOfRange`] for other channels, a mean not within 1e100 of zero, a sum of squares that is
+    /// negative or above 1e250, or more than 2^64 - 1 observations. Nothing is added then.
     pub fn add(&mut self, count: u64, mean: &[f64], squares: &[f64]) -> Result<(), EvoError> {
         for channels in [mean.len(), squares.len()] {
             if channels != self.channels() {

@@ -43,7 +43,7 @@ impl OpenAiEsConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.pairs.saturating_mul(2), self.mean.len())?;
         point("mean", &self.mean)?;
@@ -56,8 +56,8 @@ impl OpenAiEsConfig {
 
 /// The evolution strategy of `OpenAI`: mirrored noise of one size around one point, which an optimizer moves.
 ///
-/// It is for genomes of very many genes. Apart from the genomes it stores only the noise, the point and the state of the
-/// optimizer. It does not learn scales, and sigma is constant. Only the order of fitness counts.
+/// Use this for genomes with very many genes, since it stores only the noise, the point and the state of the optimizer
+/// apart from the genomes. It does not learn scales, and sigma is constant. Only the order of fitness matters.
 ///
 /// Source: \[Salimans2017\] algorithm 1, gradient 1 / (n sigma) times the sum of centered ranks times noise. Section 2 has
 /// the antithetic sampling, the rank transformation and the weight decay. Deviations: noise is drawn, not read from a

@@ -74,7 +74,7 @@ impl PgpeConfig {
     /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.pairs.saturating_mul(2), self.mean.len())?;
         point("mean", &self.mean)?;

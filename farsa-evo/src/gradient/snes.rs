@@ -46,7 +46,7 @@ impl SnesConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.population, self.mean.len())?;
         at_least("population", self.population, 2, "2 or more")?;
@@ -60,8 +60,8 @@ impl SnesConfig {
 /// The separable natural evolution strategy: a normal distribution with a standard deviation for each gene, moved along
 /// the natural gradient of the expected fitness.
 ///
-/// Time and memory are proportional to the number of genes. It learns a scale for each gene, but no correlations, for which
-/// there is [`Xnes`](crate::gradient::Xnes). Only the order of fitness counts.
+/// Both time and memory are proportional to the number of genes. This strategy learns a scale for each gene, but no
+/// correlations. If you need them, use [`Xnes`](crate::gradient::Xnes). Only the order of fitness matters.
 ///
 /// Source: \[Wierstra2014\] algorithm 6 (SNES) with the utilities of table 1. Deviations: sums go through the individuals
 /// by index. Means stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.

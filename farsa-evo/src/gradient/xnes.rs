@@ -55,7 +55,7 @@ impl XnesConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.population, self.mean.len())?;
         at_least("population", self.population, 2, "2 or more")?;
@@ -74,8 +74,8 @@ impl XnesConfig {
 /// The exponential natural evolution strategy. A normal distribution with a full covariance moves along the natural
 /// gradient of the expected fitness, in coordinates in which it is the identity.
 ///
-/// It learns scales and correlations, for up to some hundred genes: a generation takes time in proportion to the cube
-/// of their number. Only the order of fitness counts.
+/// This strategy learns scales and correlations. Since the time of a generation is proportional to the cube of the
+/// number of genes, it is suitable for up to a few hundred of them. Only the order of fitness matters.
 ///
 /// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its table 1.
 /// A genome is mu + sigma B s. B is multiplied from the right by the exponential of a symmetric matrix without trace.

@@ -51,7 +51,7 @@ impl Nsga2Config {
     /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
-    /// [`EvoError::Config`] for sizes, [`EvoError::OutOfRange`] for other numbers.
+    /// Returns [`EvoError::Config`] for sizes, [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         check_bounds(self.population, &self.bounds)?;
         check_setting(self.objectives > 0, "the number of objectives", self.objectives as f64, "1 or more")?;
@@ -140,7 +140,7 @@ impl Nsga2 {
     /// Creates a new search with a random initial generation.
     ///
     /// # Errors
-    /// The errors of [`Nsga2Config::validate`].
+    /// Returns the errors of [`Nsga2Config::validate`].
     pub fn new(config: Nsga2Config, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let population = Population::new(config.population, config.bounds.len())?;

@@ -130,7 +130,7 @@ impl EvolutionStrategyConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { parents, offspring, mixing, initial_step, smallest_step, .. } = *self;
         Population::check(offspring, self.mean.len())?;

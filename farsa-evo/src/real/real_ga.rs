@@ -59,7 +59,7 @@ impl RealGaConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         self.selector().map(|_| ())
     }
@@ -83,9 +83,10 @@ impl RealGaConfig {
 
 /// A generational genetic algorithm over real genes within bounds: selection, crossover, mutation, elites.
 ///
-/// Individuals are ranked by fitness, equals by index, the lower first, failed ones last. The `elites` best stay unchanged,
-/// best first. Every other individual is a child of one parent or two. All are evaluated again in every generation. Genes
-/// out of bounds are reflected at them.
+/// Individuals are ranked by fitness, and ties are broken by the lower index. Failed individuals come last. The best
+/// individuals, as many as `elites`, stay unchanged, best first. Every other individual is a child of one or two
+/// parents. Note that all individuals are evaluated again in every generation. If a gene leaves its bounds, it is
+/// reflected at them.
 ///
 /// Individual `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, `i`, `g`). The draws are
 /// its first parent, the decision for a second, the second, the crossover, its step size and its mutation, gene after gene.

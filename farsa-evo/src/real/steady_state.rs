@@ -41,7 +41,7 @@ impl SteadyStateConfig {
     /// Checks whether a search can be created with these settings.
     ///
     /// # Errors
-    /// [`EvoError::Config`] or [`EvoError::OutOfRange`].
+    /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { population, rate, sigma, noise, .. } = *self;
         check_bounds(population, &self.bounds)?;
@@ -55,9 +55,9 @@ impl SteadyStateConfig {
 /// A (mu + mu) strategy over real genes within bounds. In every generation the better half stays where it is, and each of
 /// them makes one mutated child. The child of the best replaces the best of the worse half, and so on.
 ///
-/// All are evaluated again in every generation, because trials vary. With noise, individuals are ranked by their fitness
-/// plus a number that is uniform between -noise and noise, which lowers the selection pressure. Champions are those of the
-/// fitness itself. Equals are ranked by index, the lower first, failed ones last.
+/// Since trials vary, all individuals are evaluated again in every generation. If there is noise, individuals are
+/// ranked by their fitness plus a number that is uniform between -noise and noise, which lowers the selection pressure.
+/// Champions are chosen by the fitness itself. Ties are broken by the lower index, and failed individuals come last.
 ///
 /// The child at the index `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`). The
 /// noise of individual `i` of generation `g` draws from (seed, [`Domain::Mutation`], trial 1, `i`, `g`). Individuals of

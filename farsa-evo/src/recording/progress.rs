@@ -35,7 +35,7 @@ impl Progress {
     /// Starts with a strategy at generation 0.
     ///
     /// # Errors
-    /// The errors of [`Record::new`](crate::Record::new).
+    /// Returns the errors of [`Record::new`](crate::Record::new).
     pub(crate) fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         if strategy.generation() != 0 {
             return Err(EvoError::not_at_start(strategy.generation()));
@@ -60,7 +60,7 @@ impl Progress {
     /// Reports fitness to a strategy and encodes it.
     ///
     /// # Errors
-    /// The errors of [`Record::tell`](crate::Record::tell).
+    /// Returns the errors of [`Record::tell`](crate::Record::tell).
     pub(crate) fn fitness<G: Gene>(
         self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -73,7 +73,7 @@ impl Progress {
     /// Reports scores to a strategy and encodes them.
     ///
     /// # Errors
-    /// The errors of [`Record::tell_scores`](crate::Record::tell_scores).
+    /// Returns the errors of [`Record::tell_scores`](crate::Record::tell_scores).
     pub(crate) fn scores<G: Gene>(
         self,
         strategy: &mut (impl Strategy<G> + ?Sized),

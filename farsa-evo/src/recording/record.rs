@@ -68,8 +68,8 @@ impl Record {
     /// Creates an empty record for a strategy that is still in generation 0.
     ///
     /// # Errors
-    /// [`EvoError::Record`] for a strategy past generation 0, or one that requires recorded genomes and cannot save its state.
-    /// [`EvoError::Config`] for populations of unequal sizes.
+    /// Returns [`EvoError::Record`] for a strategy past generation 0, or one that requires recorded genomes and cannot
+    /// save its state. [`EvoError::Config`] for populations of unequal sizes.
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         Progress::new(strategy).map(|progress| Self::empty(progress.shape))
     }
@@ -107,9 +107,9 @@ impl Record {
     /// [`Strategy::tell`] if you keep a record.
     ///
     /// # Errors
-    /// [`EvoError::Record`] for a strategy that is not at the end of this record, that has another number of champions than
-    /// populations, or that does not advance. [`EvoError::State`] for a champion outside its population. The errors of
-    /// [`Strategy::tell`]. Nothing is recorded then.
+    /// Returns [`EvoError::Record`] for a strategy that is not at the end of this record, that has another number of
+    /// champions than populations, or that does not advance. [`EvoError::State`] for a champion outside its population.
+    /// The errors of [`Strategy::tell`]. Nothing is recorded then.
     pub fn tell<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -124,7 +124,7 @@ impl Record {
     /// [`tell`](Self::tell) for strategies that require scores.
     ///
     /// # Errors
-    /// The errors of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
+    /// Returns the errors of [`tell`](Self::tell) and [`Strategy::tell_scores`]. Nothing is recorded then.
     pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -146,7 +146,7 @@ impl Record {
     /// Checks that this record fits a strategy.
     ///
     /// # Errors
-    /// [`EvoError::Record`].
+    /// Returns [`EvoError::Record`].
     pub fn check<G: Gene>(&self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
         self.shape.check_strategy(strategy)
     }
@@ -215,9 +215,9 @@ impl Record {
     /// be new or at an earlier generation of this record.
     ///
     /// # Errors
-    /// [`EvoError::Record`] for a generation beyond the record or before that of the strategy, for a strategy of another kind or
-    /// size, and where genomes are recorded. [`EvoError::State`] for a saved state of another generation. The errors of the
-    /// strategy.
+    /// Returns [`EvoError::Record`] for a generation beyond the record or before that of the strategy, for a strategy
+    /// of another kind or size, and where genomes are recorded. [`EvoError::State`] for a saved state of another
+    /// generation. The errors of the strategy.
     pub fn rebuild<G: Gene>(
         &self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -254,7 +254,7 @@ impl Record {
     /// requirements as for [`rebuild`](Self::rebuild).
     ///
     /// # Errors
-    /// The errors of [`rebuild`](Self::rebuild).
+    /// Returns the errors of [`rebuild`](Self::rebuild).
     pub fn genomes<G: Gene>(
         &self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -285,7 +285,7 @@ impl Record {
     /// Appends a generation from its [`entry`](Self::entry). This does not need a strategy.
     ///
     /// # Errors
-    /// [`EvoError::State`] for an entry of another size or an impossible generation, [`EvoError::NanFitness`],
+    /// Returns [`EvoError::State`] for an entry of another size or an impossible generation, [`EvoError::NanFitness`],
     /// [`EvoError::LastGeneration`]. Nothing is added then.
     pub fn push(&mut self, entry: RecordEntry<'_>) -> Result<(), EvoError> {
         let (expected, found) = (self.shape.frame(), entry.frame.len());

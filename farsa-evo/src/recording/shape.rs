@@ -78,7 +78,7 @@ impl Shape {
     /// Checks that a record of this shape fits a strategy.
     ///
     /// # Errors
-    /// [`EvoError::Record`].
+    /// Returns [`EvoError::Record`].
     pub(crate) fn check_strategy<G: Gene>(self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
         let (ours, theirs) = (self, Self::from_strategy(strategy));
         let other = |what, recorded| Err(EvoError::other_record(what, recorded));

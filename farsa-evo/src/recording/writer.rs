@@ -47,7 +47,7 @@ impl RecordWriter {
     /// Creates a writer for a strategy that is still in generation 0.
     ///
     /// # Errors
-    /// The errors of [`Record::new`](crate::Record::new).
+    /// Returns the errors of [`Record::new`](crate::Record::new).
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         Progress::new(strategy).map(Self::going_on)
     }
@@ -60,7 +60,7 @@ impl RecordWriter {
     /// Reports the fitness \[individuals\] of a generation to a strategy and records it.
     ///
     /// # Errors
-    /// The errors of [`Record::tell`](crate::Record::tell). Nothing is recorded then.
+    /// Returns the errors of [`Record::tell`](crate::Record::tell). Nothing is recorded then.
     pub fn tell<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),
@@ -74,7 +74,7 @@ impl RecordWriter {
     /// Reports the scores of a generation to a strategy and records them.
     ///
     /// # Errors
-    /// The errors of [`Record::tell_scores`](crate::Record::tell_scores). Nothing is recorded then.
+    /// Returns the errors of [`Record::tell_scores`](crate::Record::tell_scores). Nothing is recorded then.
     pub fn tell_scores<G: Gene>(
         &mut self,
         strategy: &mut (impl Strategy<G> + ?Sized),

@@ -22,7 +22,7 @@ impl GeneRange {
     /// Creates a range for `count` genes that decode to values from `low` to `high`, in the unit of the parameter.
     ///
     /// # Errors
-    /// [`EvoError::Config`] when an end is not finite or `low > high`.
+    /// Returns [`EvoError::Config`] when an end is not finite or `low > high`.
     pub fn new(count: usize, low: f32, high: f32) -> Result<Self, EvoError> {
         if low.is_finite() && high.is_finite() && low <= high {
             Ok(Self { count, low, high, largest: u16::MAX })
@@ -42,7 +42,7 @@ impl GeneRange {
     /// ```
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
         match check_gene_bits(bits) {
             Ok(()) => Ok(Self { largest: u16::MAX >> (u16::BITS - bits), ..self }),
@@ -58,8 +58,8 @@ impl GeneRange {
     /// Decodes a single gene as `low + (high - low) * gene / largest`. This is computed in f64 and rounded to f32 at
     /// the end.
     ///
-    /// It is never outside the range, exact at both ends, and never falls with the gene. A gene beyond the largest decodes
-    /// to the high end.
+    /// This is exact at both ends, never outside the range, and never decreases as the gene increases. If the gene is
+    /// larger than the largest one, the result is the high end.
     pub fn decode(self, gene: u16) -> f32 {
         // In f64 the difference of two f32 cannot overflow.
         let (low, high) = (f64::from(self.low), f64::from(self.high));
@@ -121,8 +121,8 @@ impl TryFrom<SavedRange> for GeneRange {
 /// ```
 ///
 /// # Errors
-/// [`EvoError::Shape`] when the ranges do not describe exactly the genes or `out` has another length. `out` is then
-/// unchanged.
+/// Returns [`EvoError::Shape`] when the ranges do not describe exactly the genes or `out` has another length. `out` is
+/// then unchanged.
 pub fn decode(genes: &[u16], ranges: &[GeneRange], out: &mut [f32]) -> Result<(), EvoError> {
     let described = ranges.iter().fold(0_usize, |sum, range| sum.saturating_add(range.count));
     if described != genes.len() || out.len() != genes.len() {

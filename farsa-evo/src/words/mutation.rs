@@ -7,7 +7,7 @@ use crate::error::EvoError;
 /// Checks the number of bits of a gene.
 ///
 /// # Errors
-/// [`EvoError::Config`] outside 1 to 16.
+/// Returns [`EvoError::Config`] for bits outside 1 to 16.
 pub(crate) fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
     if (1..=u16::BITS).contains(&bits) { Ok(()) } else { Err(EvoError::gene_bits(bits)) }
 }
@@ -41,7 +41,7 @@ impl BitMutation {
     /// Creates a mutation that hits each bit with probability `rate`, 0 to 1.
     ///
     /// # Errors
-    /// [`EvoError::Config`] when `rate` is NaN or outside 0 to 1.
+    /// Returns [`EvoError::Config`] when `rate` is NaN or outside 0 to 1.
     pub fn new(mutation: Mutation, rate: f64) -> Result<Self, EvoError> {
         if !(0.0..=1.0).contains(&rate) {
             return Err(EvoError::rate(rate));
@@ -58,7 +58,7 @@ impl BitMutation {
     /// Sets the number of bits of the genes, 1 to 16. All other bits remain unchanged.
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
         check_gene_bits(bits)?;
         Ok(Self { gene_bits: u64::from(bits), ..self })

@@ -45,7 +45,7 @@ impl OnePlusOneConfig {
     /// Checks that all settings are within their allowed ranges.
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, gene_bits, first_rate, rate_step, last_rate, .. } = *self;
         Population::check(PARENT_AND_MUTANT, genes)?;
@@ -71,10 +71,10 @@ impl OnePlusOneConfig {
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
 ///
-/// [`ask`](Strategy::ask) returns the parent (individual 0) and its mutant (individual 1). The parent is evaluated again
-/// every generation, and its fitness is the mean over all its evaluations, including those as a mutant. The mutant replaces
-/// it when its first evaluation is at least as good. A failed evaluation makes that mean the worst possible, so any mutant
-/// replaces a parent that failed once.
+/// [`ask`](Strategy::ask) returns the parent (individual 0) and its mutant (individual 1). Since the parent is
+/// evaluated again in every generation, its fitness is the mean over all its evaluations, including those as a mutant.
+/// If the first evaluation of the mutant is at least as good, the mutant replaces the parent. A failed evaluation makes
+/// the mean the worst possible, so a parent that failed once is replaced by any mutant.
 ///
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
@@ -113,7 +113,7 @@ impl OnePlusOne {
     /// Creates a new search with a random initial generation.
     ///
     /// # Errors
-    /// The errors of [`OnePlusOneConfig::validate`].
+    /// Returns the errors of [`OnePlusOneConfig::validate`].
     pub fn new(config: OnePlusOneConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         let mut parent = vec![0; config.genes];
@@ -149,7 +149,7 @@ impl OnePlusOne {
     /// mean over all evaluations of the parent, including the new one, and the fitness of the mutant.
     ///
     /// # Errors
-    /// [`EvoError::Shape`].
+    /// Returns [`EvoError::Shape`].
     pub fn judged(&self, fitness: &[Fitness]) -> Result<[Fitness; 2], EvoError> {
         let &[parent, mutant] = fitness else {
             return Err(EvoError::fitness_count(PARENT_AND_MUTANT, fitness.len()));

@@ -15,9 +15,10 @@ use crate::words::mutation::randomize;
 
 /// Random search. Every genome of every generation is drawn independently, and the best is kept.
 ///
-/// It is the baseline of selection at the same number of evaluations. Generation 0 is that of a
-/// [`TruncationGa`](crate::words::TruncationGa) of the same seed. (For random search with its best in the population, take
-/// a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::words::Mutation::Resample).)
+/// Use this as a baseline to see what selection achieves with the same number of evaluations. Generation 0 is the same
+/// as that of a [`TruncationGa`](crate::words::TruncationGa) with the same seed. If you need a random search that keeps
+/// its best individual in the population, use a `TruncationGa` with one parent, rate 1 and
+/// [`Mutation::Resample`](crate::words::Mutation::Resample).
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -57,7 +58,7 @@ impl RandomSearch {
     /// Creates a new search whose generations have `population` genomes with `genes` genes each.
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn new(genes: usize, population: usize, seed: u64) -> Result<Self, EvoError> {
         let mut population = Population::new(population, genes)?;
         draw(seed, 0, &mut population);

@@ -50,7 +50,7 @@ impl GaConfig {
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
     ///
     /// # Errors
-    /// [`EvoError::Config`].
+    /// Returns [`EvoError::Config`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, population, parents, .. } = *self;
         Population::check(population, genes)?;
@@ -106,12 +106,13 @@ impl From<GaConfig> for SavedConfig {
     }
 }
 
-/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
-/// multiple of its parents.
+/// A generational genetic algorithm over integer genes, with truncation selection, elites and bit mutation. There is no
+/// crossover, and the size of the population is a multiple of the number of parents.
 ///
-/// Each generation the `parents` best individuals make `population / parents` copies each, the first unchanged, the others
-/// mutated. Parents are ranked by fitness, equals by index, the lower first. Failed individuals are selected only when too
-/// few succeeded. With as many parents as individuals nothing is mutated.
+/// In each generation, the `parents` best individuals make `population / parents` copies each. The first copy is
+/// unchanged and the others are mutated. Parents are ranked by fitness, with ties broken by the lower index. Failed
+/// individuals are only selected if too few others are left. If there are as many parents as individuals, nothing is
+/// mutated.
 ///
 /// Child `i` of a generation descends from the parent of rank `i / copies` of the previous generation, where `copies` is
 /// population / parents. It is unchanged when `i % copies == 0`. Otherwise it is mutated with the numbers of the stream

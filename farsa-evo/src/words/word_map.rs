@@ -68,7 +68,8 @@ impl WordMap {
     /// Creates a map from the encoding of each parameter \[parameters\].
     ///
     /// # Errors
-    /// [`EvoError::Config`] for no genes, bits outside 1 to 16, and ends or frozen values that are not finite or not low to high.
+    /// Returns [`EvoError::Config`] for no genes, bits outside 1 to 16, and ends or frozen values that are not finite
+    /// or not low to high.
     pub fn new(genes: Vec<WordGene>) -> Result<Self, EvoError> {
         if genes.is_empty() {
             return Err(EvoError::no_genes());
@@ -100,7 +101,7 @@ impl WordMap {
     /// Decodes integer genes \[words\] into a row of parameters \[parameters\]. This does not allocate.
     ///
     /// # Errors
-    /// [`EvoError::Shape`]. The row is then unchanged.
+    /// Returns [`EvoError::Shape`]. The row is then unchanged.
     pub fn decode(&self, words: &[u16], parameters: &mut [f32]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let mut words = words.iter().copied();
@@ -120,8 +121,8 @@ impl WordMap {
     /// except for ignored bits and for ranges with fewer numbers than genes.
     ///
     /// # Errors
-    /// [`EvoError::Shape`], or [`EvoError::OutOfRange`] for a NaN of a parameter that is not frozen. The genes are then
-    /// unchanged.
+    /// Returns [`EvoError::Shape`], or [`EvoError::OutOfRange`] for a NaN of a parameter that is not frozen. The genes
+    /// are then unchanged.
     pub fn encode(&self, parameters: &[f32], words: &mut [u16]) -> Result<(), EvoError> {
         self.check(words.len(), parameters.len())?;
         let pairs = || self.genes.iter().zip(&self.ranges).zip(parameters).filter(|((_, range), _)| range.count() > 0);
@@ -186,7 +187,7 @@ impl TryFrom<Vec<WordGene>> for WordMap {
     /// The map of these genes.
     ///
     /// # Errors
-    /// The errors of [`WordMap::new`].
+    /// Returns the errors of [`WordMap::new`].
     fn try_from(genes: Vec<WordGene>) -> Result<Self, EvoError> {
         Self::new(genes)
     }

@@ -26,9 +26,9 @@ use crate::articulated::lockstep::LANES;
 /// Many worlds of one arena, one in each lane of SIMD vectors. All of them start in the initial state of the
 /// description.
 ///
-/// Every world has the bits of a [`World`] with the same arrangement and commands, independent of its neighbors. It
-/// examines every body and has no grid, so lanes are for arenas of a few robots. While an attachment device holds or
-/// its command is on in any lane, lanes are stepped one by one.
+/// Each world has exactly the same bits as a [`World`] with the same arrangement and commands, regardless of its
+/// neighbors. Since a batch examines every body and has no grid, it is best for arenas with a few robots. While an
+/// attachment device holds or its command is on in any lane, lanes are stepped one by one.
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics};

@@ -129,15 +129,17 @@ impl Area {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum CollisionRule {
-    /// All move. Robots that then overlap anything are set back to where it was, as often as that makes others overlap.
+    /// Moves all robots first. Robots that then overlap anything are set back to where they were. This is repeated as
+    /// often as it makes others overlap.
     ///
-    /// Its wheels continue to turn, as in the original.
+    /// Wheels of such a robot continue to turn, as in the original.
     #[default]
     Revert,
-    /// Overlapping robots are pushed apart, half by half, and off walls and cylinders, so that they slide along.
+    /// Pushes overlapping robots apart, each by half of the overlap. Robots are also pushed off walls and cylinders, so
+    /// they slide along them.
     ///
-    /// Robots that eight sweeps of pushing do not free are set back as by [`Revert`](Self::Revert). So are attached
-    /// robots.
+    /// If a robot still overlaps something after eight sweeps of pushing, it is set back as by
+    /// [`Revert`](Self::Revert). Attached robots that overlap something are set back in the same way.
     Circles,
 }
 
@@ -168,8 +170,9 @@ pub struct RobotPlacement {
 
 /// A planar world as data. You can change it freely and then build a [`World`](crate::arena::World) from it.
 ///
-/// Bodies are numbered: robots first, then cylinders, then areas. The wheels of robot `r` are joints `2 r` (left) and
-/// `2 r + 1` (right). Actuators follow each other robot by robot, each robot's as in [`MobileRobot::parts`].
+/// Bodies are numbered in the order of robots, cylinders and areas. Robot `r` has its wheels at joints `2 r` (left) and
+/// `2 r + 1` (right). Actuators are numbered robot by robot, and those of each robot are in the order of
+/// [`MobileRobot::parts`].
 ///
 /// ```
 /// use farsa_body::ports::{Actuated, Kinematics, World as _};

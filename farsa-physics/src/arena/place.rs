@@ -7,7 +7,7 @@ use crate::arena::error::ArenaError;
 
 /// Requirements that a free place for a disc has to satisfy. All distances are measured from surface to surface [m].
 ///
-/// Places are drawn uniformly from the region until one is free: two draws of the stream for each try.
+/// Places are drawn uniformly from the region until one is free. Each try takes two draws from the stream.
 ///
 /// ```
 /// use farsa_body::ports::Arrange;
@@ -57,7 +57,7 @@ impl<'a> FreePlace<'a> {
     /// Searches for a free place and returns its position [m].
     ///
     /// # Errors
-    /// [`ArenaError::NoFreePlace`] if none of the tries is free.
+    /// Returns [`ArenaError::NoFreePlace`] if none of the tries is free.
     pub fn find<W: Planar<Body = BodyId>>(&self, world: &W, stream: &mut Stream) -> Result<[f32; 2], ArenaError> {
         let [low, high] = self.region;
         let farthest = self.bodies.iter().fold(self.walls, |most, (_, far)| most.max(*far));

@@ -18,7 +18,7 @@ use crate::arena::model::Model;
 use crate::arena::step::{WORK_WORDS, step};
 use crate::arena::view::{self as view, View};
 
-/// One planar world: kinematic, wheels do exactly what is commanded.
+/// A single planar world. It is kinematic, so wheels do exactly what is commanded.
 ///
 /// - *Motion*: along an arc about the instantaneous center of rotation, exactly. Wheel commands are clamped to the
 ///   robot's greatest wheel speed, and NaN stops a wheel. LEDs and signals are visible from the next step on. Wheels
@@ -32,8 +32,8 @@ use crate::arena::view::{self as view, View};
 /// - *Arranging*: a body keeps its place and heading of a pose, nothing else. It is at rest, and no longer held. A
 ///   robot that is put into something stays there until it is put in other places.
 ///
-/// A handle that does not exist reads as zero and takes commands without effect. A world is `Sync`: sensors of many robots may be
-/// read in threads.
+/// If you use a handle that does not exist, it reads as zero, and commands to it have no effect. Since a world is
+/// `Sync`, you can read the sensors of many robots in threads.
 #[derive(Clone, Debug)]
 pub struct World {
     model: Model,

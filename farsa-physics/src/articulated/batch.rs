@@ -11,8 +11,8 @@ use crate::articulated::model::{Model, ModelError};
 /// Many worlds of one model, one in each lane of SIMD vectors. All of them start in the initial state of the
 /// description.
 ///
-/// Every world has the bits of a [`World`](crate::articulated::World) that is arranged, commanded and stepped like it,
-/// whatever its neighbors do.
+/// Each world has exactly the same bits as a [`World`](crate::articulated::World) that is arranged, commanded and
+/// stepped in the same way. This does not depend on its neighbors.
 ///
 /// ```
 /// use farsa_body::Pose;
@@ -45,11 +45,11 @@ pub struct Batch {
 impl Batch {
     /// Creates `lanes` worlds that are stepped with the given instructions. Their number must be one of [`LANES`].
     ///
-    /// For instructions that are not in [`Batch::instructions`] the best below them are used.
-    /// [`Instructions::Fallback`], one world after the other, exists on every machine.
+    /// If the instructions are not in [`Batch::instructions`], the best ones below them are used. You can use
+    /// [`Instructions::Fallback`] on every machine, which steps one world after the other.
     ///
     /// # Errors
-    /// [`ModelError::Lanes`] for another number of worlds.
+    /// Returns [`ModelError::Lanes`] for another number of worlds.
     pub fn new(model: Model<f32>, lanes: usize, instructions: Instructions) -> Result<Self, ModelError> {
         if !LANES.contains(&lanes) {
             let nearest = LANES.into_iter().min_by_key(|count| count.abs_diff(lanes)).unwrap_or(LANES[0]);

@@ -33,9 +33,10 @@ impl Chassis {
 
     /// Chooses the chassis of a robot by its size.
     ///
-    /// All of it is chosen: its mass by [`Chassis::DENSITY`], a tenth of it in the wheels. Motors that together push
-    /// with half the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would.
-    /// Rubber wheels (0.8) and a smooth hull (0.3).
+    /// Note that all values are our choice. The mass follows from [`Chassis::DENSITY`], and a tenth of it is in the
+    /// wheels. Together, the motors push with half the weight of the robot. Because of their gears, they resist
+    /// acceleration like an additional fifth of its mass. Wheels are made of rubber (0.8), and the hull is smooth
+    /// (0.3).
     pub fn for_robot(robot: &MobileRobot) -> Self {
         let mass = robot.mass();
         let wheel = robot.wheel_radius;
@@ -64,7 +65,7 @@ impl Chassis {
 
 /// A box on the ground that robots can push around.
 ///
-/// Its frame has x along its length, z up and the origin on the ground below its middle.
+/// In its frame, x points along the length and z points up. The origin is on the ground below its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Block {

@@ -28,7 +28,8 @@ use crate::rapier::pushes::Pushes;
 use crate::rapier::snapshot::copy;
 use crate::rapier::world::LEAST_STIFFNESS;
 
-/// A planar world whose robots are rigid bodies on wheels, in rapier. The ports of [`crate::arena::World`], and blocks.
+/// A planar world in rapier whose robots are rigid bodies on wheels. It has the same ports as [`crate::arena::World`],
+/// and it can also contain blocks.
 ///
 /// - *Robots*: a hull (upright cylinder) on two wheels and two skids without friction, one of which is on the ground.
 ///   Wheels touch the ground in one point each. So robots accelerate, slip and stall. The center of mass is between the
@@ -47,7 +48,8 @@ use crate::rapier::world::LEAST_STIFFNESS;
 /// - *Arranging*: a body keeps its place and heading of a pose, upright and at rest. Overlapping bodies are pushed
 ///   apart.
 ///
-/// A world that has broken down does not step, and every port of it returns NaN, until it is cleared or restored.
+/// If a world breaks down, it cannot be stepped, and every port returns NaN. You have to clear or restore it before you
+/// can continue.
 pub struct ArenaWorld {
     pub(crate) model: Model,
     pub(crate) plan: ArenaPlan,
