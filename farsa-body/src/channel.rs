@@ -8,41 +8,41 @@ use core::fmt;
 pub enum ChannelError {
     /// A number is NaN, infinite or out of its range.
     Value {
-        /// The name of the number.
+        /// Name of the number.
         field: &'static str,
-        /// The invalid value.
+        /// Invalid value.
         value: f32,
     },
     /// The ends of a range are equal, in the wrong order or not finite.
     Range {
-        /// The beginning of the range.
+        /// Beginning of the range.
         from: f32,
-        /// The end of the range.
+        /// End of the range.
         to: f32,
     },
     /// A selection of channels ends after the last channel or before its start.
     Selection {
         /// The first selected channel.
         start: usize,
-        /// The index after the last selected channel.
+        /// Index after the last selected channel.
         end: usize,
-        /// The number of available channels.
+        /// Number of available channels.
         channels: usize,
     },
     /// A list is empty or cannot be divided into groups of equal size.
     Groups {
-        /// The kind of elements in the list.
+        /// Kind of elements in the list.
         field: &'static str,
-        /// The number of elements in the list.
+        /// Number of elements in the list.
         count: usize,
-        /// The required size of a group.
+        /// Required size of a group.
         size: usize,
     },
     /// The memory that was provided for a wrapper is too short.
     Memory {
-        /// The length of the memory.
+        /// Length of the memory.
         given: usize,
-        /// The required length.
+        /// Required length.
         needed: usize,
     },
 }

@@ -115,11 +115,11 @@ pub trait ExternalForces: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
-    /// The distance along the ray in meters.
+    /// Distance along the ray in meters.
     pub distance: f32,
-    /// The outward unit normal of the surface, in the axes of the world.
+    /// Outward unit normal of the surface, in the axes of the world.
     pub normal: [f32; 3],
-    /// The body that was hit, or `None` if the surface belongs to the static environment.
+    /// Body that was hit, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
 }
 
@@ -135,11 +135,11 @@ pub trait Rays: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seen<B> {
-    /// The distance along the ray in meters.
+    /// Distance along the ray in meters.
     pub distance: f32,
-    /// The body that is visible, or `None` if the surface belongs to the static environment.
+    /// Body that is visible, or `None` if the surface belongs to the static environment.
     pub body: Option<B>,
-    /// The red, green and blue components of its color (between 0 and 1). A surface without a color (`None`) still
+    /// Red, green and blue components of its color (between 0 and 1). A surface without a color (`None`) still
     /// hides everything behind it.
     pub color: Option<[f32; 3]>,
 }
@@ -165,17 +165,17 @@ pub trait Vision: Handles {
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairContact {
-    /// The number of contact points with a normal force > 0.
+    /// Number of contact points with a normal force > 0.
     pub points: u32,
-    /// The force on the first body of the pair, in the axes of the world (in newtons). The opposite force acts on the
+    /// Force on the first body of the pair, in the axes of the world (in newtons). The opposite force acts on the
     /// second body.
     pub force: [f32; 3],
-    /// The sum of the normal forces at all points (in newtons).
+    /// Sum of the normal forces at all points (in newtons).
     pub normal_force: f32,
-    /// The mean position of the contact points in the world, weighted by normal force (in meters). It is zero if there
+    /// Mean position of the contact points in the world, weighted by normal force (in meters). It is zero if there
     /// is no contact.
     pub point: [f32; 3],
-    /// The largest penetration depth (in meters). A negative value is the remaining distance, which only some worlds
+    /// Largest penetration depth (in meters). A negative value is the remaining distance, which only some worlds
     /// compute.
     pub depth: f32,
 }
@@ -200,18 +200,18 @@ pub trait Contacts: Handles {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NearbySurface<B> {
-    /// The body to which the surface belongs, or `None` for a wall.
+    /// Body to which the surface belongs, or `None` for a wall.
     pub body: Option<B>,
-    /// The nearest point of the surface (in meters).
+    /// Nearest point of the surface (in meters).
     pub point: [f32; 2],
-    /// The distance to this point in meters. Inside a round body it is negative, and inside any other body it is 0.
+    /// Distance to this point in meters. Inside a round body it is negative, and inside any other body it is 0.
     pub distance: f32,
-    /// The radius of a round body in meters. It is 0 for walls and for other shapes.
+    /// Radius of a round body in meters. It is 0 for walls and for other shapes.
     pub radius: f32,
-    /// The red, green and blue components of its color (between 0 and 1). For a robot with LEDs this is the color of
+    /// Red, green and blue components of its color (between 0 and 1). For a robot with LEDs this is the color of
     /// the LEDs.
     pub color: [f32; 3],
-    /// The signal of a robot (between 0 and 1), or `None` for everything else.
+    /// Signal of a robot (between 0 and 1), or `None` for everything else.
     pub signal: Option<f32>,
 }
 
@@ -219,11 +219,11 @@ pub struct NearbySurface<B> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanarHit<B> {
-    /// The distance along the line in meters.
+    /// Distance along the line in meters.
     pub distance: f32,
-    /// The body that is visible, or `None` for a wall.
+    /// Body that is visible, or `None` for a wall.
     pub body: Option<B>,
-    /// The red, green and blue components of its color (between 0 and 1).
+    /// Red, green and blue components of its color (between 0 and 1).
     pub color: [f32; 3],
 }
 
@@ -231,11 +231,11 @@ pub struct PlanarHit<B> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lamp<B> {
-    /// The body that emits the light.
+    /// Body that emits the light.
     pub body: B,
-    /// The center of the lamp in meters.
+    /// Center of the lamp in meters.
     pub position: [f32; 2],
-    /// The intensity of the lamp. You can choose any unit.
+    /// Intensity of the lamp. You can choose any unit.
     pub intensity: f32,
 }
 

@@ -6,9 +6,9 @@ use farsa_num::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<R = f32> {
-    /// The position of the frame's origin in the reference frame (in meters).
+    /// Position of the frame's origin in the reference frame (in meters).
     pub position: [R; 3],
-    /// The rotation from the frame to the reference frame as a unit quaternion [x, y, z, w].
+    /// Rotation from the frame to the reference frame as a unit quaternion [x, y, z, w].
     pub rotation: [R; 4],
 }
 
@@ -16,9 +16,9 @@ pub struct Pose<R = f32> {
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Twist<R = f32> {
-    /// The velocity of the body's origin, in meters per second.
+    /// Velocity of the body's origin, in meters per second.
     pub linear: [R; 3],
-    /// The angular velocity (in radians per second).
+    /// Angular velocity (in radians per second).
     pub angular: [R; 3],
 }
 

@@ -10,57 +10,57 @@ use crate::fault::{LayoutFault, ParameterFault, Slice};
 pub enum Error {
     /// A slice has the wrong length. The layout provides the right one.
     Length {
-        /// The slice with the wrong length.
+        /// Slice with the wrong length.
         slice: Slice,
-        /// The length that the layout requires.
+        /// Length that the layout requires.
         expected: usize,
-        /// The actual length of the slice.
+        /// Actual length of the slice.
         found: usize,
     },
     /// A parameter cannot be used by the network.
     Parameter {
-        /// The index of the parameter.
+        /// Index of the parameter.
         index: usize,
         /// The reason why it cannot be used.
         fault: ParameterFault,
     },
     /// A sum of an integer network could exceed 32 bits. This can be avoided by smaller weights or fewer fraction bits.
     Sum {
-        /// The target of the sum. Hidden neurons are counted first, followed by outputs.
+        /// Target of the sum. Hidden neurons are counted first, followed by outputs.
         target: usize,
-        /// The largest possible magnitude of the sum, in its units.
+        /// Largest possible magnitude of the sum, in its units.
         largest: u64,
-        /// The largest magnitude that is allowed.
+        /// Largest magnitude that is allowed.
         limit: u64,
     },
     /// A state is NaN or infinite.
     State {
-        /// The index of the neuron.
+        /// Index of the neuron.
         index: usize,
     },
     /// The layout or a setting is invalid.
     Layout(LayoutFault),
     /// The length of a demonstration is not a multiple of the number of values per tick.
     Demonstration {
-        /// The number of sensor values.
+        /// Number of sensor values.
         values: usize,
-        /// The number of sensors in the layout.
+        /// Number of sensors in the layout.
         sensors: usize,
-        /// The number of target motor values.
+        /// Number of target motor values.
         wanted: usize,
-        /// The number of outputs in the layout.
+        /// Number of outputs in the layout.
         outputs: usize,
     },
     /// A text contains an unexpected line.
     Text {
-        /// The number of the line, starting at 1.
+        /// Number of the line, starting at 1.
         line: usize,
         /// A description of the expected content.
         expected: &'static str,
     },
     /// A name is unknown.
     Name {
-        /// The kind of thing that has this name.
+        /// Kind of thing that has this name.
         of: &'static str,
         /// A list of all valid names.
         names: &'static str,

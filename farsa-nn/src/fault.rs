@@ -28,7 +28,7 @@ pub enum ParameterFault {
     Weight(f64),
     /// The parameter is a time constant that is not above zero, or for which the integrator diverges.
     TimeConstant {
-        /// The value of the time constant [s].
+        /// Value of the time constant [s].
         value: f32,
         /// The smallest stable time constant [s], or 0 if all positive time constants are stable.
         least: f32,
@@ -64,47 +64,47 @@ pub enum LayoutFault {
     TimeStep(f32),
     /// The layout does not have these neurons.
     Neurons {
-        /// The index of the first neuron.
+        /// Index of the first neuron.
         first: usize,
-        /// The number of neurons in the range.
+        /// Number of neurons in the range.
         count: usize,
-        /// The number of neurons in the layout.
+        /// Number of neurons in the layout.
         neurons: usize,
     },
     /// A block refers to neurons that do not exist in the layout.
     Block {
-        /// The index of the block.
+        /// Index of the block.
         index: usize,
-        /// The index of the first neuron.
+        /// Index of the first neuron.
         first: usize,
-        /// The number of neurons in the range.
+        /// Number of neurons in the range.
         count: usize,
-        /// The number of neurons in the layout.
+        /// Number of neurons in the layout.
         neurons: usize,
     },
     /// The number of fraction bits of an integer network is invalid.
     FractionBits {
-        /// The kind of integers, which are inputs, weights or sums.
+        /// Kind of integers, which are inputs, weights or sums.
         of: &'static str,
-        /// The invalid number of fraction bits.
+        /// Invalid number of fraction bits.
         found: u32,
-        /// The smallest valid number.
+        /// Smallest valid number.
         least: u32,
-        /// The largest valid number.
+        /// Largest valid number.
         most: u32,
     },
     /// The mirror image of an input or a neuron does not exist or has a different mirror image.
     Mirror {
-        /// The index of the input or neuron.
+        /// Index of the input or neuron.
         index: usize,
-        /// The index of its mirror image.
+        /// Index of its mirror image.
         image: usize,
     },
     /// A span of alike neurons overlaps with another one, or its mirror images are not alike.
     Alike {
-        /// The index of the first neuron.
+        /// Index of the first neuron.
         first: usize,
-        /// The number of neurons in the span.
+        /// Number of neurons in the span.
         count: usize,
     },
 }

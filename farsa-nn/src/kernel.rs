@@ -85,7 +85,7 @@ pub(crate) struct Layer<'a, R = f32> {
     /// Number of targets `i`.
     pub(crate) targets: usize,
     pub(crate) slope: R,
-    /// The initial sums `[targets]`, or empty for zeros.
+    /// Initial sums `[targets]`, or empty for zeros.
     pub(crate) biases: &'a [R],
     /// Two pairs of sources and weights, added in this order. Weights are source-major `[sources x targets]`, and the
     /// shorter of both lengths counts.

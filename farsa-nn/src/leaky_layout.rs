@@ -68,20 +68,20 @@ pub struct LeakyLayout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LeakyParts<'a> {
-    /// The weights from the sensors `[sensors x hidden]`.
+    /// Weights from the sensors `[sensors x hidden]`.
     pub sensor_weights: &'a [f32],
-    /// The weights from the hidden neurons in the previous step `[hidden x hidden]`.
+    /// Weights from the hidden neurons in the previous step `[hidden x hidden]`.
     pub recurrent_weights: &'a [f32],
-    /// The weights to the outputs `[hidden x outputs]`.
+    /// Weights to the outputs `[hidden x outputs]`.
     pub output_weights: &'a [f32],
-    /// The biases of the hidden neurons.
+    /// Biases of the hidden neurons.
     pub biases: &'a [f32],
-    /// The leaks of the hidden neurons.
+    /// Leaks of the hidden neurons.
     pub leaks: &'a [f32],
 }
 
 impl LeakyLayout {
-    /// The default slope of the logistic function, which is 0.2 (`[Ferrauto2010]` chapter 2).
+    /// Default slope of the logistic function, which is 0.2 (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
     /// Creates a layout with the default slope [`LeakyLayout::SLOPE`].
@@ -96,22 +96,22 @@ impl LeakyLayout {
         Self { slope, ..self }
     }
 
-    /// Returns the number of sensors.
+    /// Gets the number of sensors.
     pub const fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// Returns the number of hidden neurons.
+    /// Gets the number of hidden neurons.
     pub const fn hidden(&self) -> usize {
         self.hidden
     }
 
-    /// Returns the number of outputs.
+    /// Gets the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Returns the slope of the logistic function. This is used for hidden neurons and outputs.
+    /// Gets the slope of the logistic function. This is used for hidden neurons and outputs.
     pub const fn slope(&self) -> f32 {
         self.slope
     }

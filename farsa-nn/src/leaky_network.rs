@@ -64,12 +64,12 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<LeakyModel, P, S> {
 }
 
 impl<P, S> Network<LeakyModel, P, S> {
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.model.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.model.leak
     }

@@ -6,9 +6,9 @@ use crate::controller::Controller;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lesion {
-    /// The index of the neuron.
+    /// Index of the neuron.
     pub neuron: usize,
-    /// The constant activation. A value of 0 silences the neuron.
+    /// Constant activation. A value of 0 silences the neuron.
     pub activation: f32,
 }
 

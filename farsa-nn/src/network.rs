@@ -86,7 +86,7 @@ impl<M: Model, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<M, P, S> {
         Ok(())
     }
 
-    /// Returns the parameters of the network.
+    /// Gets the parameters of the network.
     pub fn parameters(&self) -> &[f32] {
         self.parameters.as_ref()
     }

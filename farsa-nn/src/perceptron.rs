@@ -60,7 +60,7 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
 }
 
 impl<P> Perceptron<P> {
-    /// Returns the slope of the logistic function.
+    /// Gets the slope of the logistic function.
     pub const fn slope(&self) -> f32 {
         self.model.slope
     }

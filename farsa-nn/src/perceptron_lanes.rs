@@ -56,7 +56,7 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         Self { level: instructions.level(), ..self }
     }
 
-    /// Returns the number of layers.
+    /// Gets the number of layers.
     pub fn lanes(&self) -> usize {
         self.lanes
     }

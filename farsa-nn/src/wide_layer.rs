@@ -51,7 +51,7 @@ impl<R: Real> Layer<'_, R> {
 /// A few sources and their weights.
 struct Rows<'a, S: Scalar, const N: usize> {
     x: [S; N],
-    /// The weights of each source to the requested targets, all of one length.
+    /// Weights of each source to the requested targets, all of one length.
     weights: [&'a [S::Real]; N],
 }
 

@@ -58,7 +58,7 @@ impl Digest {
         self.add_bytes(&x.to_le_bytes());
     }
 
-    /// Returns the hash of all values that were added.
+    /// Gets the hash of all values that were added.
     #[inline]
     pub const fn finish(&self) -> u64 {
         self.0

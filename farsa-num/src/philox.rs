@@ -68,7 +68,7 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stream {
     key: [u32; 2],
-    /// The counter of the block to draw next.
+    /// Counter of the block to draw next.
     counter: [u32; 4],
     words: [u32; 4],
     /// Number of `words` already drawn.

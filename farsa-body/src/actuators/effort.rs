@@ -4,10 +4,10 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Effort<S> {
-    /// The torque (in N m) or force (in newtons). Positive values increase the joint position.
+    /// Torque (in N m) or force (in newtons). Positive values increase the joint position.
     pub torque: S,
-    /// The part of -dtorque/dposition that can be integrated implicitly (in N m/rad or N/m). It is never negative.
+    /// Part of -dtorque/dposition that can be integrated implicitly (in N m/rad or N/m). It is never negative.
     pub stiffness: S,
-    /// The value of -dtorque/dspeed (in N m s/rad or N s/m). It is never negative.
+    /// Value of -dtorque/dspeed (in N m s/rad or N s/m). It is never negative.
     pub damping: S,
 }

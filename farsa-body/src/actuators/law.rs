@@ -9,11 +9,11 @@ use crate::actuators::muscle::MusclePair;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Servo<R> {
-    /// The position gain (in N m/rad or N/m).
+    /// Position gain (in N m/rad or N/m).
     pub stiffness: R,
-    /// The velocity gain (in N m s/rad or N s/m).
+    /// Velocity gain (in N m s/rad or N s/m).
     pub damping: R,
-    /// The largest effort that the servo can exert (in newton meters or newtons).
+    /// Largest effort that the servo can exert (in newton meters or newtons).
     pub limit: R,
 }
 
@@ -21,7 +21,7 @@ pub struct Servo<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Torque<R> {
-    /// The largest effort that the motor can exert (in newton meters or newtons).
+    /// Largest effort that the motor can exert (in newton meters or newtons).
     pub limit: R,
 }
 
@@ -29,9 +29,9 @@ pub struct Torque<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocity<R> {
-    /// The torque per unit of speed error (in N m s/rad or N s/m).
+    /// Torque per unit of speed error (in N m s/rad or N s/m).
     pub gain: R,
-    /// The largest effort that the motor can exert (in newton meters or newtons).
+    /// Largest effort that the motor can exert (in newton meters or newtons).
     pub limit: R,
 }
 
@@ -40,9 +40,9 @@ pub struct Velocity<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Held<R> {
-    /// The stiffness around the position given by the second command (in N m/rad or N/m).
+    /// Stiffness around the position given by the second command (in N m/rad or N/m).
     pub stiffness: R,
-    /// The damping of the joint (in N m s/rad or N s/m).
+    /// Damping of the joint (in N m s/rad or N s/m).
     pub damping: R,
 }
 

@@ -28,25 +28,25 @@ pub enum MuscleVariant {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MusclePair<R> {
-    /// The largest active tension of each muscle, Tmax (in newtons).
+    /// Largest active tension of each muscle, Tmax (in newtons).
     pub tension: R,
-    /// The moment arm of the muscles (in meters).
+    /// Moment arm of the muscles (in meters).
     pub moment_arm: R,
-    /// The joint position at which the agonist is shortest (in radians).
+    /// Joint position at which the agonist is shortest (in radians).
     pub lower: R,
-    /// The joint position at which the agonist is longest (in radians).
+    /// Joint position at which the agonist is longest (in radians).
     pub upper: R,
-    /// The shortest length of a muscle.
+    /// Shortest length of a muscle.
     pub shortest: R,
     /// The rest length RL, at which the active tension is largest and the passive tension is zero.
     pub rest_length: R,
-    /// The longest length of a muscle, Lmax.
+    /// Longest length of a muscle, Lmax.
     pub longest: R,
-    /// The shape parameter of the passive tension, Ksh.
+    /// Shape parameter of the passive tension, Ksh.
     pub shape: R,
-    /// The passive tension at the longest length, divided by e^shape - 1 (in newtons).
+    /// Passive tension at the longest length, divided by e^shape - 1 (in newtons).
     pub passive_scale: R,
-    /// The viscosity b (in N per unit of length per second).
+    /// Viscosity b (in N per unit of length per second).
     pub viscosity: R,
 }
 
@@ -54,12 +54,12 @@ pub struct MusclePair<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
-    /// The tension that results from the activation (in newtons).
+    /// Tension that results from the activation (in newtons).
     pub active: S,
-    /// The tension that results from the length (in newtons). Below the rest length it is negative, but never more than
+    /// Tension that results from the length (in newtons). Below the rest length it is negative, but never more than
     /// 5 % of the largest tension.
     pub passive: S,
-    /// The tension that results from the rate of length (in newtons). It is negative while the muscle shortens.
+    /// Tension that results from the rate of length (in newtons). It is negative while the muscle shortens.
     pub viscous: S,
 }
 

@@ -15,9 +15,9 @@ pub enum Orientation {
     /// A direction of the body must point in a given direction, and rotations about it are not constrained. Both
     /// vectors may have any length greater than zero.
     Direction {
-        /// The direction in the frame of the body.
+        /// Direction in the frame of the body.
         own: [f64; 3],
-        /// The desired direction in the world.
+        /// Desired direction in the world.
         wanted: [f64; 3],
     },
     /// The orientation is given by a unit quaternion [x, y, z, w] that maps the axes of the body to those of the world.
@@ -28,13 +28,13 @@ pub enum Orientation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Goal {
-    /// The body that should be moved.
+    /// Body that should be moved.
     pub body: BodyId,
-    /// The point in the frame of the body (in meters).
+    /// Point in the frame of the body (in meters).
     pub point: [f64; 3],
-    /// The desired position of the point in the world (in meters).
+    /// Desired position of the point in the world (in meters).
     pub position: [f64; 3],
-    /// The desired orientation of the body.
+    /// Desired orientation of the body.
     pub orientation: Orientation,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct Miss {
     /// Turn [rad, rotation vector] and way [m] to the goal.
     pub(crate) turn: [f64; 3],
     pub(crate) way: [f64; 3],
-    /// The direction about which turning does not matter.
+    /// Direction about which turning does not matter.
     pub(crate) idle: Option<[f64; 3]>,
 }
 

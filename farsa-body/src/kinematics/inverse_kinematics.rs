@@ -13,11 +13,11 @@ use crate::pose::{Pose, norm};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
-    /// The joint positions (in radians or meters), in the order of [`KinematicTree::joints`].
+    /// Joint positions (in radians or meters), in the order of [`KinematicTree::joints`].
     pub joints: Vec<f64>,
-    /// The distance between the point and its desired position (in meters).
+    /// Distance between the point and its desired position (in meters).
     pub position_error: f64,
-    /// The angle between the actual and the desired orientation or direction (in radians).
+    /// Angle between the actual and the desired orientation or direction (in radians).
     pub angle_error: f64,
 }
 
@@ -27,9 +27,9 @@ pub struct Solution {
 pub enum InverseKinematicsError {
     /// The robot does not have this body.
     Body {
-        /// The index of the body.
+        /// Index of the body.
         body: usize,
-        /// The number of bodies of the robot.
+        /// Number of bodies of the robot.
         count: usize,
     },
     /// A value of the goal or of the start is not finite, a direction has zero length, or a quaternion is not
@@ -37,14 +37,14 @@ pub enum InverseKinematicsError {
     Goal,
     /// The number of start positions differs from the number of joints.
     Start {
-        /// The number of start positions.
+        /// Number of start positions.
         given: usize,
-        /// The number of joints.
+        /// Number of joints.
         joints: usize,
     },
     /// All attempts ended outside the tolerances. The goal may be out of reach.
     NotReached {
-        /// The solution with the smallest error.
+        /// Solution with the smallest error.
         closest: Solution,
     },
 }
@@ -73,19 +73,19 @@ impl core::error::Error for InverseKinematicsError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct InverseKinematics {
-    /// The largest position error of a solution in meters.
+    /// Largest position error of a solution in meters.
     pub position_tolerance: f64,
-    /// The largest angle error of a solution (in radians).
+    /// Largest angle error of a solution (in radians).
     pub angle_tolerance: f64,
-    /// The distance weighted like an angle of one radian (in meters).
+    /// Distance weighted like an angle of one radian (in meters).
     pub angle_weight: f64,
-    /// The fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
+    /// Fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
     ///
     /// This is useful for muscles, because constant activations hold a joint only within 0.72 of its half range.
     pub range_fraction: f64,
-    /// The maximum number of iterations in each attempt.
+    /// Maximum number of iterations in each attempt.
     pub iterations: usize,
-    /// The maximum number of attempts, including the first one.
+    /// Maximum number of attempts, including the first one.
     pub attempts: usize,
 }
 

@@ -84,12 +84,12 @@ impl KinematicTree {
         Ok(Self { links, joints, ranges })
     }
 
-    /// Returns the joints that turn or slide, in the order of the joint positions.
+    /// Gets the joints that turn or slide, in the order of the joint positions.
     pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
-    /// Returns the ranges of these joints (in radians or meters).
+    /// Gets the ranges of these joints (in radians or meters).
     pub fn ranges(&self) -> &[[f64; 2]] {
         &self.ranges
     }
@@ -99,7 +99,7 @@ impl KinematicTree {
         self.links.get(joint.index())?.coordinate
     }
 
-    /// Returns the number of segments.
+    /// Gets the number of segments.
     pub fn bodies(&self) -> usize {
         self.links.len()
     }

@@ -62,7 +62,7 @@ impl<B, A: Copy> HeadTracking<B, A> {
         Ok(Self { eye, target, servos, start, gain, most: positive("most", most)?, desired: start })
     }
 
-    /// Returns the desired positions of the two servos in radians.
+    /// Gets the desired positions of the two servos in radians.
     pub fn desired(&self) -> [f32; 2] {
         self.desired
     }

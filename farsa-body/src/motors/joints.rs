@@ -41,11 +41,11 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for Muscles<A> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ServoRange<A = ActuatorId> {
-    /// The servo commanded.
+    /// Servo commanded.
     pub servo: A,
-    /// The desired position at a channel value of 0 (in radians or meters).
+    /// Desired position at a channel value of 0 (in radians or meters).
     pub from: f32,
-    /// The desired position at a channel value of 1 (in radians or meters).
+    /// Desired position at a channel value of 1 (in radians or meters).
     pub to: f32,
 }
 

@@ -29,19 +29,19 @@ pub enum JointKind {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// The name of the joint, unique in the robot. It may be empty for fixed and floating joints.
+    /// Name of the joint, unique in the robot. It may be empty for fixed and floating joints.
     pub name: String,
-    /// The kind of motion that the joint permits.
+    /// Kind of motion that the joint permits.
     pub kind: JointKind,
-    /// The axis in the frame of the joint. It is normalized by the reader.
+    /// Axis in the frame of the joint. It is normalized by the reader.
     pub axis: [f64; 3],
-    /// The frame of the joint at position 0, relative to the parent or the world.
+    /// Frame of the joint at position 0, relative to the parent or the world.
     pub placement: Pose<f64>,
-    /// The lowest and the highest position in radians or meters. They may be infinite.
+    /// Lowest and the highest position in radians or meters. They may be infinite.
     pub range: [f64; 2],
-    /// The inertia of the drive (in kg m2 or kg), which is added to that of the segment.
+    /// Inertia of the drive (in kg m2 or kg), which is added to that of the segment.
     pub armature: f64,
-    /// The viscous damping (in N m s/rad or N s/m).
+    /// Viscous damping (in N m s/rad or N s/m).
     pub damping: f64,
 }
 
@@ -49,17 +49,17 @@ pub struct Joint {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Segment {
-    /// The name of the segment, unique in the robot.
+    /// Name of the segment, unique in the robot.
     pub name: String,
-    /// The parent, which must be earlier in the list, or `None` for the world.
+    /// Parent, which must be earlier in the list, or `None` for the world.
     pub parent: Option<BodyId>,
-    /// The joint that connects the segment to its parent.
+    /// Joint that connects the segment to its parent.
     pub joint: Joint,
-    /// The mass of the segment in kilograms.
+    /// Mass of the segment in kilograms.
     pub mass: f64,
-    /// The center of mass in the frame of the segment (in meters).
+    /// Center of mass in the frame of the segment (in meters).
     pub centre: [f64; 3],
-    /// The inertia about the center of mass in the axes of the segment [xx, yy, zz, xy, xz, yz, kg m2].
+    /// Inertia about the center of mass in the axes of the segment [xx, yy, zz, xy, xz, yz, kg m2].
     pub inertia: [f64; 6],
 }
 
@@ -67,15 +67,15 @@ pub struct Segment {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Collider {
-    /// The name of the collider, unique in the robot.
+    /// Name of the collider, unique in the robot.
     pub name: String,
-    /// The segment to which the collider is attached, or `None` for the world.
+    /// Segment to which the collider is attached, or `None` for the world.
     pub body: Option<BodyId>,
-    /// The shape of the collider.
+    /// Shape of the collider.
     pub shape: Shape,
-    /// The pose of the collider in the frame of the segment.
+    /// Pose of the collider in the frame of the segment.
     pub placement: Pose<f64>,
-    /// The red, green and blue components of the color that cameras see (between 0 and 1). A collider without a color
+    /// Red, green and blue components of the color that cameras see (between 0 and 1). A collider without a color
     /// is invisible for cameras in a plane ([`Sight`](crate::ports::Sight)). In images
     /// ([`Vision`](crate::ports::Vision)) it hides everything behind it.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -86,13 +86,13 @@ pub struct Collider {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
-    /// The coefficient of sliding friction.
+    /// Coefficient of sliding friction.
     pub friction: f64,
-    /// The resistance to rolling and spinning, as the ratio of the largest torque and the normal force (in meters).
+    /// Resistance to rolling and spinning, as the ratio of the largest torque and the normal force (in meters).
     pub rolling_friction: f64,
-    /// The normal stiffness of a contact point (in N/m).
+    /// Normal stiffness of a contact point (in N/m).
     pub stiffness: f64,
-    /// The normal damping of a contact point (in N s/m).
+    /// Normal damping of a contact point (in N s/m).
     pub damping: f64,
 }
 
@@ -100,9 +100,9 @@ pub struct Surface {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pair {
-    /// The indices of the two colliders.
+    /// Indices of the two colliders.
     pub colliders: [usize; 2],
-    /// The properties of the contact.
+    /// Properties of the contact.
     pub surface: Surface,
     /// Consecutive pairs with the same number can be skipped together. This happens while the spheres around all first
     /// and all second colliders are far apart. Groups do not change the motion.
@@ -114,11 +114,11 @@ pub struct Pair {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Actuator {
-    /// The name of the actuator, unique in the robot.
+    /// Name of the actuator, unique in the robot.
     pub name: String,
-    /// The joint driven.
+    /// Joint driven.
     pub joint: JointId,
-    /// The law that determines the torque.
+    /// Law that determines the torque.
     pub law: Law<f64>,
 }
 
@@ -126,13 +126,13 @@ pub struct Actuator {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ground {
-    /// The body, which must be created by [`Robot::add_sliding_body`].
+    /// Body, which must be created by [`Robot::add_sliding_body`].
     pub body: BodyId,
-    /// The coefficient of friction.
+    /// Coefficient of friction.
     pub friction: f64,
-    /// The force that presses the body on the ground (in newtons), for example its weight.
+    /// Force that presses the body on the ground (in newtons), for example its weight.
     pub load: f64,
-    /// The effective radius for the friction of a rotating body (in meters). For a disc with uniform pressure it is two
+    /// Effective radius for the friction of a rotating body (in meters). For a disc with uniform pressure it is two
     /// thirds of its radius.
     pub radius: f64,
 }
@@ -141,17 +141,17 @@ pub struct Ground {
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Robot {
-    /// The name of the robot.
+    /// Name of the robot.
     pub name: String,
-    /// The segments. Parents must come before their children.
+    /// Segments. Parents must come before their children.
     pub segments: Vec<Segment>,
-    /// The shapes used for contacts and sensors.
+    /// Shapes used for contacts and sensors.
     pub colliders: Vec<Collider>,
-    /// The pairs of colliders that may touch.
+    /// Pairs of colliders that may touch.
     pub pairs: Vec<Pair>,
-    /// The actuators of all joints.
+    /// Actuators of all joints.
     pub actuators: Vec<Actuator>,
-    /// The ground below sliding bodies.
+    /// Ground below sliding bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub grounds: Vec<Ground>,
     /// Shapes drawn instead of the colliders. They are ignored by worlds.
@@ -163,13 +163,13 @@ pub struct Robot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Offsets {
-    /// The index of the first segment.
+    /// Index of the first segment.
     pub segments: usize,
-    /// The index of the first collider.
+    /// Index of the first collider.
     pub colliders: usize,
-    /// The index of the first pair.
+    /// Index of the first pair.
     pub pairs: usize,
-    /// The index of the first actuator.
+    /// Index of the first actuator.
     pub actuators: usize,
 }
 

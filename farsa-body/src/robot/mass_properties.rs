@@ -9,11 +9,11 @@ use crate::robot::shape::Shape;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
-    /// The mass of the body in kilograms.
+    /// Mass of the body in kilograms.
     pub mass: f64,
-    /// The center of mass in meters.
+    /// Center of mass in meters.
     pub centre: [f64; 3],
-    /// The elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass (in kg m2).
+    /// Elements [xx, yy, zz, xy, xz, yz] of the inertia matrix about the center of mass (in kg m2).
     pub inertia: [f64; 6],
 }
 

@@ -6,13 +6,13 @@
 pub enum Shape {
     /// A sphere with its center at the origin.
     Sphere {
-        /// The radius of the sphere [m].
+        /// Radius of the sphere [m].
         radius: f64,
     },
     /// A capsule that contains all points with a distance of at most `radius` from the part of the z axis between
     /// `-half_length` and `half_length`.
     Capsule {
-        /// The radius of the capsule [m].
+        /// Radius of the capsule [m].
         radius: f64,
         /// Half the length of its axis [m].
         half_length: f64,

@@ -16,50 +16,50 @@ use crate::robot::shape::Shape;
 pub enum RobotError {
     /// A number is NaN, infinite or out of its range.
     Value {
-        /// The name of the part.
+        /// Name of the part.
         part: String,
-        /// The name of the field.
+        /// Name of the field.
         field: &'static str,
-        /// The invalid value.
+        /// Invalid value.
         value: f64,
     },
     /// The range of a joint contains NaN or ends before it begins.
     Range {
-        /// The name of the joint.
+        /// Name of the joint.
         joint: String,
-        /// The invalid range [rad or m].
+        /// Invalid range [rad or m].
         range: [f64; 2],
     },
     /// A moving body cannot have this mass or inertia.
     Inertia {
-        /// The name of the segment.
+        /// Name of the segment.
         segment: String,
-        /// The mass of the segment [kg].
+        /// Mass of the segment [kg].
         mass: f64,
-        /// The inertia [xx, yy, zz, xy, xz, yz, kg m2].
+        /// Inertia [xx, yy, zz, xy, xz, yz, kg m2].
         inertia: [f64; 6],
     },
     /// An index is beyond the end of its list.
     Index {
-        /// The name of the part.
+        /// Name of the part.
         part: String,
-        /// The name of the field.
+        /// Name of the field.
         field: &'static str,
-        /// The invalid index.
+        /// Invalid index.
         index: usize,
-        /// The length of the list.
+        /// Length of the list.
         count: usize,
     },
     /// There are more than 65535 parts of one kind, so they cannot be numbered.
     Count {
-        /// The kind of parts.
+        /// Kind of parts.
         parts: &'static str,
-        /// The number of parts.
+        /// Number of parts.
         count: usize,
     },
     /// Two parts of the same kind have the same name.
     Name {
-        /// The duplicate name.
+        /// Duplicate name.
         name: String,
     },
     /// A part has an invalid position in the description.
@@ -73,7 +73,7 @@ pub enum RobotError {
     },
     /// Two colliders of a pair cannot touch.
     Pair {
-        /// The names of the two colliders.
+        /// Names of the two colliders.
         colliders: [String; 2],
         /// The reason why they cannot touch.
         fault: PairFault,

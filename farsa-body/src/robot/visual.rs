@@ -8,13 +8,13 @@ use crate::robot::shape::Shape;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Visual {
-    /// The segment to which the shape is attached, or `None` for the world.
+    /// Segment to which the shape is attached, or `None` for the world.
     pub body: Option<BodyId>,
-    /// The shape drawn.
+    /// Shape drawn.
     pub shape: Shape,
-    /// The pose of the shape in the frame of the segment.
+    /// Pose of the shape in the frame of the segment.
     pub placement: Pose<f64>,
-    /// The red, green and blue components of the color (between 0 and 1). For `None`, views use a default color.
+    /// Red, green and blue components of the color (between 0 and 1). For `None`, views use a default color.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub color: Option<[f64; 3]>,
 }

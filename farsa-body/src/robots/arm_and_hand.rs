@@ -69,71 +69,71 @@ const MUSCLE_LABELS: [[&str; 2]; 7] = [
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArmAndHand {
-    /// The position in the world at which the axes of J1 to J3 intersect (in meters).
+    /// Position in the world at which the axes of J1 to J3 intersect (in meters).
     pub shoulder: [f64; 3],
-    /// The distance from the shoulder to the elbow in meters.
+    /// Distance from the shoulder to the elbow in meters.
     pub upper_arm_length: f64,
-    /// The distance from the elbow to the wrist (in meters).
+    /// Distance from the elbow to the wrist (in meters).
     pub forearm_length: f64,
-    /// The ranges of J1 to J7 (in radians).
+    /// Ranges of J1 to J7 (in radians).
     pub arm_ranges: [[f64; 2]; 7],
-    /// The largest active tension Tmax of the muscles of J1 to J7 (in newtons).
+    /// Largest active tension Tmax of the muscles of J1 to J7 (in newtons).
     pub tensions: [f64; 7],
-    /// The moment arm of all muscles in meters.
+    /// Moment arm of all muscles in meters.
     pub moment_arm: f64,
-    /// The variant of the muscle model.
+    /// Variant of the muscle model.
     pub muscle_variant: MuscleVariant,
-    /// The factor that reduces the passive tension of [`MuscleVariant::Original`] in addition to 0.5. The other variant
+    /// Factor that reduces the passive tension of [`MuscleVariant::Original`] in addition to 0.5. The other variant
     /// ignores it.
     pub passive_reduction: f64,
-    /// The viscous damping of the arm joints, relative to the largest active torque r Tmax of the muscles (in s/rad).
+    /// Viscous damping of the arm joints, relative to the largest active torque r Tmax of the muscles (in s/rad).
     pub damping_per_torque: f64,
-    /// The armature of the arm joints (in kg m2).
+    /// Armature of the arm joints (in kg m2).
     pub arm_armature: f64,
-    /// The armature of the hand joints (in kg m2).
+    /// Armature of the hand joints (in kg m2).
     pub finger_armature: f64,
-    /// The servo of each joint of the hand.
+    /// Servo of each joint of the hand.
     pub servo: Servo<f64>,
-    /// The passive viscous damping of the hand joints (in N m s/rad).
+    /// Passive viscous damping of the hand joints (in N m s/rad).
     pub finger_damping: f64,
-    /// The masses of the segments of J1 to J7 (in kilograms). These are two shoulder segments, the upper arm, the
+    /// Masses of the segments of J1 to J7 (in kilograms). These are two shoulder segments, the upper arm, the
     /// elbow, the forearm, the wrist and the palm.
     pub arm_masses: [f64; 7],
-    /// The mass of the first segment of each finger (in kilograms).
+    /// Mass of the first segment of each finger (in kilograms).
     pub knuckle_mass: f64,
-    /// The masses of the phalanges, starting at the palm (in kilograms).
+    /// Masses of the phalanges, starting at the palm (in kilograms).
     pub phalange_masses: [f64; 3],
-    /// The radius of the upper arm's capsule (in meters). The capsule is as long as the upper arm.
+    /// Radius of the upper arm's capsule (in meters). The capsule is as long as the upper arm.
     pub upper_arm_radius: f64,
-    /// The radius of the forearm's capsule in meters.
+    /// Radius of the forearm's capsule in meters.
     pub forearm_radius: f64,
-    /// The length of the axis of the forearm's capsule, which starts at the elbow (in meters).
+    /// Length of the axis of the forearm's capsule, which starts at the elbow (in meters).
     pub forearm_axis: f64,
     /// Half the edge lengths of the palm (in meters).
     pub palm_half: [f64; 3],
-    /// The center of the palm's box in the frame of the palm (in meters).
+    /// Center of the palm's box in the frame of the palm (in meters).
     pub palm_box: [f64; 3],
-    /// The point on the inner side of the palm used as its center, in the frame of the palm (in meters).
+    /// Point on the inner side of the palm used as its center, in the frame of the palm (in meters).
     pub palm_centre: [f64; 3],
-    /// The radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
+    /// Radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
     /// joint or to the tip.
     pub phalange_radii: [f64; 3],
-    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
+    /// Lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
     /// meters).
     pub phalange_lengths: [[f64; 3]; 5],
-    /// The positions of the index, middle, ring and little finger in the frame of the palm (in meters).
+    /// Positions of the index, middle, ring and little finger in the frame of the palm (in meters).
     pub finger_bases: [[f64; 3]; 4],
-    /// The ranges of the abduction joints J12, J16, J20 and J24 (in radians).
+    /// Ranges of the abduction joints J12, J16, J20 and J24 (in radians).
     pub abduction_ranges: [[f64; 2]; 4],
-    /// The position of the thumb in the frame of the palm (in meters).
+    /// Position of the thumb in the frame of the palm (in meters).
     pub thumb_base: [f64; 3],
-    /// The distance from the base of the thumb to its first flexion joint (in meters).
+    /// Distance from the base of the thumb to its first flexion joint (in meters).
     pub thumb_link: f64,
-    /// The range of the opposition J8 of the thumb (in radians).
+    /// Range of the opposition J8 of the thumb (in radians).
     pub opposition_range: [f64; 2],
-    /// The range of the fifteen flexion joints (in radians).
+    /// Range of the fifteen flexion joints (in radians).
     pub flexion_range: [f64; 2],
-    /// The properties of contacts between phalanges.
+    /// Properties of contacts between phalanges.
     pub surface: Surface,
 }
 
@@ -186,11 +186,11 @@ impl Default for ArmAndHand {
 }
 
 impl ArmAndHand {
-    /// The body of the palm.
+    /// Body of the palm.
     pub const PALM: BodyId = BodyId(6);
-    /// The outward normal of the inner side of the palm, in the frame of the palm.
+    /// Outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = [0.0, 0.0, -1.0];
-    /// The indices of the colliders of the upper arm, the forearm and the palm. The phalanges follow.
+    /// Indices of the colliders of the upper arm, the forearm and the palm. The phalanges follow.
     pub const ARM_COLLIDERS: [usize; 3] = [0, 1, 2];
 
     /// Returns the joints J1 to J27.

@@ -55,7 +55,7 @@ pub(crate) const fn deg(x: f64) -> f64 {
 /// Where a hand is attached, and which one it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wrist<'a> {
-    /// The palm.
+    /// Palm.
     pub(crate) palm: BodyId,
     /// Before each name.
     pub(crate) prefix: &'a str,
@@ -83,43 +83,43 @@ impl Wrist<'_> {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Hand {
-    /// The mass of the palm in kilograms.
+    /// Mass of the palm in kilograms.
     pub palm_mass: f64,
     /// Half the edge lengths of the palm (in meters).
     pub palm_half: [f64; 3],
-    /// The center of the palm's box in the frame of the palm (in meters).
+    /// Center of the palm's box in the frame of the palm (in meters).
     pub palm_box: [f64; 3],
-    /// The point on the inner side of the palm used as its center, in the frame of the palm (in meters).
+    /// Point on the inner side of the palm used as its center, in the frame of the palm (in meters).
     pub palm_centre: [f64; 3],
-    /// The armature of the joints (in kg m2).
+    /// Armature of the joints (in kg m2).
     pub armature: f64,
-    /// The passive viscous damping of the joints (in N m s/rad).
+    /// Passive viscous damping of the joints (in N m s/rad).
     pub damping: f64,
-    /// The servo of each joint.
+    /// Servo of each joint.
     pub servo: Servo<f64>,
-    /// The mass of the first segment of each finger (in kilograms).
+    /// Mass of the first segment of each finger (in kilograms).
     pub knuckle_mass: f64,
-    /// The masses of the phalanges, starting at the palm (in kilograms).
+    /// Masses of the phalanges, starting at the palm (in kilograms).
     pub phalange_masses: [f64; 3],
-    /// The radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
+    /// Radii of the capsules of the phalanges, starting at the palm (in meters). Each axis extends to the next
     /// joint or to the tip.
     pub phalange_radii: [f64; 3],
-    /// The lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
+    /// Lengths of the phalanges, starting at the palm, for all fingers from the thumb to the little finger (in
     /// meters).
     pub phalange_lengths: [[f64; 3]; 5],
-    /// The positions of the index, middle, ring and little finger in the frame of the palm (in meters).
+    /// Positions of the index, middle, ring and little finger in the frame of the palm (in meters).
     pub finger_bases: [[f64; 3]; 4],
-    /// The ranges of the abduction joints J12, J16, J20 and J24 (in radians).
+    /// Ranges of the abduction joints J12, J16, J20 and J24 (in radians).
     pub abduction_ranges: [[f64; 2]; 4],
-    /// The position of the thumb in the frame of the palm (in meters).
+    /// Position of the thumb in the frame of the palm (in meters).
     pub thumb_base: [f64; 3],
-    /// The distance from the base of the thumb to its first flexion joint (in meters).
+    /// Distance from the base of the thumb to its first flexion joint (in meters).
     pub thumb_link: f64,
-    /// The range of the opposition J8 of the thumb (in radians).
+    /// Range of the opposition J8 of the thumb (in radians).
     pub opposition_range: [f64; 2],
-    /// The range of the fifteen flexion joints (in radians).
+    /// Range of the fifteen flexion joints (in radians).
     pub flexion_range: [f64; 2],
-    /// The properties of contacts between the phalanges and with the palm.
+    /// Properties of contacts between the phalanges and with the palm.
     pub surface: Surface,
 }
 
@@ -156,10 +156,10 @@ impl Default for Hand {
 }
 
 impl Hand {
-    /// The outward normal of the inner side of the palm. In the frame of the palm it is the same for both hands.
+    /// Outward normal of the inner side of the palm. In the frame of the palm it is the same for both hands.
     pub const PALM_NORMAL: [f64; 3] = [0.0, 0.0, -1.0];
 
-    /// Returns the total mass of the palm and the fingers (in kilograms).
+    /// Computes the total mass of the palm and the fingers (in kilograms).
     pub fn mass(&self) -> f64 {
         self.palm_mass + 5.0 * (self.knuckle_mass + self.phalange_masses.iter().sum::<f64>())
     }

@@ -10,14 +10,14 @@ use crate::ports::{ActuatorId, BodyId, JointId};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InfraredRing {
-    /// The directions of the sensors, counter-clockwise from straight ahead (in radians). They also determine the
+    /// Directions of the sensors, counter-clockwise from straight ahead (in radians). They also determine the
     /// positions of the sensors on the hull.
     pub angles: Vec<f64>,
-    /// The range of the sensors, measured from the hull (in meters).
+    /// Range of the sensors, measured from the hull (in meters).
     pub range: f64,
     /// Half the opening angle of the cone in which a sensor detects objects (in radians).
     pub aperture: f64,
-    /// The number of rays that sample the cone of each sensor.
+    /// Number of rays that sample the cone of each sensor.
     pub rays: usize,
 }
 
@@ -26,23 +26,23 @@ pub struct InfraredRing {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileRobot {
-    /// The name of the robot.
+    /// Name of the robot.
     pub name: String,
-    /// The radius of the hull (in meters).
+    /// Radius of the hull (in meters).
     pub radius: f64,
-    /// The height of the robot in meters.
+    /// Height of the robot in meters.
     pub height: f64,
-    /// The radius of the wheels (in meters).
+    /// Radius of the wheels (in meters).
     pub wheel_radius: f64,
-    /// The distance between the wheels (in meters).
+    /// Distance between the wheels (in meters).
     pub track: f64,
-    /// The largest angular speed of a wheel in both directions, in radians per second.
+    /// Largest angular speed of a wheel in both directions, in radians per second.
     pub max_wheel_speed: f64,
-    /// The ring of infrared sensors.
+    /// Ring of infrared sensors.
     pub infrared: InfraredRing,
-    /// The positions of the ground color sensors in the frame of the robot (in meters).
+    /// Positions of the ground color sensors in the frame of the robot (in meters).
     pub ground: Vec<[f64; 2]>,
-    /// The red, green and blue components of the hull's color (between 0 and 1), which is visible when no LED is on.
+    /// Red, green and blue components of the hull's color (between 0 and 1), which is visible when no LED is on.
     pub color: [f64; 3],
     /// True if the robot has LEDs. They are three actuators for red, green and blue.
     pub leds: bool,
@@ -174,17 +174,17 @@ impl MobileRobot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileParts {
-    /// The body of the robot.
+    /// Body of the robot.
     pub body: BodyId,
-    /// The left and the right wheel.
+    /// Left and the right wheel.
     pub wheels: [JointId; 2],
-    /// The motors of the left and the right wheel. Their commands are speeds, in radians per second.
+    /// Motors of the left and the right wheel. Their commands are speeds, in radians per second.
     pub motors: [ActuatorId; 2],
     /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses (between 0 and 1).
     pub leds: Option<[ActuatorId; 3]>,
-    /// The signal, whose command is its value (between 0 and 1).
+    /// Signal, whose command is its value (between 0 and 1).
     pub signal: Option<ActuatorId>,
-    /// The attachment device, which holds for commands above 0.5.
+    /// Attachment device, which holds for commands above 0.5.
     pub attachment: Option<ActuatorId>,
 }
 

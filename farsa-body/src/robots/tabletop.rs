@@ -20,19 +20,19 @@ pub struct Tabletop {
     pub table_x: [f64; 2],
     /// The lower and upper ends of the table along Y (in meters).
     pub table_y: [f64; 2],
-    /// The thickness of the table, which is solid (in meters).
+    /// Thickness of the table, which is solid (in meters).
     pub table_depth: f64,
-    /// The radius of the sphere (in meters).
+    /// Radius of the sphere (in meters).
     pub sphere_radius: f64,
-    /// The mass of the sphere, which is solid (in kilograms).
+    /// Mass of the sphere, which is solid (in kilograms).
     pub sphere_mass: f64,
-    /// The initial X and Y coordinates of the sphere on the table (in meters).
+    /// Initial X and Y coordinates of the sphere on the table (in meters).
     pub sphere_start: [f64; 2],
-    /// The properties of contacts between the hand and the sphere.
+    /// Properties of contacts between the hand and the sphere.
     pub hand_on_sphere: Surface,
-    /// The properties of contacts between the sphere and the table.
+    /// Properties of contacts between the sphere and the table.
     pub sphere_on_table: Surface,
-    /// The properties of contacts of the arm and hand with the table.
+    /// Properties of contacts of the arm and hand with the table.
     pub arm_on_table: Surface,
 }
 
@@ -54,7 +54,7 @@ impl Default for Tabletop {
 }
 
 impl Tabletop {
-    /// The body of the sphere in the description returned by [`Tabletop::scene`].
+    /// Body of the sphere in the description returned by [`Tabletop::scene`].
     pub const SPHERE: BodyId = BodyId(27);
 
     /// Builds a description with the arm, the hand, the sphere and the table. The parts of the arm come first.

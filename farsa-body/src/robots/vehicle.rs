@@ -22,14 +22,14 @@ const CLEARANCE: f64 = 0.02;
 const SINK: f64 = 1e-4;
 
 impl MobileRobot {
-    /// The mean density of a robot (in kg/m3) \[chosen\]. For comparison, an e-puck of 150 g has 780 and a Khepera of
+    /// Mean density of a robot (in kg/m3) \[chosen\]. For comparison, an e-puck of 150 g has 780 and a Khepera of
     /// 80 g has 690.
     pub const DENSITY: f64 = 750.0;
 
-    /// The fraction of the mass that belongs to the two wheels \[chosen\].
+    /// Fraction of the mass that belongs to the two wheels \[chosen\].
     pub const WHEEL_SHARE: f64 = 0.1;
 
-    /// Returns the mass that results from [`DENSITY`](Self::DENSITY) (in kilograms).
+    /// Computes the mass that results from [`DENSITY`](Self::DENSITY) (in kilograms).
     pub fn mass(&self) -> f64 {
         Self::DENSITY * (PI * self.radius * self.radius * self.height)
     }

@@ -9,9 +9,9 @@ use crate::ports::{Kinematics, Rays};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Beam {
-    /// The point at which the ray leaves the hull (in meters).
+    /// Point at which the ray leaves the hull (in meters).
     pub from: [f32; 2],
-    /// The direction of the ray as a unit vector.
+    /// Direction of the ray as a unit vector.
     pub direction: [f32; 2],
 }
 

@@ -13,9 +13,9 @@ use crate::sensors::stance::Stance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorBand {
-    /// The lower limits of red, green and blue.
+    /// Lower limits of red, green and blue.
     pub low: [f32; 3],
-    /// The upper limits of red, green and blue.
+    /// Upper limits of red, green and blue.
     pub high: [f32; 3],
 }
 
@@ -183,7 +183,7 @@ where
 struct Wedge {
     /// Cosine and sine of the angle. Both are 0 for an angle beyond 90 degrees, whose wedge has no edge.
     edge: [f32; 2],
-    /// The largest distance of a ray's start from the robot's origin [m].
+    /// Largest distance of a ray's start from the robot's origin [m].
     aside: f32,
 }
 

@@ -7,9 +7,9 @@ use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point<B = BodyId> {
-    /// The body to which the point is fixed.
+    /// Body to which the point is fixed.
     pub body: B,
-    /// The position of the point in the frame of the body (in meters).
+    /// Position of the point in the frame of the body (in meters).
     pub at: [f32; 3],
 }
 

@@ -30,7 +30,7 @@ impl<const N: usize> Signal<N> {
         signal
     }
 
-    /// Returns the values of the channels.
+    /// Gets the values of the channels.
     pub fn values(&self) -> [f32; N] {
         self.values
     }

@@ -24,7 +24,7 @@ impl<L: AsRef<[PairId]>> Touch<L> {
         Ok(Self { pairs, saturation: positive("saturation", saturation)? })
     }
 
-    /// Returns the pairs of the group.
+    /// Gets the pairs of the group.
     pub fn pairs(&self) -> &[PairId] {
         self.pairs.as_ref()
     }

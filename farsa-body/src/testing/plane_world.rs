@@ -111,7 +111,7 @@ struct Met {
 }
 
 impl PlaneWorld {
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub const TIME_STEP: f32 = 0.05;
 
     /// Creates an empty world.

@@ -28,7 +28,7 @@ struct Point {
     height: f32,
     speed: f32,
     command: [f32; 2],
-    /// The force from outside in the next step [N].
+    /// Force from outside in the next step [N].
     outside: f32,
 }
 
@@ -36,15 +36,15 @@ struct Point {
 const WORDS: usize = 4;
 
 impl PointWorld {
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub const TIME_STEP: f32 = 0.01;
-    /// The rotation of a point per unit of height (in rad/m).
+    /// Rotation of a point per unit of height (in rad/m).
     pub const TURN: f32 = 10.0;
     /// The distance between two screws, in meters.
     const SPACING: f32 = 0.1;
-    /// The radius of the spheres hit by rays in meters.
+    /// Radius of the spheres hit by rays in meters.
     pub const RADIUS: f32 = 0.02;
-    /// The color of the spheres. The floor has no color.
+    /// Color of the spheres. The floor has no color.
     pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];
     /// Acceleration downwards [m/s2].
     const GRAVITY: f32 = 9.81;

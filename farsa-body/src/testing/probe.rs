@@ -11,16 +11,16 @@ use crate::robot::description::{Actuator, JointKind, Robot};
 pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
     /// All bodies of the world.
     pub bodies: Vec<B>,
-    /// The bodies that can move freely.
+    /// Bodies that can move freely.
     pub floating: Vec<B>,
-    /// The bodies that can be placed anywhere on a plane. They keep their position and heading as long as they are not
+    /// Bodies that can be placed anywhere on a plane. They keep their position and heading as long as they are not
     /// moved.
     pub planar: Vec<B>,
-    /// The joints that can be placed, each with two positions (in radians or meters) between which it can be placed.
+    /// Joints that can be placed, each with two positions (in radians or meters) between which it can be placed.
     pub joints: Vec<(J, [f32; 2])>,
-    /// The actuators, each with the lower and upper limits of both values of its command.
+    /// Actuators, each with the lower and upper limits of both values of its command.
     pub actuators: Vec<(A, [[f32; 2]; 2])>,
-    /// The number of steps in a run, which must be at least 16.
+    /// Number of steps in a run, which must be at least 16.
     pub steps: usize,
     /// The tolerance for the difference between the mean speed of a step and the speeds at its ends (in m/s or rad/s).
     pub slack: f32,

@@ -78,7 +78,7 @@ pub enum Promise {
 /// The error returned when a promise is violated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConformanceError {
-    /// The violated promise.
+    /// Violated promise.
     pub promise: Promise,
     /// A description of the observation.
     pub detail: String,

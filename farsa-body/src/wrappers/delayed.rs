@@ -18,9 +18,9 @@ pub struct Delayed<T, M> {
     channels: usize,
     /// One row of `channels` values for each tick on the way.
     memory: M,
-    /// The row that comes out next, and is then overwritten.
+    /// Row that comes out next, and is then overwritten.
     row: usize,
-    /// The number of rows with values of this episode.
+    /// Number of rows with values of this episode.
     filled: usize,
 }
 
@@ -62,7 +62,7 @@ impl<T: Channels, M: AsMut<[f32]>> Delayed<T, M> {
 }
 
 impl<T, M> Delayed<T, M> {
-    /// Returns the wrapped sensor or motor.
+    /// Gets the wrapped sensor or motor.
     pub fn inner(&self) -> &T {
         &self.inner
     }

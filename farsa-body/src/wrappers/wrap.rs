@@ -27,7 +27,7 @@ pub struct Wrapped<T, F, M> {
 }
 
 impl<T, F, M> Wrapped<T, F, M> {
-    /// Returns the wrapped sensor or motor.
+    /// Gets the wrapped sensor or motor.
     pub fn inner(&self) -> &T {
         &self.inner
     }

@@ -8,62 +8,62 @@ use crate::compositional_instructions::instruction::{Action, Color, Condition, I
 /// The arm, which consists of two segments and is seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// The lengths of the segments in meters.
+    /// Lengths of the segments in meters.
     pub lengths: [f64; 2],
-    /// The masses of the segments in kilograms.
+    /// Masses of the segments in kilograms.
     pub masses: [f64; 2],
-    /// The radius of both segments (in meters).
+    /// Radius of both segments (in meters).
     pub radius: f64,
-    /// The largest rotation of each joint to either side (in degrees).
+    /// Largest rotation of each joint to either side (in degrees).
     pub ranges: [f64; 2],
-    /// The largest speed that the network can command for each joint, in radians per second.
+    /// Largest speed that the network can command for each joint, in radians per second.
     pub speeds: [f64; 2],
-    /// The torque per unit of difference between the commanded and the actual speed (in N m s/rad).
+    /// Torque per unit of difference between the commanded and the actual speed (in N m s/rad).
     pub gains: [f64; 2],
-    /// The largest torque of each motor in newton meters.
+    /// Largest torque of each motor in newton meters.
     pub torques: [f64; 2],
 }
 
 /// The three objects and the places where a trial puts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objects {
-    /// The radius of an object in meters.
+    /// Radius of an object in meters.
     pub radius: f64,
-    /// The mass of an object (in kilograms).
+    /// Mass of an object (in kilograms).
     pub mass: f64,
-    /// The coefficient of friction between an object and the ground.
+    /// Coefficient of friction between an object and the ground.
     pub ground_friction: f64,
-    /// The coefficient of friction between the arm and an object, and between two objects.
+    /// Coefficient of friction between the arm and an object, and between two objects.
     pub friction: f64,
-    /// The mean distance of the objects from the base of the arm (in meters).
+    /// Mean distance of the objects from the base of the arm (in meters).
     pub distance: f64,
-    /// The largest deviation from that distance (in meters).
+    /// Largest deviation from that distance (in meters).
     pub distance_spread: f64,
-    /// The bearings of the three places, from left to right (in degrees).
+    /// Bearings of the three places, from left to right (in degrees).
     pub bearings: [f64; 3],
-    /// The largest deviation from each bearing (in degrees).
+    /// Largest deviation from each bearing (in degrees).
     pub bearing_spread: f64,
 }
 
 /// The camera at the base of the arm. It looks along the first segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The field of view (in degrees). It is divided into three sectors of equal width.
+    /// Field of view (in degrees). It is divided into three sectors of equal width.
     pub view: f64,
-    /// The number of rays that are cast in each sector.
+    /// Number of rays that are cast in each sector.
     pub rays: u32,
-    /// The largest distance at which an object is visible (in meters).
+    /// Largest distance at which an object is visible (in meters).
     pub range: f64,
 }
 
 /// The posture of the arm at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// The largest deviation of the first joint from the direction between two neighboring objects (in degrees).
+    /// Largest deviation of the first joint from the direction between two neighboring objects (in degrees).
     pub first_spread: f64,
-    /// The angle of the second joint in degrees.
+    /// Angle of the second joint in degrees.
     pub second: f64,
-    /// The largest deviation from that angle (in degrees).
+    /// Largest deviation from that angle (in degrees).
     pub second_spread: f64,
     /// If true, the side on which the arm starts is drawn at random. Otherwise it always starts on the left.
     pub both_sides: bool,
@@ -72,46 +72,46 @@ pub struct Start {
 /// The thresholds used to compute the reward and to decide if a trial was successful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judging {
-    /// The length of the period at the end of a trial that is taken into account (in seconds).
+    /// Length of the period at the end of a trial that is taken into account (in seconds).
     pub window: f64,
-    /// The displacement of an object that has no effect on the reward (in meters).
+    /// Displacement of an object that has no effect on the reward (in meters).
     pub still: f64,
-    /// The additional displacement at which the reward falls to zero (in meters).
+    /// Additional displacement at which the reward falls to zero (in meters).
     pub span: f64,
     /// Like `span`, but for the target of TOUCH (in meters).
     pub span_touched: f64,
-    /// The displacement that earns the maximum reward for MOVE (in meters).
+    /// Displacement that earns the maximum reward for MOVE (in meters).
     pub far: f64,
-    /// The distance from the surface of the centered target below which the tip earns a reward for reaching (in
+    /// Distance from the surface of the centered target below which the tip earns a reward for reaching (in
     /// meters).
     pub reach: f64,
-    /// The weight of reaching in the reward for TOUCH and MOVE, between 0 and 1.
+    /// Weight of reaching in the reward for TOUCH and MOVE, between 0 and 1.
     pub reach_share: f64,
-    /// The reward for a step of IGNORE in which the target is visible but not in the middle sector, between 0 and 1.
+    /// Reward for a step of IGNORE in which the target is visible but not in the middle sector, between 0 and 1.
     pub aside_share: f64,
-    /// The minimum shares of the final period that count as a success. The first applies to INDICATE and IGNORE, the
+    /// Minimum shares of the final period that count as a success. The first applies to INDICATE and IGNORE, the
     /// second to TOUCH.
     pub least_shares: [f64; 2],
-    /// The largest displacement of the target allowed in a successful trial of INDICATE or IGNORE (in meters).
+    /// Largest displacement of the target allowed in a successful trial of INDICATE or IGNORE (in meters).
     pub most_still: f64,
-    /// The largest displacement of the target allowed in a successful trial of TOUCH (in meters).
+    /// Largest displacement of the target allowed in a successful trial of TOUCH (in meters).
     pub most_touched: f64,
-    /// The smallest displacement of the target required in a successful trial of MOVE (in meters).
+    /// Smallest displacement of the target required in a successful trial of MOVE (in meters).
     pub least_moved: f64,
-    /// The largest displacement of any other object allowed in a successful trial (in meters).
+    /// Largest displacement of any other object allowed in a successful trial (in meters).
     pub most_other: f64,
 }
 
 /// The ranges to which the genes of the network are decoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ranges {
-    /// The largest absolute value of a weight.
+    /// Largest absolute value of a weight.
     pub weight: f64,
-    /// The largest absolute value of a bias.
+    /// Largest absolute value of a bias.
     pub bias: f64,
-    /// The range of the time constants, as decimal logarithms of their values in seconds.
+    /// Range of the time constants, as decimal logarithms of their values in seconds.
     pub time_constant_exponents: [f64; 2],
-    /// The smallest and the largest gain of a sensory neuron.
+    /// Smallest and the largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 
@@ -124,25 +124,25 @@ pub struct Config {
     pub held_out: [Instruction; 2],
     /// The number of trials with different starts for each trained instruction.
     pub starts: u32,
-    /// The number of steps of a trial.
+    /// Number of steps of a trial.
     pub steps: u32,
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// The number of dynamics steps in each control step.
+    /// Number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The arm and its motors.
+    /// Arm and its motors.
     pub arm: Arm,
-    /// The objects and their places.
+    /// Objects and their places.
     pub objects: Objects,
-    /// The camera at the base.
+    /// Camera at the base.
     pub camera: Camera,
-    /// The distance between two surfaces below which they count as touching (in meters).
+    /// Distance between two surfaces below which they count as touching (in meters).
     pub touch_margin: f64,
-    /// The posture of the arm at the start.
+    /// Posture of the arm at the start.
     pub start: Start,
-    /// The thresholds of the reward.
+    /// Thresholds of the reward.
     pub judging: Judging,
-    /// The ranges of the network's parameters.
+    /// Ranges of the network's parameters.
     pub ranges: Ranges,
 }
 

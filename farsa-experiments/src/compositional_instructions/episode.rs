@@ -23,13 +23,13 @@ fn noise_of(id: EpisodeId) -> Stream {
 /// The instructions of one trial. Some tests replace the first instruction while the trial is running.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialInstructions {
-    /// The instruction given at the start.
+    /// Instruction given at the start.
     pub first: Instruction,
-    /// The step at which the instruction changes, and the new instruction. `None` if it stays the same.
+    /// Step at which the instruction changes, and the new instruction. `None` if it stays the same.
     pub change: Option<(u32, Instruction)>,
-    /// The number of steps of the trial.
+    /// Number of steps of the trial.
     pub steps: u32,
-    /// The standard deviation of the noise added to the camera, the touch sensors and the joint angles.
+    /// Standard deviation of the noise added to the camera, the touch sensors and the joint angles.
     pub noise: f32,
 }
 
@@ -102,17 +102,17 @@ impl<C: Controller> InstructionEpisode<C> {
         self.instructions = instructions;
     }
 
-    /// Returns the instructions of the current trial.
+    /// Gets the instructions of the current trial.
     pub fn instructions(&self) -> &TrialInstructions {
         &self.instructions
     }
 
-    /// Returns the scene in which the episodes take place.
+    /// Gets the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Returns the controller of the arm.
+    /// Gets the controller of the arm.
     pub fn controller(&self) -> &C {
         &self.controller
     }
@@ -122,17 +122,17 @@ impl<C: Controller> InstructionEpisode<C> {
         &mut self.controller
     }
 
-    /// Returns the 20 sensor values of the last step.
+    /// Gets the 20 sensor values of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the 4 motor values of the last step.
+    /// Gets the 4 motor values of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }
 
-    /// Returns the number of steps that have been completed.
+    /// Gets the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -142,12 +142,12 @@ impl<C: Controller> InstructionEpisode<C> {
         self.instructions.at(self.steps)
     }
 
-    /// Returns the totals that have been collected so far.
+    /// Gets the totals that have been collected so far.
     pub fn totals(&self) -> &RewardTotals {
         &self.totals
     }
 
-    /// Returns the reward for the first instruction and if it was successful, or `None` before the instruction changes.
+    /// Gets the reward for the first instruction and if it was successful, or `None` before the instruction changes.
     pub fn before_change(&self) -> Option<(Parts, bool)> {
         self.before_change
     }

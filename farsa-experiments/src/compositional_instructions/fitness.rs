@@ -10,15 +10,15 @@ use crate::compositional_instructions::instruction::{Action, Color, Instruction}
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The colors that are visible in each sector of the camera. The leftmost sector comes first.
+    /// Colors that are visible in each sector of the camera. The leftmost sector comes first.
     pub seen: [[bool; 3]; 3],
     /// True for each object touched by the second segment, in the order of the colors.
     pub touched: [bool; 3],
-    /// The distance between each object and its initial place (in meters).
+    /// Distance between each object and its initial place (in meters).
     pub displaced: [f64; 3],
-    /// The distance between the tip of the second segment and the surface of each object (in meters).
+    /// Distance between the tip of the second segment and the surface of each object (in meters).
     pub tip: [f64; 3],
-    /// The position of each object in the frame of the camera, as the coordinates ahead and to the left (in meters).
+    /// Position of each object in the frame of the camera, as the coordinates ahead and to the left (in meters).
     pub ahead: [[f64; 2]; 3],
 }
 
@@ -42,13 +42,13 @@ impl Observation {
 /// The components of the fitness of a trial. Each of them is between 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Parts {
-    /// The reward f for turning toward the object.
+    /// Reward f for turning toward the object.
     pub find: f64,
-    /// The reward a for performing the action.
+    /// Reward a for performing the action.
     pub act: f64,
-    /// The reward u for leaving the other objects in place.
+    /// Reward u for leaving the other objects in place.
     pub undisturbed: f64,
-    /// The resulting fitness F.
+    /// Resulting fitness F.
     pub fitness: f64,
 }
 
@@ -82,7 +82,7 @@ pub struct RewardTotals {
     last_seen: [bool; 3],
     /// Least distance of the tip from the target's surface while the target was centered, 0 for a touch \[m\].
     nearest: Option<f64>,
-    /// The step that passed last.
+    /// Step that passed last.
     last: Observation,
 }
 
@@ -115,7 +115,7 @@ impl RewardTotals {
         }
     }
 
-    /// Returns the observation that was added last.
+    /// Gets the observation that was added last.
     pub fn last(&self) -> &Observation {
         &self.last
     }

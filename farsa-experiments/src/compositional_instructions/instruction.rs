@@ -32,9 +32,9 @@ pub enum Color {
 /// An instruction, such as "TOUCH green".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// The action that has to be performed.
+    /// Action that has to be performed.
     pub action: Action,
-    /// The color of the object on which the action is performed.
+    /// Color of the object on which the action is performed.
     pub color: Color,
 }
 

@@ -9,21 +9,21 @@ use farsa_num::exp;
 
 use crate::compositional_instructions::config::Ranges;
 
-/// The number of sensory neurons. There are 9 for the camera, 3 for touch, 2 for the joints, and 3 for each of the two
+/// Number of sensory neurons. There are 9 for the camera, 3 for touch, 2 for the joints, and 3 for each of the two
 /// words.
 pub const INPUTS: usize = 20;
-/// The number of inner neurons.
+/// Number of inner neurons.
 pub const INNER: usize = 6;
-/// The number of motor neurons. Each joint is driven by two of them.
+/// Number of motor neurons. Each joint is driven by two of them.
 pub const MOTORS: usize = 4;
-/// The total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
+/// Total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
 pub const NEURONS: usize = INPUTS + INNER + MOTORS;
 
-/// The layout of the network. Each input is connected to one sensory neuron.
+/// Layout of the network. Each input is connected to one sensory neuron.
 pub const LAYOUT: CtrnnLayout =
     CtrnnLayout::new(INPUTS, NEURONS, MOTORS).with_direct_inputs(0).with_integrator(Integrator::ExponentialEuler);
 
-/// The kinds of sensory neurons. All neurons of a kind share a gain and a bias.
+/// Kinds of sensory neurons. All neurons of a kind share a gain and a bias.
 pub const KINDS: [(&str, Span); 5] = [
     ("camera", Span::new(0, 9)),
     ("touch", Span::new(9, 3)),
@@ -123,7 +123,7 @@ impl Wiring {
         Ok(Self { origins, kinds, parameters, relay: (RELAY * time_step) as f32 })
     }
 
-    /// Returns the encoded parameters and their ranges.
+    /// Gets the encoded parameters and their ranges.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

@@ -28,20 +28,20 @@ const GRAVITY: f64 = 9.81;
 /// The positions of the arm and the objects at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartPose {
-    /// The angles of the two joints (in radians).
+    /// Angles of the two joints (in radians).
     pub joints: [f64; 2],
-    /// The positions of the objects in the order of their colors (in meters).
+    /// Positions of the objects in the order of their colors (in meters).
     pub objects: [[f64; 2]; 3],
 }
 
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The arm and the objects, in one description.
+    /// Arm and the objects, in one description.
     pub robot: Robot,
-    /// The configuration from which the scene was built.
+    /// Configuration from which the scene was built.
     pub config: Config,
-    /// The bodies of the objects in the order of their colors.
+    /// Bodies of the objects in the order of their colors.
     pub objects: [BodyId; 3],
     /// The two sliding joints of each object.
     pub sliders: [[JointId; 2]; 3],
@@ -50,11 +50,11 @@ pub struct Scene {
 impl Scene {
     /// The first segment, to which the camera is attached.
     pub const FIRST: BodyId = BodyId(0);
-    /// The second segment, which can touch the objects.
+    /// Second segment, which can touch the objects.
     pub const SECOND: BodyId = BodyId(1);
-    /// The joint at the base, and the joint between the two segments.
+    /// Joint at the base, and the joint between the two segments.
     pub const JOINTS: [JointId; 2] = [JointId(0), JointId(1)];
-    /// The actuators of the two joints.
+    /// Actuators of the two joints.
     pub const ACTUATORS: [ActuatorId; 2] = [ActuatorId(0), ActuatorId(1)];
 
     /// Builds the scene for a configuration.

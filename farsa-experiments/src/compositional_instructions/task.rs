@@ -47,7 +47,7 @@ impl InstructionTask {
         &self.episode.scene().config
     }
 
-    /// Returns the current episode.
+    /// Gets the current episode.
     pub fn episode(&self) -> &InstructionEpisode<Agent> {
         &self.episode
     }

@@ -7,20 +7,20 @@ use farsa_num::sin_cos;
 pub struct Pole {
     /// Half the length of the pole, l (in meters).
     pub half_length: f64,
-    /// The mass of the pole, m (in kilograms).
+    /// Mass of the pole, m (in kilograms).
     pub mass: f64,
-    /// The coefficient of friction of the hinge (in N m s).
+    /// Coefficient of friction of the hinge (in N m s).
     pub friction: f64,
 }
 
 /// A cart that moves along a straight track and carries two poles. The poles do not collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cart {
-    /// The mass of the cart, M (in kilograms).
+    /// Mass of the cart, M (in kilograms).
     pub mass: f64,
-    /// The friction between the cart and the track in newtons. It does not depend on the speed.
+    /// Friction between the cart and the track in newtons. It does not depend on the speed.
     pub friction: f64,
-    /// The acceleration of gravity (in m/s^2).
+    /// Acceleration of gravity (in m/s^2).
     pub gravity: f64,
     /// The two poles on the cart.
     pub poles: [Pole; 2],
@@ -29,13 +29,13 @@ pub struct Cart {
 /// The state of the cart and the poles at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartState {
-    /// The position of the cart on the track (in meters).
+    /// Position of the cart on the track (in meters).
     pub position: f64,
-    /// The velocity of the cart (in meters per second).
+    /// Velocity of the cart (in meters per second).
     pub velocity: f64,
-    /// The angles of the poles from the upright position (in radians). Positive angles lean towards positive positions.
+    /// Angles of the poles from the upright position (in radians). Positive angles lean towards positive positions.
     pub angles: [f64; 2],
-    /// The angular velocities of the poles (in radians per second).
+    /// Angular velocities of the poles (in radians per second).
     pub angular_velocities: [f64; 2],
 }
 

@@ -15,29 +15,29 @@ pub struct Config {
     pub velocities: bool,
     /// If true, the fitness also rewards rest \[Gruau1996\]. Otherwise it is the number of steps in balance.
     pub damping: bool,
-    /// The cart and the poles that it carries.
+    /// Cart and the poles that it carries.
     pub cart: Cart,
-    /// The duration of a step of the integration (in seconds).
+    /// Duration of a step of the integration (in seconds).
     pub time_step: f64,
-    /// The number of integration steps between two steps of the network.
+    /// Number of integration steps between two steps of the network.
     pub substeps: u32,
-    /// The largest number of network steps in a trial.
+    /// Largest number of network steps in a trial.
     pub steps: u32,
-    /// The initial angle of the long pole in degrees.
+    /// Initial angle of the long pole in degrees.
     pub angle: f64,
-    /// The angle at which a pole counts as fallen (in degrees).
+    /// Angle at which a pole counts as fallen (in degrees).
     pub most_angle: f64,
-    /// The largest distance of the cart from the middle of the track (in meters).
+    /// Largest distance of the cart from the middle of the track (in meters).
     pub most_position: f64,
-    /// The largest force that the network can apply (in newtons).
+    /// Largest force that the network can apply (in newtons).
     pub force: f64,
-    /// The smallest force that the network can apply (in newtons).
+    /// Smallest force that the network can apply (in newtons).
     pub least_force: f64,
-    /// The number of hidden neurons in the network.
+    /// Number of hidden neurons in the network.
     pub hidden: u32,
-    /// The largest absolute value of a weight.
+    /// Largest absolute value of a weight.
     pub weight_range: f64,
-    /// The scales of the positions (in meters), angles (in radians) and velocities (in m/s or rad/s). Each input is
+    /// Scales of the positions (in meters), angles (in radians) and velocities (in m/s or rad/s). Each input is
     /// divided by its scale.
     pub scales: [f64; 3],
 }

@@ -137,7 +137,7 @@ impl CartEpisode {
         [0.1 * f64::from(steps) / f64::from(DAMPED), 0.9 * rest]
     }
 
-    /// Returns the configuration of the episode.
+    /// Gets the configuration of the episode.
     pub fn config(&self) -> &Config {
         &self.config
     }
@@ -159,28 +159,28 @@ impl CartEpisode {
         self.network.observed()
     }
 
-    /// Returns the current state of the cart and the poles.
+    /// Gets the current state of the cart and the poles.
     pub fn state(&self) -> &CartState {
         &self.state
     }
 
-    /// Returns the number of steps for which the poles have been balanced.
+    /// Gets the number of steps for which the poles have been balanced.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// Returns the inputs of the last step. The position and the two angles come first, followed by the velocities if
+    /// Gets the inputs of the last step. The position and the two angles come first, followed by the velocities if
     /// the network receives them.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the output of the network in the last step.
+    /// Gets the output of the network in the last step.
     pub fn output(&self) -> &[f32] {
         &self.y
     }
 
-    /// Returns the force that was applied to the cart in the last step (in newtons).
+    /// Gets the force that was applied to the cart in the last step (in newtons).
     pub fn force(&self) -> f64 {
         self.force
     }

@@ -3,7 +3,7 @@
 use farsa_nn::Activation;
 use farsa_nn::block::{Architecture, BlockLayout, BlockPlan};
 
-/// The largest number of hidden neurons supported.
+/// Largest number of hidden neurons supported.
 pub const MOST_HIDDEN: u32 = 8;
 const PLANS: usize = MOST_HIDDEN as usize + 1;
 

@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NamedSettings {
-    /// The setting that errors of the file are reported for.
+    /// Setting that errors of the file are reported for.
     pub(crate) refused: String,
     setting: Vec<NamedSetting>,
 }
@@ -21,7 +21,7 @@ struct NamedSetting {
     /// Keys of the file.
     #[serde(default)]
     sets: Vec<String>,
-    /// The default. Without it the value of the first key in the file.
+    /// Default. Without it the value of the first key in the file.
     default: Option<toml::Value>,
     /// One number sets all numbers of a list in the file.
     #[serde(default)]
@@ -38,10 +38,10 @@ struct NamedSetting {
     unit: String,
     #[serde(default)]
     source: Source,
-    /// The conditions whose default the source states, or empty for all.
+    /// Conditions whose default the source states, or empty for all.
     #[serde(default)]
     given_in: Vec<String>,
-    /// The conditions that have the setting, or empty for all.
+    /// Conditions that have the setting, or empty for all.
     #[serde(default)]
     conditions: Vec<String>,
     doc: String,

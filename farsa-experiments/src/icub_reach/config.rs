@@ -32,9 +32,9 @@ impl Condition {
 /// A volume in the shape of half an ellipsoid. Only the part in front of its center belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// The center of the ellipsoid, relative to the center of the robot's body (in meters).
+    /// Center of the ellipsoid, relative to the center of the robot's body (in meters).
     pub centre: [f64; 3],
-    /// The semi-axes of the ellipsoid along x, y and z (in meters).
+    /// Semi-axes of the ellipsoid along x, y and z (in meters).
     pub semi_axes: [f64; 3],
 }
 
@@ -56,42 +56,42 @@ impl Volume {
 pub struct Config {
     /// Selects the inputs and the commands.
     pub condition: Condition,
-    /// The number of targets in an evaluation.
+    /// Number of targets in an evaluation.
     pub targets: u32,
     /// If true, all generations use the same targets.
     pub same_targets: bool,
-    /// The number of steps of a trial.
+    /// Number of steps of a trial.
     pub steps: u32,
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// The number of dynamics steps in each control step.
+    /// Number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The volume in which the targets are placed.
+    /// Volume in which the targets are placed.
     pub volume: Volume,
-    /// The initial pitch, roll and yaw of the trunk (in degrees).
+    /// Initial pitch, roll and yaw of the trunk (in degrees).
     pub torso: [f64; 3],
-    /// The initial angles of the seven joints of the left arm (in degrees).
+    /// Initial angles of the seven joints of the left arm (in degrees).
     pub arm: [f64; 7],
-    /// The position error at which a servo reaches the maximum effort of its joint (in radians).
+    /// Position error at which a servo reaches the maximum effort of its joint (in radians).
     pub saturation_angle: f64,
-    /// The difference between the commanded and the actual speed at which a motor reaches its maximum effort (in
+    /// Difference between the commanded and the actual speed at which a motor reaches its maximum effort (in
     /// radians per second).
     pub saturation_speed: f64,
-    /// The largest speed that the network can command (in radians per second).
+    /// Largest speed that the network can command (in radians per second).
     pub speed: f64,
-    /// The rate at which a joint that should not move returns to its angle, in 1/s. The commanded speed is proportional
+    /// Rate at which a joint that should not move returns to its angle, in 1/s. The commanded speed is proportional
     /// to the deviation.
     pub hold_rate: f64,
-    /// The distance between hand and target that is sensed as 1 along an axis (in meters). In the opposite direction it
+    /// Distance between hand and target that is sensed as 1 along an axis (in meters). In the opposite direction it
     /// is sensed as -1.
     pub offset: f64,
-    /// The length of the period at the end of a trial over which the distance is averaged (in seconds).
+    /// Length of the period at the end of a trial over which the distance is averaged (in seconds).
     pub window: f64,
     /// A lower bound of the start distance in the fitness (in meters).
     pub least_start: f64,
-    /// The mean distance below which a trial is successful (in meters).
+    /// Mean distance below which a trial is successful (in meters).
     pub success: f64,
-    /// The largest absolute value of a weight or bias.
+    /// Largest absolute value of a weight or bias.
     pub weight_range: f64,
 }
 

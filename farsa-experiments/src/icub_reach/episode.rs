@@ -28,9 +28,9 @@ impl<W> ReachingWorld for W where W: Kinematics + Joints + Handles<Body = BodyId
 /// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Reaching {
-    /// The position of the target in meters. By default each trial draws a random target.
+    /// Position of the target in meters. By default each trial draws a random target.
     pub target: Option<[f64; 3]>,
-    /// The step at which the target moves to a different position, if it moves at all.
+    /// Step at which the target moves to a different position, if it moves at all.
     pub jump: Option<u32>,
     /// If true, the trunk keeps its initial posture.
     pub locked_torso: bool,
@@ -68,12 +68,12 @@ impl<C: Reacher> ReachEpisode<C> {
         self.asked = asked;
     }
 
-    /// Returns the scene in which the episodes take place.
+    /// Gets the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Returns the controller of the hand.
+    /// Gets the controller of the hand.
     pub fn reacher(&self) -> &C {
         &self.reacher
     }
@@ -83,27 +83,27 @@ impl<C: Reacher> ReachEpisode<C> {
         &mut self.reacher
     }
 
-    /// Returns the distances that have been collected so far.
+    /// Gets the distances that have been collected so far.
     pub fn totals(&self) -> &RewardTotals {
         &self.totals
     }
 
-    /// Returns the number of steps that have been completed.
+    /// Gets the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// Returns the three inputs of the last step.
+    /// Gets the three inputs of the last step.
     pub fn sensed(&self) -> &[f32; INPUTS] {
         &self.x
     }
 
-    /// Returns the six outputs of the last step.
+    /// Gets the six outputs of the last step.
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }
 
-    /// Returns the position of the center of the palm (in meters).
+    /// Gets the position of the center of the palm (in meters).
     pub fn hand(&self) -> [f64; 3] {
         self.hand
     }

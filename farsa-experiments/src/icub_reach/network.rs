@@ -16,7 +16,7 @@ pub(crate) const HIDDEN_ONES: Span = Span::new(INPUTS, HIDDEN);
 
 static PLAN: BlockPlan = Architecture::feed_forward(INPUTS, HIDDEN, MOTORS).plan();
 
-/// The layout of a feed-forward network with 3 inputs, 4 hidden neurons and 6 outputs. The neurons are logistic and
+/// Layout of a feed-forward network with 3 inputs, 4 hidden neurons and 6 outputs. The neurons are logistic and
 /// have biases, so there are 46 parameters.
 pub static LAYOUT: BlockLayout<'static> = PLAN.layout();
 
@@ -38,7 +38,7 @@ impl Agent {
         Ok(Self { network: NormalizedController::new(network) })
     }
 
-    /// Returns the network.
+    /// Gets the network.
     pub fn network(&self) -> &NormalizedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>> {
         &self.network
     }

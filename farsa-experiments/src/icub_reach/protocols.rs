@@ -11,7 +11,7 @@ use crate::icub_reach::episode::Reaching;
 use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES, weights_on};
 use crate::icub_reach::scene::CONTROLLED;
 
-/// The number of grid points along each axis.
+/// Number of grid points along each axis.
 pub const GRID: usize = 5;
 /// Distance of the targets of `outside`, in parts of the volume's surface.
 const OUTSIDE: f64 = 1.1;

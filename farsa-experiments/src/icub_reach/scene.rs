@@ -11,7 +11,7 @@ use farsa_physics::articulated::Options;
 
 use crate::icub_reach::config::{Condition, Config};
 
-/// The names of the joints controlled by the network, in the order of its outputs.
+/// Names of the joints controlled by the network, in the order of its outputs.
 pub const CONTROLLED: [&str; 6] =
     ["torso_pitch", "torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"];
 
@@ -43,11 +43,11 @@ pub(crate) struct Burdened {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The robot simulated.
+    /// Robot simulated.
     pub robot: Robot,
-    /// The configuration from which the scene was built.
+    /// Configuration from which the scene was built.
     pub config: Config,
-    /// The center of the palm in the frame of the hand (in meters).
+    /// Center of the palm in the frame of the hand (in meters).
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,

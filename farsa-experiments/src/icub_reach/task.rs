@@ -41,7 +41,7 @@ impl ReachTask {
         &self.episode.scene().config
     }
 
-    /// Returns the current episode.
+    /// Gets the current episode.
     pub fn episode(&self) -> &ReachEpisode<Agent> {
         &self.episode
     }

@@ -24,17 +24,17 @@ impl RewardTotals {
         }
     }
 
-    /// Returns the distance at the start (in meters).
+    /// Gets the distance at the start (in meters).
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Returns the distance after the last step (in meters).
+    /// Gets the distance after the last step (in meters).
     pub fn last(&self) -> f64 {
         self.last
     }
 
-    /// Returns the mean distance in the final period (in meters). If there was no such step yet, it is the last
+    /// Computes the mean distance in the final period (in meters). If there was no such step yet, it is the last
     /// distance.
     pub fn mean(&self) -> f64 {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }

@@ -27,7 +27,7 @@ impl Agent {
         Ok(Self { network: NormalizedController::new(network) })
     }
 
-    /// Returns the network.
+    /// Gets the network.
     pub fn network(&self) -> &NormalizedController<OwnedNetwork> {
         &self.network
     }

@@ -6,9 +6,9 @@ use farsa_nn::LeakyLayout;
 
 use crate::icub_limits::{within, within_limits};
 
-/// The number of sensory neurons.
+/// Number of sensory neurons.
 pub const SENSORS: usize = 15;
-/// The number of motor neurons.
+/// Number of motor neurons.
 pub const MOTORS: usize = 10;
 
 /// The area in which the ball is placed during evolution.
@@ -24,7 +24,7 @@ pub enum Area {
 }
 
 impl Area {
-    /// The names of the conditions. Use [`Area::from_name`] to convert them.
+    /// Names of the conditions. Use [`Area::from_name`] to convert them.
     pub const NAMES: [&str; 3] = ["wide", "medium", "narrow"];
 
     /// Returns the area with the given name. An unknown name results in the widest area.
@@ -49,55 +49,55 @@ impl Area {
 /// The complete configuration of the experiment. The reasons for the values are given in the table of settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The number of trials in an evaluation.
+    /// Number of trials in an evaluation.
     pub trials: u32,
-    /// The number of control steps in a trial.
+    /// Number of control steps in a trial.
     pub steps: u32,
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// The number of dynamics steps in each control step.
+    /// Number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The x and y coordinates of the middle of the area in which the ball is placed (in meters).
+    /// X and y coordinates of the middle of the area in which the ball is placed (in meters).
     pub area_centre: [f64; 2],
-    /// The size of that area along x and y (in meters).
+    /// Size of that area along x and y (in meters).
     pub area_size: [f64; 2],
-    /// The size of the area used for the tests (in meters). It has the same middle and is divided into cells.
+    /// Size of the area used for the tests (in meters). It has the same middle and is divided into cells.
     pub tested_size: [f64; 2],
-    /// The radius of the ball in meters.
+    /// Radius of the ball in meters.
     pub ball_radius: f64,
-    /// The mass of the ball (in kilograms).
+    /// Mass of the ball (in kilograms).
     pub ball_mass: f64,
-    /// The height of the table top in meters.
+    /// Height of the table top in meters.
     pub table_top: f64,
-    /// The initial pitch, roll and yaw of the trunk (in degrees).
+    /// Initial pitch, roll and yaw of the trunk (in degrees).
     pub torso: [f64; 3],
-    /// The initial pitch, roll and yaw of the head (in degrees).
+    /// Initial pitch, roll and yaw of the head (in degrees).
     pub neck: [f64; 3],
-    /// The initial angles of the seven joints of the right arm (in degrees).
+    /// Initial angles of the seven joints of the right arm (in degrees).
     pub right_arm: [f64; 7],
-    /// The angles of the left arm, which does not move (in degrees).
+    /// Angles of the left arm, which does not move (in degrees).
     pub left_arm: [f64; 7],
-    /// The opposition of the thumb when the hand is open and when it is closed (in degrees).
+    /// Opposition of the thumb when the hand is open and when it is closed (in degrees).
     pub opposition: [f64; 2],
-    /// The flexion of the joints of the thumb and of the fingers when the hand is closed (in degrees).
+    /// Flexion of the joints of the thumb and of the fingers when the hand is closed (in degrees).
     pub flexion: [f64; 2],
-    /// The horizontal field of view of the left eye (in degrees).
+    /// Horizontal field of view of the left eye (in degrees).
     pub field_of_view: f64,
     /// If true, the head follows the ball.
     pub tracking: bool,
-    /// The fraction of the angle to the ball that the head corrects in each step.
+    /// Fraction of the angle to the ball that the head corrects in each step.
     pub head_gain: f64,
-    /// The largest speed at which the desired angles of the neck can change (in radians per second).
+    /// Largest speed at which the desired angles of the neck can change (in radians per second).
     pub head_speed: f64,
-    /// The number of hidden neurons.
+    /// Number of hidden neurons.
     pub hidden: u32,
-    /// The largest absolute value of a weight or bias.
+    /// Largest absolute value of a weight or bias.
     pub weight_range: f64,
-    /// The length of the period at the end of a trial in which touch and height are rewarded (in seconds).
+    /// Length of the period at the end of a trial in which touch and height are rewarded (in seconds).
     pub window: f64,
-    /// The height above the table at which the ball counts as lifted and the reward for height is largest (in meters).
+    /// Height above the table at which the ball counts as lifted and the reward for height is largest (in meters).
     pub height: f64,
-    /// The time for which the ball must be held up at the end of a successful trial (in seconds).
+    /// Time for which the ball must be held up at the end of a successful trial (in seconds).
     pub hold: f64,
 }
 

@@ -30,10 +30,10 @@ impl<W> GraspingWorld for W where W: Kinematics + Joints + Contacts + Handles<Bo
 /// The variable conditions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Lifting {
-    /// The cell in which the ball is placed, followed by the number of cells along x and y. By default each trial uses
+    /// Cell in which the ball is placed, followed by the number of cells along x and y. By default each trial uses
     /// a different part of the area.
     pub cell: Option<[[u32; 2]; 2]>,
-    /// The largest error of the offsets measured in the image of the eye.
+    /// Largest error of the offsets measured in the image of the eye.
     pub noise: f32,
 }
 
@@ -67,12 +67,12 @@ impl<C: Grasper> GraspEpisode<C> {
         self.asked = asked;
     }
 
-    /// Returns the scene in which the episodes take place.
+    /// Gets the scene in which the episodes take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Returns the controller of the robot.
+    /// Gets the controller of the robot.
     pub fn grasper(&self) -> &C {
         &self.grasper
     }
@@ -82,22 +82,22 @@ impl<C: Grasper> GraspEpisode<C> {
         &mut self.grasper
     }
 
-    /// Returns the observation that was made after the last step.
+    /// Gets the observation that was made after the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
 
-    /// Returns the sums that have been collected so far.
+    /// Gets the sums that have been collected so far.
     pub fn score(&self) -> &Score {
         &self.score
     }
 
-    /// Returns the 15 inputs of the last step.
+    /// Gets the 15 inputs of the last step.
     pub fn sensed(&self) -> &[f32; SENSORS] {
         &self.x
     }
 
-    /// Returns the 10 outputs of the last step.
+    /// Gets the 10 outputs of the last step.
     pub fn done(&self) -> &[f32; MOTORS] {
         &self.y
     }

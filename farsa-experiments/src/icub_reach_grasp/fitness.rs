@@ -12,17 +12,17 @@ const ONE_TOUCH: f64 = 0.25;
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The center of the palm in meters.
+    /// Center of the palm in meters.
     pub palm: [f64; 3],
-    /// The center of the ball in meters.
+    /// Center of the ball in meters.
     pub ball: [f64; 3],
-    /// The distance from the center of the palm to the surface of the ball (in meters). It is zero inside the ball.
+    /// Distance from the center of the palm to the surface of the ball (in meters). It is zero inside the ball.
     pub distance: f64,
-    /// The height of the lowest point of the ball above the table (in meters).
+    /// Height of the lowest point of the ball above the table (in meters).
     pub height: f64,
-    /// The number of parts of the hand that touch the ball.
+    /// Number of parts of the hand that touch the ball.
     pub touching: u32,
-    /// The largest opposition of two parts that touch the ball, as computed by [`opposition`].
+    /// Largest opposition of two parts that touch the ball, as computed by [`opposition`].
     pub opposition: f64,
     /// True if anything except the hand touches the ball.
     pub supported: bool,
@@ -35,7 +35,7 @@ impl Observation {
         palm.iter().chain(ball).chain([opposition]).all(|x| x.is_finite())
     }
 
-    /// Returns the share of the touch reward. This is zero without contact, a quarter if the ball is touched on one
+    /// Computes the share of the touch reward. This is zero without contact, a quarter if the ball is touched on one
     /// side, and one if it is touched on opposite sides.
     pub fn touch(&self) -> f64 {
         if self.touching == 0 { 0.0 } else { ONE_TOUCH + (1.0 - ONE_TOUCH) * self.opposition }
@@ -69,11 +69,11 @@ pub fn opposition(directions: &[[f64; 3]]) -> f64 {
 /// The sums from which the reward of a trial is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Score {
-    /// The number of steps that have been counted.
+    /// Number of steps that have been counted.
     pub steps: u32,
-    /// The number of consecutive steps up to the last one in which the ball was lifted and held.
+    /// Number of consecutive steps up to the last one in which the ball was lifted and held.
     pub held: u32,
-    /// The largest height at which the ball was held (in meters).
+    /// Largest height at which the ball was held (in meters).
     pub highest: f64,
     /// True if the ball has fallen off the table.
     pub fallen: bool,

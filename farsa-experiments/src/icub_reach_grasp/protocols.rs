@@ -9,7 +9,7 @@ use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// The number of cells along x and y into which the tested area is divided. The area is the same in all conditions.
+/// Number of cells along x and y into which the tested area is divided. The area is the same in all conditions.
 pub const CELLS: [u32; 2] = [4, 4];
 /// Trials of a case.
 const TRIALS: u32 = 24;

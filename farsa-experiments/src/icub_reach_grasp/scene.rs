@@ -28,16 +28,16 @@ struct Part {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The robot, the ball and the table.
+    /// Robot, the ball and the table.
     pub robot: Robot,
-    /// The iCub from which the description was built.
+    /// ICub from which the description was built.
     pub icub: Icub,
-    /// The configuration from which the scene was built.
+    /// Configuration from which the scene was built.
     pub config: Config,
-    /// The joints that move, with their angles at the start \[rad\].
+    /// Joints that move, with their angles at the start \[rad\].
     start: Vec<(JointId, f32)>,
     parts: [Part; PARTS],
-    /// The ball with everything but the hand.
+    /// Ball with everything but the hand.
     others: Vec<PairId>,
 }
 
@@ -46,9 +46,9 @@ pub(crate) fn wrong(error: &dyn core::fmt::Display) -> Error {
 }
 
 impl Scene {
-    /// The body of the right palm.
+    /// Body of the right palm.
     pub const PALM: BodyId = BodyId(19);
-    /// The body of the ball.
+    /// Body of the ball.
     pub const BALL: BodyId = IcubTabletop::BALL;
 
     /// Builds the scene for a configuration.

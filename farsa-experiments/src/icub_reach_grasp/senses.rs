@@ -19,7 +19,7 @@ const RANGE: f32 = 10.0;
 #[derive(Clone, Debug)]
 struct PalmPatches {
     on_ball: PairId,
-    /// The middle of the palm in its frame \[m\].
+    /// Middle of the palm in its frame \[m\].
     middle: [f32; 3],
 }
 

@@ -29,7 +29,7 @@ pub struct GraspTask {
     episode: GraspEpisode<Agent>,
     protocols: Arc<Protocols>,
     parameters: Arc<[Parameter]>,
-    /// The recorded eye, the left one.
+    /// Recorded eye, the left one.
     eye: Arc<Camera>,
 }
 
@@ -51,7 +51,7 @@ impl GraspTask {
         &self.episode.scene().config
     }
 
-    /// Returns the current episode.
+    /// Gets the current episode.
     pub fn episode(&self) -> &GraspEpisode<Agent> {
         &self.episode
     }

@@ -46,7 +46,7 @@ pub(crate) struct Record {
     pub(crate) x: Vec<f32>,
     /// Desired motor values `[ticks x 23]`.
     pub(crate) wanted: Vec<f32>,
-    /// The trial succeeded by the experiment's definition.
+    /// Trial succeeded by the experiment's definition.
     pub(crate) success: bool,
 }
 

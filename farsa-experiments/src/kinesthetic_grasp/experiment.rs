@@ -39,9 +39,9 @@ pub struct KinestheticGrasp;
 /// The configuration of `kinesthetic-grasp`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The configuration of the robot, its world, its network and its trials.
+    /// Configuration of the robot, its world, its network and its trials.
     pub reach: Reach,
-    /// The configuration of the training.
+    /// Configuration of the training.
     pub training: Training,
 }
 

@@ -22,20 +22,20 @@ const MAX_GRADIENT_NORM: f64 = 1.0;
 /// The parameters of the training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Training {
-    /// The number of demonstrations in an iteration. Each of them has a different start.
+    /// Number of demonstrations in an iteration. Each of them has a different start.
     pub demonstrations: u32,
-    /// The number of times that an iteration uses each demonstration.
+    /// Number of times that an iteration uses each demonstration.
     pub epochs: u32,
-    /// The number of demonstrations that contribute to a gradient step.
+    /// Number of demonstrations that contribute to a gradient step.
     pub batch: u32,
-    /// The initial learning rate of Adam.
+    /// Initial learning rate of Adam.
     pub rate: f64,
-    /// The number of iterations after which the learning rate is reduced to one half. It is one third after twice as
+    /// Number of iterations after which the learning rate is reduced to one half. It is one third after twice as
     /// many iterations.
     pub half_rate: f64,
-    /// The number of gradient steps over which the parameters are averaged. A value of 1 disables averaging.
+    /// Number of gradient steps over which the parameters are averaged. A value of 1 disables averaging.
     pub averaging: u32,
-    /// The number of iterations after which the network controls the last demonstration of an iteration completely.
+    /// Number of iterations after which the network controls the last demonstration of an iteration completely.
     /// With 0, the network is never mixed in.
     pub mixing: u32,
 }
@@ -52,7 +52,7 @@ pub(crate) struct Trainer {
     layout: LeakyLayout,
     leak: Leak,
     weight_range: f64,
-    /// The divisor of each sensor value in training.
+    /// Divisor of each sensor value in training.
     units: Vec<f32>,
     demonstrator: Demonstrator,
     records: Vec<Record>,

@@ -10,43 +10,43 @@ use farsa_lab::{Error, Setting, Settings};
 /// The source does not specify units for lengths and times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The width of the line on which the agent moves.
+    /// Width of the line on which the agent moves.
     pub width: f64,
-    /// The time step of the Euler method, which is used for the network and for all movements.
+    /// Time step of the Euler method, which is used for the network and for all movements.
     pub time_step: f64,
-    /// The number of trials in an evaluation. Circles and diamonds alternate.
+    /// Number of trials in an evaluation. Circles and diamonds alternate.
     pub trials: u32,
-    /// The diameter of the agent.
+    /// Diameter of the agent.
     pub body: f64,
-    /// The angle between the two outermost rays in radians.
+    /// Angle between the two outermost rays in radians.
     pub fan: f64,
-    /// The length of the rays, measured from the outline of the agent.
+    /// Length of the rays, measured from the outline of the agent.
     pub ray_length: f64,
-    /// The input from a ray that hits an object at its origin.
+    /// Input from a ray that hits an object at its origin.
     pub input_gain: f64,
-    /// The velocity of the agent when the outputs of the two motor neurons differ by 1.
+    /// Velocity of the agent when the outputs of the two motor neurons differ by 1.
     pub velocity_gain: f64,
-    /// The diameter of a circle.
+    /// Diameter of a circle.
     pub diameter: f64,
-    /// The side length of a diamond.
+    /// Side length of a diamond.
     pub side: f64,
-    /// The speed of the falling objects.
+    /// Speed of the falling objects.
     pub speed: f64,
-    /// The initial height of the center of an object above the center of the agent.
+    /// Initial height of the center of an object above the center of the agent.
     pub start_height: f64,
-    /// The height at which a trial ends.
+    /// Height at which a trial ends.
     pub end_height: f64,
-    /// The largest horizontal distance between the object and the agent at the start.
+    /// Largest horizontal distance between the object and the agent at the start.
     pub offset: f64,
-    /// The largest distance that is taken into account in the fitness.
+    /// Largest distance that is taken into account in the fitness.
     pub clip: f64,
-    /// The largest absolute value of a weight.
+    /// Largest absolute value of a weight.
     pub weight_range: f64,
-    /// The largest absolute value of a bias.
+    /// Largest absolute value of a bias.
     pub bias_range: f64,
-    /// The smallest and the largest time constant.
+    /// Smallest and the largest time constant.
     pub time_constants: [f64; 2],
-    /// The smallest and the largest gain of a sensory neuron.
+    /// Smallest and the largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 

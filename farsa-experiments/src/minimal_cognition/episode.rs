@@ -134,7 +134,7 @@ impl AgentEpisode {
         }
     }
 
-    /// Returns the configuration of the episode.
+    /// Gets the configuration of the episode.
     pub fn config(&self) -> &Config {
         &self.config
     }
@@ -166,33 +166,33 @@ impl AgentEpisode {
         self.network.observed()
     }
 
-    /// Returns the falling object.
+    /// Gets the falling object.
     pub fn object(&self) -> Object {
         self.object
     }
 
-    /// Returns the positions of the object and of the agent along the line.
+    /// Gets the positions of the object and of the agent along the line.
     pub fn places(&self) -> [f64; 2] {
         self.places
     }
 
-    /// Returns the number of steps that have been completed.
+    /// Gets the number of steps that have been completed.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// Returns the sine and the cosine of the angle of each ray. Angles are measured clockwise from the upward
+    /// Gets the sine and the cosine of the angle of each ray. Angles are measured clockwise from the upward
     /// direction.
     pub fn rays(&self) -> &[[f64; 2]; RAYS] {
         &self.rays
     }
 
-    /// Returns the seven inputs of the last step.
+    /// Gets the seven inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the outputs of the two motor neurons in the last step.
+    /// Gets the outputs of the two motor neurons in the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

@@ -86,7 +86,7 @@ pub struct Agent {
     wiring: Wiring,
     episode: AgentEpisode,
     interventions: Interventions,
-    /// The shape that falls and the part of the line where it starts, in a case of `psychophysics`.
+    /// Shape that falls and the part of the line where it starts, in a case of `psychophysics`.
     falling: Option<(Object, [f64; 2])>,
 }
 

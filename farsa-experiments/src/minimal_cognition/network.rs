@@ -6,16 +6,16 @@ use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry};
 
 use crate::minimal_cognition::config::Config;
 
-/// The number of rays, which equals the number of sensory neurons. They are ordered from left to right.
+/// Number of rays, which equals the number of sensory neurons. They are ordered from left to right.
 pub const RAYS: usize = 7;
-/// The number of inner neurons, which are ordered from left to right.
+/// Number of inner neurons, which are ordered from left to right.
 pub const INNER: usize = 5;
-/// The number of motor neurons. The first one moves the agent to the right and the second one to the left.
+/// Number of motor neurons. The first one moves the agent to the right and the second one to the left.
 pub const MOTORS: usize = 2;
-/// The total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
+/// Total number of neurons. Sensory neurons come first, followed by inner and motor neurons.
 pub const NEURONS: usize = RAYS + INNER + MOTORS;
 
-/// The layout of the network. Each ray is connected to one sensory neuron.
+/// Layout of the network. Each ray is connected to one sensory neuron.
 pub const LAYOUT: CtrnnLayout = CtrnnLayout::new(RAYS, NEURONS, MOTORS).with_direct_inputs(0);
 
 const SENSORY: Span = Span::new(0, RAYS);
@@ -82,12 +82,12 @@ impl Wiring {
         Ok(Self { symmetry, parameters })
     }
 
-    /// Returns the number of genes. This is 47.
+    /// Gets the number of genes. This is 47.
     pub fn genes(&self) -> usize {
         self.parameters.len()
     }
 
-    /// Returns the encoded parameters and their ranges. These are ordered by the first parameter of the network that
+    /// Gets the encoded parameters and their ranges. These are ordered by the first parameter of the network that
     /// they determine.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters

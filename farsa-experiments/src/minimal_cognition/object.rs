@@ -5,7 +5,7 @@
 pub enum Object {
     /// A circle, which the agent has to catch.
     Circle {
-        /// The radius of the circle.
+        /// Radius of the circle.
         radius: f64,
     },
     /// A square that is rotated by 45 degrees, which the agent has to avoid. It contains all points with |x| + |y| <=

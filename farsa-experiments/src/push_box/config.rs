@@ -10,25 +10,25 @@ use farsa_physics::arena::Arena;
 /// Lengths are in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PushConfig {
-    /// The robot that pushes the box.
+    /// Robot that pushes the box.
     pub robot: MobileRobot,
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// The number of trials in an evaluation. Each trial has a different start.
+    /// Number of trials in an evaluation. Each trial has a different start.
     pub trials: u32,
-    /// The number of steps of a trial.
+    /// Number of steps of a trial.
     pub steps: u32,
-    /// The length, width and height of the box.
+    /// Length, width and height of the box.
     pub size: [f64; 3],
-    /// The mass of the box in kilograms.
+    /// Mass of the box in kilograms.
     pub mass: f64,
-    /// The coefficient of friction between the box and the ground.
+    /// Coefficient of friction between the box and the ground.
     pub friction: f64,
-    /// The smallest and the largest initial distance between the robot and a circle around the box.
+    /// Smallest and the largest initial distance between the robot and a circle around the box.
     pub apart: [f64; 2],
-    /// The displacement of the box required in a successful trial.
+    /// Displacement of the box required in a successful trial.
     pub far: f64,
-    /// The largest absolute value of a weight or bias.
+    /// Largest absolute value of a weight or bias.
     pub weight_range: f64,
 }
 
@@ -121,12 +121,12 @@ impl PushConfig {
         0.5 * farsa_num::Scalar::sqrt(a * a + b * b)
     }
 
-    /// Returns the maximum speed of the robot, in meters per second.
+    /// Computes the maximum speed of the robot, in meters per second.
     pub fn speed(&self) -> f64 {
         self.robot.max_wheel_speed * self.robot.wheel_radius
     }
 
-    /// Returns the number of infrared sensors. These are the inputs of the controller.
+    /// Gets the number of infrared sensors. These are the inputs of the controller.
     pub fn inputs(&self) -> usize {
         self.robot.infrared.angles.len()
     }

@@ -25,15 +25,15 @@ pub(crate) const OUTPUTS: usize = 2;
 /// The measurements collected during a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PushTrial {
-    /// The number of steps that have been completed.
+    /// Number of steps that have been completed.
     pub steps: u32,
-    /// The number of steps in which the robot touched the box.
+    /// Number of steps in which the robot touched the box.
     pub touched: u32,
-    /// The horizontal distance between the first and the last position of the box (in meters).
+    /// Horizontal distance between the first and the last position of the box (in meters).
     pub moved: f64,
-    /// The length of the path of the box (in meters).
+    /// Length of the path of the box (in meters).
     pub way: f64,
-    /// The largest speed of the box at the end of a step, in meters per second.
+    /// Largest speed of the box at the end of a step, in meters per second.
     pub fastest: f64,
     /// True if a measured value was not finite.
     pub failed: bool,
@@ -117,27 +117,27 @@ impl<C: Controller> PushEpisode<C> {
         if self.trial.failed { f64::NAN } else { self.trial.moved }
     }
 
-    /// Returns the configuration of the episode.
+    /// Gets the configuration of the episode.
     pub fn config(&self) -> &PushConfig {
         &self.config
     }
 
-    /// Returns the measurements of the current trial.
+    /// Gets the measurements of the current trial.
     pub fn trial(&self) -> &PushTrial {
         &self.trial
     }
 
-    /// Returns the identifiers of the robot's parts.
+    /// Gets the identifiers of the robot's parts.
     pub fn parts(&self) -> &MobileParts {
         &self.parts
     }
 
-    /// Returns the body of the box.
+    /// Gets the body of the box.
     pub fn cube(&self) -> BodyId {
         self.cube
     }
 
-    /// Returns the controller of the robot.
+    /// Gets the controller of the robot.
     pub fn controller(&self) -> &C {
         &self.controller
     }
@@ -148,12 +148,12 @@ impl<C: Controller> PushEpisode<C> {
         self.controller = controller;
     }
 
-    /// Returns the eight inputs of the last step.
+    /// Gets the eight inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the two outputs of the last step.
+    /// Gets the two outputs of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

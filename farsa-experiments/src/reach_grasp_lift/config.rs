@@ -10,7 +10,7 @@ use farsa_physics::articulated::Options;
 use crate::reach_grasp_lift::fitness::Judgement;
 use crate::worlds::Engine;
 
-/// The number of trials in an evaluation. Each trial has a different start \[Ferrauto2010, 2.3.4\].
+/// Number of trials in an evaluation. Each trial has a different start \[Ferrauto2010, 2.3.4\].
 pub const TRIALS: usize = 4;
 
 /// Defines which individuals share the random displacements at the start of a trial.
@@ -42,91 +42,91 @@ pub struct Config {
     /// If true, the network receives a label for the current phase. This is condition A (`labels`). Condition B is
     /// `no-labels`.
     pub labels: bool,
-    /// The physics engine that simulates the robot.
+    /// Physics engine that simulates the robot.
     pub engine: Engine,
-    /// The duration of a control step (in seconds).
+    /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// The number of dynamics steps in each control step.
+    /// Number of dynamics steps in each control step.
     pub substeps: u32,
-    /// The downward acceleration of gravity (in m/s2).
+    /// Downward acceleration of gravity (in m/s2).
     pub gravity: f64,
-    /// The number of sweeps of the contact solver in each dynamics step.
+    /// Number of sweeps of the contact solver in each dynamics step.
     pub sweeps: u32,
-    /// The creep of a sticking contact, as tangential speed per impulse of a dynamics step (in m/s per N s).
+    /// Creep of a sticking contact, as tangential speed per impulse of a dynamics step (in m/s per N s).
     pub slip: f64,
-    /// The natural frequency of a joint's stop (in radians per second).
+    /// Natural frequency of a joint's stop (in radians per second).
     pub limit_frequency: f64,
-    /// The number of control steps of a trial.
+    /// Number of control steps of a trial.
     pub steps: u32,
-    /// The initial angles of the joints J1 to J4 in each trial (in degrees).
+    /// Initial angles of the joints J1 to J4 in each trial (in degrees).
     pub arm_poses: [f64; 4 * TRIALS],
-    /// The initial position (tx, ty) of the sphere in each trial (in centimeters).
+    /// Initial position (tx, ty) of the sphere in each trial (in centimeters).
     pub sphere_positions: [f64; 2 * TRIALS],
-    /// The mapping of these positions to the world.
+    /// Mapping of these positions to the world.
     pub sphere_frame: SphereFrame,
-    /// The largest random displacement of a joint at the start (in degrees).
+    /// Largest random displacement of a joint at the start (in degrees).
     pub joint_displacement: f64,
-    /// The largest random displacement of the sphere along x and y at the start (in centimeters).
+    /// Largest random displacement of the sphere along x and y at the start (in centimeters).
     pub sphere_displacement: f64,
     /// Defines which individuals share the displacements.
     pub displacement: Displacement,
-    /// The point in which the axes of the joints J1 to J3 intersect (in meters).
+    /// Point in which the axes of the joints J1 to J3 intersect (in meters).
     pub shoulder: [f64; 3],
-    /// The variant of the muscle model.
+    /// Variant of the muscle model.
     pub muscles: MuscleVariant,
-    /// The moment arm of the muscles (in meters).
+    /// Moment arm of the muscles (in meters).
     pub moment_arm: f64,
-    /// The factor that reduces the passive tension of the muscles in the original program.
+    /// Factor that reduces the passive tension of the muscles in the original program.
     pub passive_reduction: f64,
-    /// The damping of each arm joint, relative to the largest torque of its muscles (in s/rad).
+    /// Damping of each arm joint, relative to the largest torque of its muscles (in s/rad).
     pub damping: f64,
-    /// The armature of the arm joints (in kg m2).
+    /// Armature of the arm joints (in kg m2).
     pub arm_armature: f64,
-    /// The armature of the hand joints (in kg m2).
+    /// Armature of the hand joints (in kg m2).
     pub hand_armature: f64,
-    /// The position gain of the finger servos (in N m/rad).
+    /// Position gain of the finger servos (in N m/rad).
     pub servo_stiffness: f64,
-    /// The velocity gain of the finger servos (in N m s/rad).
+    /// Velocity gain of the finger servos (in N m s/rad).
     pub servo_damping: f64,
-    /// The largest force of a finger tendon (in newtons).
+    /// Largest force of a finger tendon (in newtons).
     pub servo_force: f64,
-    /// The moment arm of a finger tendon (in meters).
+    /// Moment arm of a finger tendon (in meters).
     pub tendon_radius: f64,
-    /// The passive damping of the hand joints (in N m s/rad).
+    /// Passive damping of the hand joints (in N m s/rad).
     pub hand_damping: f64,
-    /// The radius of the sphere (in meters).
+    /// Radius of the sphere (in meters).
     pub sphere_radius: f64,
-    /// The mass of the sphere (in kilograms).
+    /// Mass of the sphere (in kilograms).
     pub sphere_mass: f64,
-    /// The lower and the upper end of the table top along x (in meters).
+    /// Lower and the upper end of the table top along x (in meters).
     pub table_x: [f64; 2],
-    /// The lower and the upper end of the table top along y (in meters).
+    /// Lower and the upper end of the table top along y (in meters).
     pub table_y: [f64; 2],
-    /// The depth of the table, which is a solid block below z = 0 (in meters).
+    /// Depth of the table, which is a solid block below z = 0 (in meters).
     pub table_depth: f64,
-    /// The coefficient of sliding friction, which is the same for all surfaces.
+    /// Coefficient of sliding friction, which is the same for all surfaces.
     pub friction: f64,
-    /// The rolling friction between the sphere and the table (in meters).
+    /// Rolling friction between the sphere and the table (in meters).
     pub rolling_friction: f64,
-    /// The normal stiffness of each contact point (in N/m).
+    /// Normal stiffness of each contact point (in N/m).
     pub contact_stiffness: f64,
-    /// The normal damping of each contact point (in N s/m).
+    /// Normal damping of each contact point (in N s/m).
     pub contact_damping: f64,
-    /// The number of contacts at which a touch sensor is saturated.
+    /// Number of contacts at which a touch sensor is saturated.
     pub touch_saturation: f64,
-    /// The value of the label input for the current phase.
+    /// Value of the label input for the current phase.
     pub label_amplitude: f64,
-    /// The axes of the sensors for the position of the sphere.
+    /// Axes of the sensors for the position of the sphere.
     pub target_axes: Axes,
-    /// The number of hidden neurons in the network.
+    /// Number of hidden neurons in the network.
     pub hidden: u32,
-    /// The slope of the logistic function.
+    /// Slope of the logistic function.
     pub slope: f64,
-    /// The interpretation of the leak parameters.
+    /// Interpretation of the leak parameters.
     pub leak: Leak,
-    /// The largest absolute value of a weight or bias.
+    /// Largest absolute value of a weight or bias.
     pub weight_range: f64,
-    /// The rules that determine the reward and the success of a trial.
+    /// Rules that determine the reward and the success of a trial.
     pub judgement: Judgement,
 }
 

@@ -19,7 +19,7 @@ pub struct Judge {
     trial: Trial,
     seen: Observation,
     earned: Rewards,
-    /// The trials whose posture and place there are at the start, where they are not the trial's own.
+    /// Trials whose posture and place there are at the start, where they are not the trial's own.
     starts: Option<[usize; 2]>,
 }
 
@@ -65,22 +65,22 @@ impl Judge {
         None
     }
 
-    /// Returns the scene in which the trials take place.
+    /// Gets the scene in which the trials take place.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Returns the reward and the phase of the current trial.
+    /// Gets the reward and the phase of the current trial.
     pub fn trial(&self) -> &Trial {
         &self.trial
     }
 
-    /// Returns the observation that was made after the last step.
+    /// Gets the observation that was made after the last step.
     pub fn seen(&self) -> &Observation {
         &self.seen
     }
 
-    /// Returns the rewards of the last step.
+    /// Gets the rewards of the last step.
     pub fn earned(&self) -> &Rewards {
         &self.earned
     }
@@ -128,22 +128,22 @@ impl<C: Controller> ReachEpisode<C> {
         Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS], wrong_label: false })
     }
 
-    /// Returns the judge of the trial.
+    /// Gets the judge of the trial.
     pub fn judge(&self) -> &Judge {
         &self.judge
     }
 
-    /// Returns the sensors of the robot.
+    /// Gets the sensors of the robot.
     pub fn senses(&self) -> &Senses {
         &self.senses
     }
 
-    /// Returns the motors of the robot.
+    /// Gets the motors of the robot.
     pub fn motors(&self) -> &Motors {
         &self.motors
     }
 
-    /// Returns the controller of the robot.
+    /// Gets the controller of the robot.
     pub fn controller(&self) -> &C {
         &self.controller
     }
@@ -159,12 +159,12 @@ impl<C: Controller> ReachEpisode<C> {
         (self.judge.starts, self.wrong_label) = (starts, wrong_label);
     }
 
-    /// Returns the sensor values of the last step. There are 29 of them with labels and 26 without.
+    /// Gets the sensor values of the last step. There are 29 of them with labels and 26 without.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the 23 motor values of the last step.
+    /// Gets the 23 motor values of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }

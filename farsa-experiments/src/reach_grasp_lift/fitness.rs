@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::reach_grasp_lift::phase::{Observation, Phase};
 
-/// The largest possible sum of the reach terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
+/// Largest possible sum of the reach terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const REACH_CAP: f64 = 500.0;
-/// The largest possible sum of the grasp terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
+/// Largest possible sum of the grasp terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const GRASP_CAP: f64 = 720.0;
-/// The largest possible sum of the lift terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
+/// Largest possible sum of the lift terms over all trials of an individual \[Ferrauto2010, 2.3.4\].
 pub const LIFT_CAP: f64 = 1600.0;
 
 /// An interpretation of the contact term of the grasp reward. In the source, the typesetting reduces its fraction to
@@ -57,9 +57,9 @@ impl ContactTerm {
 /// The rules for reward and success that are not fully specified by the source.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// The interpretation of the contact term.
+    /// Interpretation of the contact term.
     pub contact_term: ContactTerm,
-    /// The height above the table that the center of the sphere must reach in a successful lift (in centimeters). The
+    /// Height above the table that the center of the sphere must reach in a successful lift (in centimeters). The
     /// default is 5. Without this limit, a sphere on a hand that rests on the table would also count as lifted.
     pub success_height: f64,
 }
@@ -73,13 +73,13 @@ impl Default for Judgement {
 /// The terms of the reward before the caps are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Rewards {
-    /// The term FR, which is the sum of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot) over all reach steps.
+    /// Term FR, which is the sum of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot) over all reach steps.
     pub reach: f64,
-    /// The term FG, which is the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
+    /// Term FG, which is the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
     pub grasp: f64,
-    /// The term FL, which is the number of lift steps in which the fingers touched the sphere and the table did not.
+    /// Term FL, which is the number of lift steps in which the fingers touched the sphere and the table did not.
     pub lift: f64,
-    /// The sum of the bonuses of all trials that have ended.
+    /// Sum of the bonuses of all trials that have ended.
     pub bonus: f64,
 }
 
@@ -125,21 +125,21 @@ impl Rewards {
 /// The state of a trial, from which its reward and its success are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Trial {
-    /// The phase after the last step. The next label indicates this phase.
+    /// Phase after the last step. The next label indicates this phase.
     pub phase: Phase,
-    /// The number of steps that have been judged.
+    /// Number of steps that have been judged.
     pub steps: u32,
-    /// The number of consecutive steps up to the last one in which the sphere touched the fingers and did not touch the
+    /// Number of consecutive steps up to the last one in which the sphere touched the fingers and did not touch the
     /// table.
     pub lifted: u32,
-    /// The number of consecutive lifted steps in which the center of the sphere was at least
+    /// Number of consecutive lifted steps in which the center of the sphere was at least
     /// [`Judgement::success_height`] above the table.
     pub held: u32,
-    /// The largest height of the sphere's center above the table so far (in centimeters).
+    /// Largest height of the sphere's center above the table so far (in centimeters).
     pub highest: f64,
     /// True if the trial ended because the sphere fell off the table.
     pub fallen: bool,
-    /// The rewards of all steps. The bonus is added at the end of the trial.
+    /// Rewards of all steps. The bonus is added at the end of the trial.
     pub rewards: Rewards,
 }
 

@@ -19,25 +19,25 @@ pub enum Phase {
 /// A snapshot of the scene after a step, from which the reward is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// The distance ds between the center of the palm and a point 5 cm above the center of the sphere (in centimeters).
+    /// Distance ds between the center of the palm and a point 5 cm above the center of the sphere (in centimeters).
     pub reach_distance: f64,
-    /// The distance graspQ between the centroid of the fingertips and the palm and the center of the sphere (in
+    /// Distance graspQ between the centroid of the fingertips and the palm and the center of the sphere (in
     /// centimeters).
     pub grasp_distance: f64,
-    /// The number of phalanges that touch the sphere. The palm is not counted.
+    /// Number of phalanges that touch the sphere. The palm is not counted.
     pub contacts: u32,
-    /// The mean openness fOpen of the 15 flexion joints. It is 0 for a closed hand and 1 for extended fingers.
+    /// Mean openness fOpen of the 15 flexion joints. It is 0 for a closed hand and 1 for extended fingers.
     pub openness: f64,
-    /// The cosine pRot of the angle between the direction of the palm and the vertical. It is 1 if the palm points down
+    /// Cosine pRot of the angle between the direction of the palm and the vertical. It is 1 if the palm points down
     /// and -1 if it points up.
     pub palm_down: f64,
     /// True if the sphere touches the table.
     pub on_table: bool,
-    /// The height of the sphere's center above the table top (in centimeters).
+    /// Height of the sphere's center above the table top (in centimeters).
     pub height: f64,
-    /// The position of the palm's center in the world (in meters). Only distances enter the reward.
+    /// Position of the palm's center in the world (in meters). Only distances enter the reward.
     pub palm: [f64; 3],
-    /// The centroid of the fingertips and the center of the palm in the world (in meters).
+    /// Centroid of the fingertips and the center of the palm in the world (in meters).
     pub grasp_centre: [f64; 3],
 }
 

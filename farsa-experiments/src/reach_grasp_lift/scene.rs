@@ -21,7 +21,7 @@ use crate::reach_grasp_lift::phase::{Observation, Phase};
 const PLAIN_SENSORS: usize = 26;
 /// Units per meter of the sphere's position: centimeters.
 pub(crate) const TARGET_SCALE: f32 = 100.0;
-/// The number of output channels. There is an activation for each of the 14 muscles, and a position for each of the 9
+/// Number of output channels. There is an activation for each of the 14 muscles, and a position for each of the 9
 /// servo groups.
 pub const OUTPUTS: usize = 23;
 
@@ -34,17 +34,17 @@ type TouchPatches = Vec<Touch<Vec<PairId>>>;
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The arm, the hand, the sphere and the table.
+    /// Arm, the hand, the sphere and the table.
     pub robot: Robot,
-    /// The arm and hand from which the description was built.
+    /// Arm and hand from which the description was built.
     pub arm: ArmAndHand,
-    /// The configuration from which the scene was built.
+    /// Configuration from which the scene was built.
     pub config: Config,
-    /// The contact pairs of the sphere and the fifteen phalanges, from the thumb to the little finger.
+    /// Contact pairs of the sphere and the fifteen phalanges, from the thumb to the little finger.
     pub sphere_on_phalanges: [PairId; 15],
-    /// The contact pair of the sphere and the palm.
+    /// Contact pair of the sphere and the palm.
     pub sphere_on_palm: PairId,
-    /// The contact pair of the sphere and the table.
+    /// Contact pair of the sphere and the table.
     pub sphere_on_table: PairId,
 }
 

@@ -27,23 +27,23 @@ const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.1
 /// The timing and the gains of the script, which were tuned by hand in two simulators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
-    /// The durations of reaching the way-point, descending, closing and lifting (in seconds). The lifted posture is
+    /// Durations of reaching the way-point, descending, closing and lifting (in seconds). The lifted posture is
     /// held for the rest of the trial.
     pub durations: [f64; 4],
-    /// The height of the palm's center above the table at the way-point (in meters).
+    /// Height of the palm's center above the table at the way-point (in meters).
     pub way_point: f64,
-    /// The height of the palm's center above the table during the grasp (in meters). It is chosen below the top of the
+    /// Height of the palm's center above the table during the grasp (in meters). It is chosen below the top of the
     /// sphere, so that the palm presses gently.
     pub palm: f64,
-    /// The distance from the palm's center to the sphere in the direction of the fingertips (in meters).
+    /// Distance from the palm's center to the sphere in the direction of the fingertips (in meters).
     pub ahead: f64,
-    /// The height by which the hand is lifted (in meters).
+    /// Height by which the hand is lifted (in meters).
     pub lift: f64,
-    /// The positions of the nine servo groups when the hand is closed around the sphere.
+    /// Positions of the nine servo groups when the hand is closed around the sphere.
     pub closed: [f64; 9],
-    /// The position gains of the feedback for J1..J7 (in N m/rad).
+    /// Position gains of the feedback for J1..J7 (in N m/rad).
     pub stiffness: [f64; 7],
-    /// The velocity gains of the feedback for J1..J7 (in N m s/rad).
+    /// Velocity gains of the feedback for J1..J7 (in N m s/rad).
     pub damping: [f64; 7],
 }
 
@@ -88,7 +88,7 @@ impl Statics {
         Ok(Self { tree, muscles, palm_centre: scene.arm.palm_centre, gravity })
     }
 
-    /// Returns the kinematic tree of the scene.
+    /// Gets the kinematic tree of the scene.
     pub fn tree(&self) -> &KinematicTree {
         &self.tree
     }
@@ -272,22 +272,22 @@ impl ScriptEpisode {
         Ok(Self { judge, motors, timetable, statics, plan: None, done: [0.0; OUTPUTS] })
     }
 
-    /// Returns the judge of the trial.
+    /// Gets the judge of the trial.
     pub fn judge(&self) -> &Judge {
         &self.judge
     }
 
-    /// Returns the static model of the arm.
+    /// Gets the static model of the arm.
     pub fn statics(&self) -> &Arc<Statics> {
         &self.statics
     }
 
-    /// Returns the plan of the trial, or `None` if the sphere is out of reach.
+    /// Gets the plan of the trial, or `None` if the sphere is out of reach.
     pub fn plan(&self) -> Option<&GraspPlan> {
         self.plan.as_ref()
     }
 
-    /// Returns the outputs of the last step.
+    /// Gets the outputs of the last step.
     pub fn done(&self) -> &[f32; OUTPUTS] {
         &self.done
     }

@@ -77,21 +77,21 @@ const BODY_PARAMETERS: usize = BODY.len();
 /// The configuration of `body-evolution`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The number of trials in an evaluation.
+    /// Number of trials in an evaluation.
     pub trials: u32,
-    /// The number of dynamics steps in each tick.
+    /// Number of dynamics steps in each tick.
     pub substeps: u32,
-    /// The environment in which the walkers move.
+    /// Environment in which the walkers move.
     pub walk: Walk,
-    /// The properties that are the same for all bodies.
+    /// Properties that are the same for all bodies.
     pub walker: Walker,
-    /// The lowest and the highest value of each kind of gene.
+    /// Lowest and the highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
-    /// The number of hidden neurons of the network, which exists only if there is a motor.
+    /// Number of hidden neurons of the network, which exists only if there is a motor.
     pub hidden: u32,
-    /// The largest absolute value of a weight.
+    /// Largest absolute value of a weight.
     pub weights: f64,
-    /// The physics engine that simulates the walkers.
+    /// Physics engine that simulates the walkers.
     pub engine: Engine,
 }
 

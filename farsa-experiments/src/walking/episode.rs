@@ -18,7 +18,7 @@ use farsa_num::{Domain, Scalar, Stream};
 use crate::walking::gait::{End, Gait, Rules};
 use crate::walking::walker::{Posture, Walker, WalkerParts};
 
-/// The number of inputs of a walker's network, which are two angles, two speeds and two touch sensors.
+/// Number of inputs of a walker's network, which are two angles, two speeds and two touch sensors.
 pub const SENSES: usize = 6;
 /// The number of last steps in the mean of the pace.
 const LAST: usize = 10;
@@ -28,41 +28,41 @@ pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 /// The initial state of a walk. Angles are measured forward from the normal of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Launch {
-    /// The angles of the stance leg and the swing leg (in radians).
+    /// Angles of the stance leg and the swing leg (in radians).
     pub angles: [f64; 2],
-    /// The angular velocities of the stance leg and the swing leg (in radians per second).
+    /// Angular velocities of the stance leg and the swing leg (in radians per second).
     pub rates: [f64; 2],
 }
 
 /// The environment of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// The slope of the ground, which descends in the walking direction (in radians).
+    /// Slope of the ground, which descends in the walking direction (in radians).
     pub slope: f64,
-    /// The acceleration of gravity (in m/s2).
+    /// Acceleration of gravity (in m/s2).
     pub gravity: f64,
-    /// The duration of a tick (in seconds).
+    /// Duration of a tick (in seconds).
     pub time_step: f64,
-    /// The largest number of ticks of a walk.
+    /// Largest number of ticks of a walk.
     pub steps: u32,
-    /// The largest relative difference between the launch rates of a trial and those of the configuration.
+    /// Largest relative difference between the launch rates of a trial and those of the configuration.
     pub noise: f64,
-    /// The rules that a walk must not violate.
+    /// Rules that a walk must not violate.
     pub rules: Rules,
 }
 
 /// Mean values over the last steps of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pace {
-    /// The backward lean of the leading leg at footfalls (in radians).
+    /// Backward lean of the leading leg at footfalls (in radians).
     pub angle: f64,
-    /// The angular velocity of that leg after the footfalls (in radians per second).
+    /// Angular velocity of that leg after the footfalls (in radians per second).
     pub rate: f64,
-    /// The angular velocity of the leg that starts to swing (in radians per second).
+    /// Angular velocity of the leg that starts to swing (in radians per second).
     pub swing_rate: f64,
-    /// The duration of a step in seconds.
+    /// Duration of a step in seconds.
     pub period: f64,
-    /// The length of a step in meters.
+    /// Length of a step in meters.
     pub length: f64,
 }
 
@@ -147,7 +147,7 @@ impl Brain {
         self.torque * (f64::from(world.position(self.hinge)) - self.angle)
     }
 
-    /// Returns the six inputs of the last step.
+    /// Gets the six inputs of the last step.
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
@@ -157,7 +157,7 @@ impl Brain {
         self.network.controller().hidden()
     }
 
-    /// Returns the output of the last step.
+    /// Gets the output of the last step.
     pub fn done(&self) -> &[f32] {
         &self.y
     }
@@ -179,7 +179,7 @@ impl Brain {
         self.network.observed()
     }
 
-    /// Returns the torque that was commanded in the last step (in newton meters).
+    /// Gets the torque that was commanded in the last step (in newton meters).
     pub fn torque(&self) -> f64 {
         self.torque
     }
@@ -192,7 +192,7 @@ pub struct WalkerEpisode {
     launch: Launch,
     gait: Gait,
     brain: Option<Brain>,
-    /// The number of steps whose pace is counted.
+    /// Number of steps whose pace is counted.
     noted: u32,
     known: usize,
     paces: [Pace; LAST],
@@ -229,22 +229,22 @@ impl WalkerEpisode {
         })
     }
 
-    /// Returns the unit of time of the walking model in seconds. This is sqrt(leg length / gravity) for the outer legs.
+    /// Computes the unit of time of the walking model in seconds. This is sqrt(leg length / gravity) for the outer legs.
     pub fn unit_of_time(&self) -> f64 {
         Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
     }
 
-    /// Returns the recorded movement of the feet.
+    /// Gets the recorded movement of the feet.
     pub fn gait(&self) -> &Gait {
         &self.gait
     }
 
-    /// Returns the network, or `None` for a passive walker.
+    /// Gets the network, or `None` for a passive walker.
     pub fn brain(&self) -> Option<&Brain> {
         self.brain.as_ref()
     }
 
-    /// Returns the environment of the walk.
+    /// Gets the environment of the walk.
     pub fn walk(&self) -> &Walk {
         &self.walk
     }

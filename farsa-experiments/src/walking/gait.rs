@@ -35,17 +35,17 @@ impl End {
 /// The rules that end a walk. Lengths are in units of the longer legs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// The smallest distance to the stance foot at which the other foot counts as ahead and can touch the ground.
+    /// Smallest distance to the stance foot at which the other foot counts as ahead and can touch the ground.
     pub shortest_step: f64,
-    /// The lowest permitted height of the hip, in units of the shorter legs.
+    /// Lowest permitted height of the hip, in units of the shorter legs.
     pub lowest_hip: f64,
-    /// The longest permitted slide of the stance foot during a step.
+    /// Longest permitted slide of the stance foot during a step.
     pub longest_slide: f64,
-    /// The longest permitted time during which both feet are off the ground (in seconds).
+    /// Longest permitted time during which both feet are off the ground (in seconds).
     pub longest_flight: f64,
-    /// The largest permitted gain of energy that is not explained by the motor, in units of weight times leg length.
+    /// Largest permitted gain of energy that is not explained by the motor, in units of weight times leg length.
     pub largest_gain: f64,
-    /// The time after a footfall at which the angular velocities can be measured (in seconds).
+    /// Time after a footfall at which the angular velocities can be measured (in seconds).
     pub settling: f64,
 }
 
@@ -65,16 +65,16 @@ impl Default for Rules {
 /// The beginning of a new step, when the swing foot touches the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Footfall {
-    /// The time at which the foot touched the ground (in seconds). It is interpolated between two ticks.
+    /// Time at which the foot touched the ground (in seconds). It is interpolated between two ticks.
     pub time: f64,
-    /// The index of the foot, which is 0 for the outer and 1 for the inner foot.
+    /// Index of the foot, which is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
-    /// The position at which the sole touched the ground (in meters).
+    /// Position at which the sole touched the ground (in meters).
     pub place: f64,
-    /// The backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model (in
+    /// Backward lean of the leg from the normal of the ground at the footfall, `theta` of the walking model (in
     /// radians).
     pub angle: f64,
-    /// The angular velocities (in rad/s) after the impact of this leg and of the leg that then swings, forward of the
+    /// Angular velocities (in rad/s) after the impact of this leg and of the leg that then swings, forward of the
     /// ground's normal. They correspond to `theta'` and `theta' - phi'` of the walking model at the footfall. Both are
     /// extrapolated linearly from the rates one and two times [`Rules::settling`] later, and are `None` until then.
     pub rates: Option<[f64; 2]>,
@@ -314,7 +314,7 @@ impl Gait {
         }
     }
 
-    /// Returns the number of steps that were made.
+    /// Gets the number of steps that were made.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -324,27 +324,27 @@ impl Gait {
         self.footfalls[1].place - self.started
     }
 
-    /// Returns the last two footfalls. The older one comes first.
+    /// Gets the last two footfalls. The older one comes first.
     pub fn footfalls(&self) -> [Footfall; 2] {
         self.footfalls
     }
 
-    /// Returns the index of the stance foot. This is 0 for the outer and 1 for the inner foot.
+    /// Gets the index of the stance foot. This is 0 for the outer and 1 for the inner foot.
     pub fn stance(&self) -> usize {
         self.stance
     }
 
-    /// Returns the posture of the walker after the last tick.
+    /// Gets the posture of the walker after the last tick.
     pub fn posture(&self) -> &Posture {
         &self.last
     }
 
-    /// Returns the number of ticks that have been judged.
+    /// Gets the number of ticks that have been judged.
     pub fn ticks(&self) -> u32 {
         self.ticks
     }
 
-    /// Returns the reason for the end of the walk, or `None` as long as it continues.
+    /// Gets the reason for the end of the walk, or `None` as long as it continues.
     pub fn end(&self) -> Option<End> {
         self.end
     }
@@ -354,12 +354,12 @@ impl Gait {
         [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
     }
 
-    /// Returns the walker.
+    /// Gets the walker.
     pub fn walker(&self) -> &Walker {
         &self.walker
     }
 
-    /// Returns the identifiers of the walker's parts.
+    /// Gets the identifiers of the walker's parts.
     pub fn parts(&self) -> &WalkerParts {
         &self.parts
     }

@@ -39,15 +39,15 @@ pub struct PassiveWalker;
 /// The configuration of `passive-walker`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The number of trials in an evaluation.
+    /// Number of trials in an evaluation.
     pub trials: u32,
-    /// The number of dynamics steps in each tick.
+    /// Number of dynamics steps in each tick.
     pub substeps: u32,
-    /// The environment in which the walker moves.
+    /// Environment in which the walker moves.
     pub walk: Walk,
-    /// The body of the walker.
+    /// Body of the walker.
     pub walker: Walker,
-    /// The physics engine that simulates the walker.
+    /// Physics engine that simulates the walker.
     pub engine: Engine,
 }
 

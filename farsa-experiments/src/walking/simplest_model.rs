@@ -12,7 +12,7 @@ const LONGEST: f64 = 20.0;
 /// By how much a state is moved for the derivatives of the return map.
 const PROBE: f64 = 1e-5;
 
-/// The smallest and the largest slope for which a long-period gait was found (in radians).
+/// Smallest and the largest slope for which a long-period gait was found (in radians).
 pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 
 /// The simplest walking model on a given slope \[Garcia1998\].
@@ -48,7 +48,7 @@ pub struct WalkingModel {
 /// The error returned for a slope without a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeError {
-    /// The slope (in radians).
+    /// Slope (in radians).
     pub slope: f64,
 }
 
@@ -64,24 +64,24 @@ impl std::error::Error for SlopeError {}
 /// The result of one step of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelStep {
-    /// The angle and the angular velocity of the new stance leg just after the strike.
+    /// Angle and the angular velocity of the new stance leg just after the strike.
     pub end: [f64; 2],
-    /// The time since the last strike, in units of sqrt(leg length / gravity).
+    /// Time since the last strike, in units of sqrt(leg length / gravity).
     pub period: f64,
 }
 
 /// A periodic gait, in which every step is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelGait {
-    /// The angle `theta*` of the stance leg just after a strike (in radians).
+    /// Angle `theta*` of the stance leg just after a strike (in radians).
     pub angle: f64,
-    /// The angular velocity `theta'*` of the stance leg (in rad sqrt(gravity / leg length)).
+    /// Angular velocity `theta'*` of the stance leg (in rad sqrt(gravity / leg length)).
     pub rate: f64,
-    /// The rate of change `phi'*` of the angle between the legs.
+    /// Rate of change `phi'*` of the angle between the legs.
     pub swing_rate: f64,
-    /// The duration of a step, in units of sqrt(leg length / gravity).
+    /// Duration of a step, in units of sqrt(leg length / gravity).
     pub period: f64,
-    /// The eigenvalues of the derivative of the return map, each as real and imaginary part.
+    /// Eigenvalues of the derivative of the return map, each as real and imaginary part.
     pub multipliers: [[f64; 2]; 2],
 }
 

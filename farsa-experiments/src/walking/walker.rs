@@ -20,13 +20,13 @@ const RAIL: f64 = 1e-9;
 /// A pair of legs that are rigidly connected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legs {
-    /// The distance from the hip to the sole in meters.
+    /// Distance from the hip to the sole in meters.
     pub length: f64,
-    /// The mass of the shanks, which is uniformly distributed between hip and sole (in kilograms).
+    /// Mass of the shanks, which is uniformly distributed between hip and sole (in kilograms).
     pub mass: f64,
-    /// The mass at the sole (in kilograms).
+    /// Mass at the sole (in kilograms).
     pub foot_mass: f64,
-    /// The radius of the round sole, whose center is on the leg (in meters).
+    /// Radius of the round sole, whose center is on the leg (in meters).
     pub foot_radius: f64,
 }
 
@@ -45,42 +45,42 @@ pub struct Legs {
 /// feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
-    /// The outer and the inner legs.
+    /// Outer and the inner legs.
     pub legs: [Legs; 2],
-    /// The mass at the hip (in kilograms).
+    /// Mass at the hip (in kilograms).
     pub hip_mass: f64,
-    /// The distance between the outer feet (in meters). The distance between the inner feet is half as large. It is
+    /// Distance between the outer feet (in meters). The distance between the inner feet is half as large. It is
     /// used in drawings and does not affect the motion in the plane.
     pub hip_spacing: f64,
-    /// The coefficient of friction between the feet and the ground.
+    /// Coefficient of friction between the feet and the ground.
     pub friction: f64,
-    /// The stiffness of the contact between a foot and the ground (in N/m).
+    /// Stiffness of the contact between a foot and the ground (in N/m).
     pub stiffness: f64,
-    /// The damping ratio of this contact for the mass of the entire walker.
+    /// Damping ratio of this contact for the mass of the entire walker.
     pub damping_ratio: f64,
-    /// The largest angle between the inner and the outer legs, in both directions (in radians).
+    /// Largest angle between the inner and the outer legs, in both directions (in radians).
     pub hip_range: f64,
-    /// The largest torque of the motor at the hip (in newton meters). A value of 0 removes the motor.
+    /// Largest torque of the motor at the hip (in newton meters). A value of 0 removes the motor.
     pub torque: f64,
 }
 
 /// The identifiers of the parts of a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkerParts {
-    /// The joints that move the hip along x and z.
+    /// Joints that move the hip along x and z.
     pub slides: [JointId; 2],
-    /// The joint between the hip and the outer legs, and the joint between the outer and the inner legs. A positive
+    /// Joint between the hip and the outer legs, and the joint between the outer and the inner legs. A positive
     /// angle moves the foot back.
     pub hinges: [JointId; 2],
-    /// The joints of the ground plates for the outer and the inner legs.
+    /// Joints of the ground plates for the outer and the inner legs.
     pub plates: [JointId; 2],
-    /// The contact pairs of the outer and the inner feet.
+    /// Contact pairs of the outer and the inner feet.
     pub soles: [PairId; 2],
-    /// The body of the hip.
+    /// Body of the hip.
     pub hip: BodyId,
-    /// The bodies of the outer and the inner legs.
+    /// Bodies of the outer and the inner legs.
     pub legs: [BodyId; 2],
-    /// The motor at the hip, or `None` for a passive walker.
+    /// Motor at the hip, or `None` for a passive walker.
     pub motor: Option<ActuatorId>,
 }
 
@@ -121,7 +121,7 @@ impl Legs {
 }
 
 impl Walker {
-    /// Returns the total mass (in kilograms).
+    /// Computes the total mass (in kilograms).
     pub fn mass(&self) -> f64 {
         self.hip_mass + self.legs.iter().map(|legs| legs.mass + legs.foot_mass).sum::<f64>()
     }
@@ -219,13 +219,13 @@ impl Walker {
 /// The position and the velocity of a walker in its plane.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Posture {
-    /// The x and z coordinates of the hip (in meters).
+    /// X and z coordinates of the hip (in meters).
     pub hip: [f64; 2],
-    /// The velocity of the hip (in meters per second).
+    /// Velocity of the hip (in meters per second).
     pub velocity: [f64; 2],
-    /// The backward rotation of the outer and the inner legs from the normal of the ground (in radians).
+    /// Backward rotation of the outer and the inner legs from the normal of the ground (in radians).
     pub angles: [f64; 2],
-    /// The angular velocities of the legs, in radians per second.
+    /// Angular velocities of the legs, in radians per second.
     pub rates: [f64; 2],
 }
 

@@ -6,9 +6,9 @@ use crate::activation::Activation;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Span {
-    /// The index of the first neuron.
+    /// Index of the first neuron.
     pub first: usize,
-    /// The number of neurons.
+    /// Number of neurons.
     pub count: usize,
 }
 
@@ -34,11 +34,11 @@ impl Span {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Group {
-    /// The number of neurons in the group.
+    /// Number of neurons in the group.
     pub neurons: usize,
-    /// The activation function. It is not applied to inputs.
+    /// Activation function. It is not applied to inputs.
     pub activation: Activation,
-    /// The factor by which the net input is multiplied.
+    /// Factor by which the net input is multiplied.
     pub slope: f32,
     /// If true, each neuron has a bias, which is the initial value of its net input. Otherwise it is 0.
     pub bias: bool,
@@ -88,11 +88,11 @@ pub enum Block {
     /// Connects all neurons of a span to all neurons of another span. The activations of the sources are multiplied by
     /// their gains and the weights and added to the net inputs of the targets.
     Connect {
-        /// The neurons from which the connections start.
+        /// Neurons from which the connections start.
         from: Span,
-        /// The neurons at which the connections end.
+        /// Neurons at which the connections end.
         to: Span,
-        /// The delay of the activations in steps. Before the first step they are 0.
+        /// Delay of the activations in steps. Before the first step they are 0.
         delay: usize,
     },
     /// Computes new activations from the net inputs.
@@ -101,9 +101,9 @@ pub enum Block {
     Gain(Span),
     /// Copies the activation of a neuron to the gains of a span.
     ModulatedGain {
-        /// The neurons whose gains are set.
+        /// Neurons whose gains are set.
         neurons: Span,
-        /// The neuron that provides the activation.
+        /// Neuron that provides the activation.
         by: usize,
     },
 }

@@ -11,11 +11,11 @@ use crate::fault::Slice;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvonetRanges {
-    /// The largest absolute value of a weight.
+    /// Largest absolute value of a weight.
     pub weight: f32,
-    /// The largest absolute value of a bias.
+    /// Largest absolute value of a bias.
     pub bias: f32,
-    /// The largest gain.
+    /// Largest gain.
     pub gain: f32,
 }
 

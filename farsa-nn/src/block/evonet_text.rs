@@ -32,12 +32,12 @@ use crate::fault::{ParameterFault, Slice};
 /// Source: `[FARSA2]`. Deviation: an unexpected line is an error, whereas the source continues.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evonet {
-    /// The layout of the network.
+    /// Layout of the network.
     pub layout: BlockLayoutBuf,
-    /// The parameters in the order of the original program. They are `None` if they are drawn by the evolution. For a
+    /// Parameters in the order of the original program. They are `None` if they are drawn by the evolution. For a
     /// `.net` file the list is empty.
     pub numbers: Vec<Option<f32>>,
-    /// The mutation rates of the parameters. They are `None` if they are set by the evolution.
+    /// Mutation rates of the parameters. They are `None` if they are set by the evolution.
     pub mutations: Vec<Option<f32>>,
 }
 
@@ -130,7 +130,7 @@ impl FromStr for Evonet {
 /// The lines that are not empty.
 struct Lines<'a> {
     rest: &'a str,
-    /// The number of the last line read, from 1.
+    /// Number of the last line read, from 1.
     line: usize,
 }
 

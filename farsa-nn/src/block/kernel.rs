@@ -18,15 +18,15 @@ pub(crate) struct Blocks<'a> {
     pub(crate) lesions: &'a [Lesion],
     pub(crate) x: &'a [f32],
     pub(crate) activations: &'a mut [f32],
-    /// The responses of the previous step.
+    /// Responses of the previous step.
     pub(crate) previous: &'a mut [f32],
     pub(crate) net: &'a mut [f32],
     pub(crate) gains: &'a mut [f32],
-    /// The values of the sources of a connection.
+    /// Values of the sources of a connection.
     pub(crate) sent: &'a mut [f32],
-    /// The initial sums, then the responses.
+    /// Initial sums, then the responses.
     pub(crate) work: &'a mut [f32],
-    /// The index of the oldest value and the delayed values of each delayed connection.
+    /// Index of the oldest value and the delayed values of each delayed connection.
     pub(crate) delays: &'a mut [f32],
 }
 

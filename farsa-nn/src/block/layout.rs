@@ -84,22 +84,22 @@ impl<'a> BlockLayout<'a> {
         Self { inputs, outputs, groups, blocks }
     }
 
-    /// Returns the number of inputs.
+    /// Gets the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Returns the number of outputs.
+    /// Gets the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Returns the groups of neurons.
+    /// Gets the groups of neurons.
     pub const fn groups(&self) -> &'a [Group] {
         self.groups
     }
 
-    /// Returns the blocks in the order of their evaluation.
+    /// Gets the blocks in the order of their evaluation.
     pub const fn blocks(&self) -> &'a [Block] {
         self.blocks
     }

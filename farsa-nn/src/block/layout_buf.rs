@@ -25,13 +25,13 @@ use crate::block::layout::BlockLayout;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlockLayoutBuf {
-    /// The number of inputs.
+    /// Number of inputs.
     pub inputs: usize,
-    /// The number of outputs.
+    /// Number of outputs.
     pub outputs: usize,
-    /// The groups of neurons.
+    /// Groups of neurons.
     pub groups: Vec<Group>,
-    /// The blocks in the order of their evaluation.
+    /// Blocks in the order of their evaluation.
     pub blocks: Vec<Block>,
 }
 

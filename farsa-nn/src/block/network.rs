@@ -69,12 +69,12 @@ impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> Network<BlockModel<'a>, P, S> {
 }
 
 impl<'a, P, S> Network<BlockModel<'a>, P, S> {
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> BlockLayout<'a> {
         self.model.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.model.leak
     }

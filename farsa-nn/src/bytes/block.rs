@@ -123,7 +123,7 @@ impl<'a> NetworkBytes<'a, BlockShape<'a>> {
         self.shape.words[1] as usize
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }

@@ -52,12 +52,12 @@ impl NetworkBytes<'_, CtrnnModel> {
         self.expect_shape(&CtrnnModel { layout, time_step })
     }
 
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> CtrnnLayout {
         self.shape.layout
     }
 
-    /// Returns the time step in seconds.
+    /// Gets the time step in seconds.
     pub const fn time_step(&self) -> f32 {
         self.shape.time_step
     }

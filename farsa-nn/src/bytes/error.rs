@@ -37,9 +37,9 @@ pub enum Table {
 pub enum BytesError {
     /// The number of bytes differs from that required by the format or the header.
     Length {
-        /// The required number of bytes.
+        /// Required number of bytes.
         expected: usize,
-        /// The actual number of bytes.
+        /// Actual number of bytes.
         found: usize,
     },
     /// The first bytes are not those of a controller.
@@ -49,36 +49,36 @@ pub enum BytesError {
     },
     /// The bytes are damaged, or they belong to a different version, kind, layout or robot.
     Mismatch {
-        /// The field that differs.
+        /// Field that differs.
         field: Field,
-        /// The expected value of the field.
+        /// Expected value of the field.
         expected: u64,
-        /// The actual value of the field.
+        /// Actual value of the field.
         found: u64,
     },
     /// A word has an invalid value.
     Word {
-        /// The table that contains the word.
+        /// Table that contains the word.
         table: Table,
-        /// The index of the word in the table.
+        /// Index of the word in the table.
         word: usize,
-        /// The invalid value.
+        /// Invalid value.
         found: u32,
     },
     /// The numbers cannot be used in place, because the address of the bytes is not aligned.
     Misaligned {
-        /// The remainder of the address.
+        /// Remainder of the address.
         remainder: usize,
-        /// The required alignment.
+        /// Required alignment.
         alignment: usize,
     },
     /// The numbers cannot be used in place, because the processor is big-endian.
     BigEndian,
     /// A buffer has the wrong length.
     Buffer {
-        /// The required length.
+        /// Required length.
         expected: usize,
-        /// The length of the buffer.
+        /// Length of the buffer.
         found: usize,
     },
     /// The layout or a parameter is invalid.

@@ -72,12 +72,12 @@ impl NetworkBytes<'_, LeakyModel> {
         self.expect_shape(&LeakyModel { layout, leak })
     }
 
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.shape.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }

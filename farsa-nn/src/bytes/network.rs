@@ -127,7 +127,7 @@ impl<'a, S: Shape<'a>> NetworkBytes<'a, S> {
         Field::Channels.check(expected, self.channels)
     }
 
-    /// Returns the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0 if it was not
+    /// Gets the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0 if it was not
     /// specified.
     pub const fn channels(&self) -> u64 {
         self.channels

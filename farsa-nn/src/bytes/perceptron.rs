@@ -49,17 +49,17 @@ impl NetworkBytes<'_, PerceptronModel> {
         self.expect_shape(&PerceptronModel { inputs, outputs, slope })
     }
 
-    /// Returns the number of inputs.
+    /// Gets the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.shape.inputs
     }
 
-    /// Returns the number of outputs.
+    /// Gets the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.shape.outputs
     }
 
-    /// Returns the slope of the logistic function.
+    /// Gets the slope of the logistic function.
     pub const fn slope(&self) -> f32 {
         self.shape.slope
     }

@@ -89,17 +89,17 @@ impl NetworkBytes<'_, QuantizedShape> {
         Field::Layout.check(layout_hash(Kind::QuantizedNetwork, &words), self.shape.hash())
     }
 
-    /// Returns the layout of the network. Its slope is not used.
+    /// Gets the layout of the network. Its slope is not used.
     pub const fn layout(&self) -> LeakyLayout {
         self.shape.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.shape.leak
     }
 
-    /// Returns the scale, which defines the positions of the binary points.
+    /// Gets the scale, which defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.shape.scale
     }

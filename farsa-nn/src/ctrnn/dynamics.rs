@@ -16,15 +16,15 @@ use crate::lesion::Lesion;
 pub(crate) struct Dynamics<'a, R = f32> {
     pub(crate) integrator: Integrator,
     pub(crate) activation: Activation,
-    /// The states.
+    /// States.
     pub(crate) y: &'a mut [R],
-    /// The outputs that belong to `y`, before and after a step.
+    /// Outputs that belong to `y`, before and after a step.
     pub(crate) o: &'a mut [R],
     /// The [`rate`] of each time constant.
     pub(crate) rates: &'a [R],
     pub(crate) biases: &'a [R],
     pub(crate) gains: &'a [R],
-    /// The external inputs, or empty.
+    /// External inputs, or empty.
     pub(crate) external: &'a [R],
     /// Inputs and their weights, source-major, or empty.
     pub(crate) inputs: (&'a [R], &'a [R]),

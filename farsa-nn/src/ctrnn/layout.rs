@@ -72,15 +72,15 @@ pub struct CtrnnLayout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CtrnnParts<'a> {
-    /// The weights from the inputs `[inputs x neurons]`. The slice is empty if inputs are direct.
+    /// Weights from the inputs `[inputs x neurons]`. The slice is empty if inputs are direct.
     pub input_weights: &'a [f32],
-    /// The weights between neurons `[neurons x neurons]`.
+    /// Weights between neurons `[neurons x neurons]`.
     pub weights: &'a [f32],
-    /// The biases of all neurons.
+    /// Biases of all neurons.
     pub biases: &'a [f32],
-    /// The gains of all neurons.
+    /// Gains of all neurons.
     pub gains: &'a [f32],
-    /// The time constants of all neurons in seconds.
+    /// Time constants of all neurons in seconds.
     pub time_constants: &'a [f32],
 }
 
@@ -123,17 +123,17 @@ impl CtrnnLayout {
         Self { activation, ..self }
     }
 
-    /// Returns the number of inputs.
+    /// Gets the number of inputs.
     pub const fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Returns the number of neurons.
+    /// Gets the number of neurons.
     pub const fn neurons(&self) -> usize {
         self.neurons
     }
 
-    /// Returns the number of outputs.
+    /// Gets the number of outputs.
     pub const fn outputs(&self) -> usize {
         self.outputs
     }
@@ -151,12 +151,12 @@ impl CtrnnLayout {
         self.first_output..self.first_output.saturating_add(self.outputs)
     }
 
-    /// Returns the integrator.
+    /// Gets the integrator.
     pub const fn integrator(&self) -> Integrator {
         self.integrator
     }
 
-    /// Returns the activation function.
+    /// Gets the activation function.
     pub const fn activation(&self) -> Activation {
         self.activation
     }

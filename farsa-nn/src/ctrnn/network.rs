@@ -61,7 +61,7 @@ pub struct CtrnnModel {
 }
 
 impl Ctrnn<(), ()> {
-    /// The largest magnitude of an input. Larger inputs are clamped.
+    /// Largest magnitude of an input. Larger inputs are clamped.
     pub const INPUT_LIMIT: f32 = 1e6;
 }
 
@@ -93,12 +93,12 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<CtrnnModel, P, S> {
 }
 
 impl<P, S> Network<CtrnnModel, P, S> {
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> CtrnnLayout {
         self.model.layout
     }
 
-    /// Returns the time step in seconds.
+    /// Gets the time step in seconds.
     pub const fn time_step(&self) -> f32 {
         self.model.time_step
     }

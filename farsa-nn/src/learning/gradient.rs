@@ -27,9 +27,9 @@ pub enum Loss {
 /// network starts at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demonstration<'a> {
-    /// The sensor values `[ticks x sensors]`.
+    /// Sensor values `[ticks x sensors]`.
     pub x: &'a [f32],
-    /// The target motor values `[ticks x outputs]`, which are in [0, 1].
+    /// Target motor values `[ticks x outputs]`, which are in [0, 1].
     pub wanted: &'a [f32],
 }
 
@@ -71,7 +71,7 @@ pub struct Gradient<R> {
     ticks: usize,
     /// For each tick: responses `[hidden]`, activations `[hidden]`, motor values `[outputs]`.
     trace: Vec<R>,
-    /// The derivatives of the cost by the activations and by the responses of a tick `[hidden]` each, and through the
+    /// Derivatives of the cost by the activations and by the responses of a tick `[hidden]` each, and through the
     /// logistic functions of a layer `[hidden or outputs]`.
     back: [Vec<R>; 3],
 }
@@ -89,17 +89,17 @@ impl<R: Real> Gradient<R> {
         Ok(Self { layout, leak, loss, sum, cost: R::default(), ticks: 0, trace: Vec::new(), back })
     }
 
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub fn leak(&self) -> Leak {
         self.leak
     }
 
-    /// Returns the sum of the gradients since the last call of [`clear`](Self::clear). It has one element per
+    /// Gets the sum of the gradients since the last call of [`clear`](Self::clear). It has one element per
     /// parameter.
     pub fn sum(&self) -> &[R] {
         &self.sum
@@ -117,7 +117,7 @@ impl<R: Real> Gradient<R> {
         if values == 0 { R::default() } else { self.cost / R::from_f64(values as f64) }
     }
 
-    /// Returns the number of ticks since the last call of [`clear`](Self::clear).
+    /// Gets the number of ticks since the last call of [`clear`](Self::clear).
     pub fn ticks(&self) -> usize {
         self.ticks
     }

@@ -45,7 +45,7 @@ pub struct Learner<R, O> {
     parameters: Vec<R>,
     memory: Vec<R>,
     limit: Option<R>,
-    /// The largest norm of a gradient.
+    /// Largest norm of a gradient.
     longest: Option<R>,
     mean: Option<Mean<R>>,
 }
@@ -53,9 +53,9 @@ pub struct Learner<R, O> {
 /// The mean of parameters over steps.
 #[derive(Clone, Debug)]
 struct Mean<R> {
-    /// The weight of each step.
+    /// Weight of each step.
     share: R,
-    /// The total weight so far, from 0 to 1, then the mean \[parameters\].
+    /// Total weight so far, from 0 to 1, then the mean \[parameters\].
     state: Vec<R>,
 }
 
@@ -166,7 +166,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         &mut self.optimizer
     }
 
-    /// Returns the current parameters.
+    /// Gets the current parameters.
     pub fn parameters(&self) -> &[R] {
         &self.parameters
     }

@@ -25,9 +25,9 @@ pub trait Optimizer<R: Real> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
-    /// The learning rate, by which the gradient is multiplied.
+    /// Learning rate, by which the gradient is multiplied.
     pub rate: f64,
-    /// The fraction of a change added to the next one, in [0, 1).
+    /// Fraction of a change added to the next one, in [0, 1).
     pub momentum: f64,
 }
 
@@ -52,9 +52,9 @@ impl<R: Real> Optimizer<R> for Momentum {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adam {
-    /// The size of a step.
+    /// Size of a step.
     pub rate: f64,
-    /// The decay rates of the mean gradient and of the mean squared gradient, each in [0, 1).
+    /// Decay rates of the mean gradient and of the mean squared gradient, each in [0, 1).
     pub decays: [f64; 2],
     /// A small number added to the root of the mean squared gradient.
     pub epsilon: f64,

@@ -169,24 +169,24 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         }
     }
 
-    /// Returns the parameters of the network.
+    /// Gets the parameters of the network.
     pub fn parameters(&self) -> &[i16] {
         self.parameters.as_ref()
     }
 }
 
 impl<P, S> QuantizedNetwork<P, S> {
-    /// Returns the layout of the network.
+    /// Gets the layout of the network.
     pub const fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
-    /// Returns the interpretation of the leaks.
+    /// Gets the interpretation of the leaks.
     pub const fn leak(&self) -> Leak {
         self.leak
     }
 
-    /// Returns the scale, which defines the positions of the binary points.
+    /// Gets the scale, which defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.scale
     }

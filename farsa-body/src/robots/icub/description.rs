@@ -61,28 +61,28 @@ pub enum JointControl {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Icub {
-    /// The position of the root link in the world (in meters).
+    /// Position of the root link in the world (in meters).
     pub root: [f64; 3],
-    /// The chains actuated, in any order. The joints of all other chains are fixed.
+    /// Chains actuated, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
-    /// The angles at which rigid chains are fixed, and the initial angles of the other chains.
+    /// Angles at which rigid chains are fixed, and the initial angles of the other chains.
     pub posture: IcubPosture,
-    /// The interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
+    /// Interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
     pub control: JointControl,
-    /// The position error at which a servo reaches the maximum effort of its joint (in radians).
+    /// Position error at which a servo reaches the maximum effort of its joint (in radians).
     pub saturation_angle: f64,
-    /// The ratio of the damping and the stiffness of a servo (in seconds).
+    /// Ratio of the damping and the stiffness of a servo (in seconds).
     pub servo_time: f64,
-    /// The speed error at which a velocity motor reaches the maximum effort of its joint (in radians per second).
+    /// Speed error at which a velocity motor reaches the maximum effort of its joint (in radians per second).
     pub saturation_speed: f64,
-    /// The viscous damping of the joints of the torso, the neck and the arms, relative to their effort (in s/rad). Its
+    /// Viscous damping of the joints of the torso, the neck and the arms, relative to their effort (in s/rad). Its
     /// inverse is the highest speed.
     pub damping_per_effort: f64,
-    /// The armature of these joints (in kg m2).
+    /// Armature of these joints (in kg m2).
     pub armature: f64,
-    /// The parameters of both hands.
+    /// Parameters of both hands.
     pub hand: Hand,
-    /// The properties of contacts of the arms and palms with the trunk, the head and the other arm.
+    /// Properties of contacts of the arms and palms with the trunk, the head and the other arm.
     pub skin: Surface,
 }
 
@@ -111,17 +111,17 @@ impl Default for Icub {
 }
 
 impl Icub {
-    /// The body of the trunk, which includes the bases of the shoulders.
+    /// Body of the trunk, which includes the bases of the shoulders.
     pub const CHEST: BodyId = BodyId(2);
-    /// The body of the head.
+    /// Body of the head.
     pub const HEAD: BodyId = BodyId(5);
-    /// The centers of the left and the right eye in the frame of the head (in meters). Their distance is 68 mm, and
+    /// Centers of the left and the right eye in the frame of the head (in meters). Their distance is 68 mm, and
     /// they cannot move.
     ///
     /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011], which describes a different
     /// version of the neck than the file.
     pub const EYES: [[f64; 3]; 2] = [[0.054, 0.034, 0.0825], [0.054, -0.034, 0.0825]];
-    /// The outward normal of the inner side of the palm, in the frame of the palm.
+    /// Outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = Hand::PALM_NORMAL;
 
     /// Returns the palm on the given side. This is the last segment of the arm.

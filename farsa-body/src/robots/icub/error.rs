@@ -11,40 +11,40 @@ use crate::robot::validation::RobotError;
 pub enum IcubError {
     /// There is no chain with this name.
     Chain {
-        /// The requested name.
+        /// Requested name.
         name: String,
     },
     /// A chain occurs twice in the list of actuated chains.
     Twice {
-        /// The name of the chain.
+        /// Name of the chain.
         chain: &'static str,
     },
     /// There is no joint with this name.
     Joint {
-        /// The requested name.
+        /// Requested name.
         name: String,
     },
     /// The joint is rigid, because its chain is not actuated.
     Locked {
-        /// The name of the joint.
+        /// Name of the joint.
         joint: String,
-        /// The name of the chain.
+        /// Name of the chain.
         chain: &'static str,
     },
     /// An angle of the posture is NaN or violates the limits of the joint.
     Posture {
-        /// The name of the joint.
+        /// Name of the joint.
         joint: String,
-        /// The invalid angle [rad].
+        /// Invalid angle [rad].
         angle: f64,
-        /// The limits of the joint [rad].
+        /// Limits of the joint [rad].
         range: [f64; 2],
     },
     /// A number is not finite or out of its range.
     Value {
-        /// The name of the field.
+        /// Name of the field.
         field: &'static str,
-        /// The invalid value.
+        /// Invalid value.
         value: f64,
     },
     /// The description that results from the configuration is invalid.

@@ -7,17 +7,17 @@ use crate::robots::icub::chain::Chain;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct IcubPosture {
-    /// The pitch, roll and yaw of the trunk.
+    /// Pitch, roll and yaw of the trunk.
     pub torso: [f64; 3],
-    /// The pitch, roll and yaw of the head.
+    /// Pitch, roll and yaw of the head.
     pub neck: [f64; 3],
-    /// The angles of the left arm.
+    /// Angles of the left arm.
     pub left_arm: [f64; 7],
-    /// The angles of the right arm.
+    /// Angles of the right arm.
     pub right_arm: [f64; 7],
-    /// The angles of J8 to J27 of the left hand.
+    /// Angles of J8 to J27 of the left hand.
     pub left_hand: [f64; 20],
-    /// The angles of J8 to J27 of the right hand.
+    /// Angles of J8 to J27 of the right hand.
     pub right_hand: [f64; 20],
 }
 

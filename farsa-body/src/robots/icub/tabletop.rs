@@ -20,25 +20,25 @@ pub struct IcubTabletop {
     pub table_x: [f64; 2],
     /// The lower and upper ends of the table along Y (in meters).
     pub table_y: [f64; 2],
-    /// The height of the table top in meters.
+    /// Height of the table top in meters.
     pub table_top: f64,
-    /// The thickness of the table, which is solid (in meters).
+    /// Thickness of the table, which is solid (in meters).
     pub table_depth: f64,
-    /// The red, green and blue components of the color of the table (between 0 and 1).
+    /// Red, green and blue components of the color of the table (between 0 and 1).
     pub table_color: [f64; 3],
-    /// The radius of the ball in meters.
+    /// Radius of the ball in meters.
     pub ball_radius: f64,
-    /// The mass of the ball, which is solid (in kilograms).
+    /// Mass of the ball, which is solid (in kilograms).
     pub ball_mass: f64,
-    /// The red, green and blue components of the color of the ball (between 0 and 1).
+    /// Red, green and blue components of the color of the ball (between 0 and 1).
     pub ball_color: [f64; 3],
-    /// The initial X and Y coordinates of the ball on the table (in meters).
+    /// Initial X and Y coordinates of the ball on the table (in meters).
     pub ball_start: [f64; 2],
-    /// The properties of contacts between the robot and the ball.
+    /// Properties of contacts between the robot and the ball.
     pub robot_on_ball: Surface,
-    /// The properties of contacts between the ball and the table.
+    /// Properties of contacts between the ball and the table.
     pub ball_on_table: Surface,
-    /// The properties of contacts between the robot and the table.
+    /// Properties of contacts between the robot and the table.
     pub robot_on_table: Surface,
 }
 
@@ -63,7 +63,7 @@ impl Default for IcubTabletop {
 }
 
 impl IcubTabletop {
-    /// The body of the ball in the description returned by [`IcubTabletop::scene`].
+    /// Body of the ball in the description returned by [`IcubTabletop::scene`].
     pub const BALL: BodyId = BodyId(60);
 
     /// Builds a description with the robot, the ball and the table. The parts of the robot come first.

@@ -35,7 +35,7 @@ impl<B: Copy> ColorBlobs<B> {
         Ok(Self { camera, bands, sums })
     }
 
-    /// Returns the camera of the sensor.
+    /// Gets the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

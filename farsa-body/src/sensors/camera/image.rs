@@ -34,7 +34,7 @@ impl<B: Copy> CameraImage<B> {
         Self { camera }
     }
 
-    /// Returns the camera of the sensor.
+    /// Gets the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

@@ -23,7 +23,7 @@ impl<B: Copy> VisualOffset<B> {
         Self { camera, of, from }
     }
 
-    /// Returns the camera of the sensor.
+    /// Gets the camera of the sensor.
     pub fn camera(&self) -> &Camera<B> {
         &self.camera
     }

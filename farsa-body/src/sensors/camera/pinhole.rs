@@ -79,12 +79,12 @@ impl<B: Copy> Camera<B> {
         Ok(Self { body, placement, size, tangent, range, own, rays, seen })
     }
 
-    /// Returns the body to which the camera is attached.
+    /// Gets the body to which the camera is attached.
     pub fn body(&self) -> B {
         self.body
     }
 
-    /// Returns the number of columns and rows of the image.
+    /// Gets the number of columns and rows of the image.
     pub fn size(&self) -> [usize; 2] {
         self.size
     }

@@ -34,9 +34,9 @@ use crate::sensors::beam::Beam;
 pub struct InfraredDrawing {
     /// Where each ray leaves the hull, and its direction, in the robot's frame.
     rays: Vec<Beam>,
-    /// The range of the sensors from the hull [m].
+    /// Range of the sensors from the hull [m].
     range: f32,
-    /// The height of the sensors [m].
+    /// Height of the sensors [m].
     height: f32,
 }
 
@@ -54,7 +54,7 @@ impl InfraredDrawing {
         }
     }
 
-    /// Returns the number of rays.
+    /// Gets the number of rays.
     pub fn count(&self) -> usize {
         self.rays.len()
     }

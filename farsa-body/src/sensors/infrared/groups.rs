@@ -86,7 +86,7 @@ impl<B: Copy> InfraredGroups<B> {
 }
 
 impl<B> InfraredGroups<B> {
-    /// Returns the latest readings of all sensors, in the order of [`crate::robots::InfraredRing::angles`].
+    /// Gets the latest readings of all sensors, in the order of [`crate::robots::InfraredRing::angles`].
     pub fn ring(&self) -> &[f32] {
         &self.ring
     }

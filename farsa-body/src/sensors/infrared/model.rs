@@ -63,7 +63,7 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
 }
 
 impl InfraredModel {
-    /// The distances from the hull at which a sensor in front of a wall reads 0 and 1 (in meters).
+    /// Distances from the hull at which a sensor in front of a wall reads 0 and 1 (in meters).
     ///
     /// These values are useful for tables of channels. Between them the reading decreases linearly with the distance.
     /// It also decreases with the angle.
@@ -84,7 +84,7 @@ impl InfraredModel {
         }
     }
 
-    /// Returns the distance from the hull at which the response ends (in meters).
+    /// Gets the distance from the hull at which the response ends (in meters).
     pub fn range(&self) -> f32 {
         self.far
     }

@@ -103,12 +103,12 @@ impl InfraredTable {
         }
     }
 
-    /// Returns the number of sensors.
+    /// Gets the number of sensors.
     pub fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// Returns the distance from the hull at which the response ends (in meters).
+    /// Computes the distance from the hull at which the response ends (in meters).
     pub fn range(&self) -> f32 {
         (self.first + self.step * self.distances as f32) / 1000.0
     }
@@ -161,64 +161,64 @@ impl<'a> Lines<'a> {
 pub enum InfraredTableError {
     /// A size in the first line is not an integer, too small or larger than 65535.
     Size {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The name of the size.
+        /// Name of the size.
         field: &'static str,
-        /// The text in the file.
+        /// Text in the file.
         found: String,
     },
     /// The number of readings in the first line is larger than the file permits.
     TooLarge {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The announced number of readings.
+        /// Announced number of readings.
         readings: u64,
     },
     /// A line contains too few or too many numbers.
     Width {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The expected number of values.
+        /// Expected number of values.
         expected: usize,
-        /// The actual number of values.
+        /// Actual number of values.
         found: usize,
     },
     /// A reading is not an integer from 0 to 1023.
     Reading {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The text in the file.
+        /// Text in the file.
         found: String,
     },
     /// The number of the next distance is missing. The preceding distance may also have too few or too many rows.
     Turn {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The number that is expected after `TURN`.
+        /// Number that is expected after `TURN`.
         expected: usize,
-        /// The text in the file.
+        /// Text in the file.
         found: String,
     },
     /// The file ends too early.
     Truncated {
-        /// The number of the missing line.
+        /// Number of the missing line.
         line: usize,
-        /// The expected content.
+        /// Expected content.
         expected: &'static str,
     },
     /// There is no line `END` after the readings.
     End {
-        /// The number of the line where it is expected.
+        /// Number of the line where it is expected.
         line: usize,
-        /// The text in the file.
+        /// Text in the file.
         found: String,
     },
     /// There is additional text after `END`.
     Garbage {
-        /// The number of the line.
+        /// Number of the line.
         line: usize,
-        /// The text in the file.
+        /// Text in the file.
         found: String,
     },
 }
