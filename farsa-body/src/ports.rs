@@ -81,7 +81,7 @@ pub trait Joints: Handles {
     fn speed(&self, joint: Self::Joint) -> f32;
 }
 
-/// Access to actuators, which can be commanded.
+/// Access to actuators that accept commands.
 #[diagnostic::on_unimplemented(message = "`{Self}` has no actuators to command (port `Actuated`)")]
 pub trait Actuated: Handles {
     /// Sets the command of an actuator. It remains active until the next command.
@@ -340,7 +340,7 @@ pub trait Sensor<W: ?Sized>: Channels {
     fn read(&mut self, world: &W, out: &mut [f32]);
 }
 
-/// A motor, which sends commands to a world.
+/// A motor that sends commands to a world.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot drive a world of type `{W}`",
     note = "the world may lack a port that the motor needs"

@@ -1,4 +1,4 @@
-//! Recorders, which receive the data of an episode and write it to a file, a page or a viewer.
+//! Recorders that receive the data of an episode and write it to a file, a page or a viewer.
 
 use crate::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
 use crate::pose::Pose;

@@ -7,10 +7,10 @@ use farsa_lab::Error;
 /// The physics engine of experiments that support several engines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Engine {
-    /// The articulated world of `farsa_physics::articulated`.
+    /// Articulated world of `farsa_physics::articulated`.
     #[default]
     Articulated,
-    /// The world of `farsa_physics::rapier`. It is only available if the feature `rapier` is enabled.
+    /// World of `farsa_physics::rapier`. It is only available if the feature `rapier` is enabled.
     Rapier,
 }
 

@@ -15,16 +15,16 @@ use crate::name::same_letters;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Activation {
-    /// The logistic function `1/(1 + exp(-x))`, with values in [0, 1].
+    /// Logistic function `1/(1 + exp(-x))`, with values in [0, 1].
     #[default]
     Logistic,
-    /// The hyperbolic tangent, with values in [-1, 1].
+    /// Hyperbolic tangent, with values in [-1, 1].
     Tanh,
-    /// The identity function.
+    /// Identity function.
     Linear,
     /// A step function, which is 1 for arguments >= 0 and 0 otherwise.
     Step,
-    /// A rectified function, which is `x` for arguments > 0 and 0 otherwise.
+    /// A rectified function. This is `x` for arguments > 0 and 0 otherwise.
     Rectified,
 }
 

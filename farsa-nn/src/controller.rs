@@ -1,6 +1,6 @@
 //! The interface of all controllers.
 
-/// A controller, which computes motor values from sensor values once per tick. It may have a memory.
+/// A controller that computes motor values from sensor values once per tick. It may have a memory.
 ///
 /// The values have no units. Their meaning is defined by the body.
 ///

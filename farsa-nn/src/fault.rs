@@ -5,11 +5,11 @@ use core::fmt;
 /// A slice whose length is determined by the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slice {
-    /// The parameters of the network.
+    /// Parameters of the network.
     Parameters,
-    /// The state of the network.
+    /// State of the network.
     State,
-    /// The mirror images of inputs or neurons.
+    /// Mirror images of inputs or neurons.
     MirrorImages,
 }
 

@@ -12,7 +12,7 @@ use crate::name::same_letters;
 /// sigma(net(t))`.
 ///
 /// The source prints one equation but describes another, and its program used a third one. Therefore each
-/// interpretation has a name, which is recorded in every run.
+/// interpretation has a name that is recorded in every run.
 ///
 /// Source: `[Ferrauto2010]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,9 +23,9 @@ pub enum Leak {
     // The source calls d the time constant of leaky-integrator neurons. The printed equation has no integrator.
     #[default]
     Filter,
-    /// The printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`, which has a memory of one step.
+    /// Printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`, which has a memory of one step.
     TwoTap,
-    /// The equation `H(t) = d*H(t-1) + (1-d)*y(t)` of the original program. Here `d` is the weight of the previous
+    /// Equation `H(t) = d*H(t-1) + (1-d)*y(t)` of the original program. Here `d` is the weight of the previous
     /// value, which is computed from a gene `p` as `|p|/range` clamped to [0, 1].
     Evonet,
 }

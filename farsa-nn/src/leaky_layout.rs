@@ -8,15 +8,15 @@ use core::ops::Range;
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum LeakyParameter {
-    /// The weight `w_ji` from sensor `j` to hidden neuron `i`.
+    /// Weight `w_ji` from sensor `j` to hidden neuron `i`.
     SensorWeight,
-    /// The weight `r_ki` from hidden neuron `k` in the previous step to hidden neuron `i`.
+    /// Weight `r_ki` from hidden neuron `k` in the previous step to hidden neuron `i`.
     RecurrentWeight,
-    /// The weight `w_ji` from hidden neuron `j` to output `i`.
+    /// Weight `w_ji` from hidden neuron `j` to output `i`.
     OutputWeight,
-    /// The bias `beta_i`, which is added to the net input of hidden neuron `i`.
+    /// Bias `beta_i` added to the net input of hidden neuron `i`.
     Bias,
-    /// The leak `d_i` of hidden neuron `i` [0..1], which is interpreted according to a [`Leak`](crate::Leak).
+    /// Leak `d_i` of hidden neuron `i` [0..1], which is interpreted according to a [`Leak`](crate::Leak).
     Leak,
 }
 

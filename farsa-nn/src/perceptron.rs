@@ -1,4 +1,4 @@
-//! A single layer of logistic units, which is sufficient for reflexes.
+//! A single layer of logistic units. This is sufficient for reflexes.
 
 use crate::error::Error;
 use crate::fault::LayoutFault;

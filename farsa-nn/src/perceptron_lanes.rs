@@ -1,4 +1,4 @@
-//! Single layers in SIMD lanes, which are used together with batches of worlds.
+//! Single layers in SIMD lanes. Use these together with batches of worlds.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Instructions, Scalar, logistic};

@@ -13,17 +13,17 @@ const LEAST: usize = PAIRS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Domain {
-    /// The starting positions and other conditions of a trial.
+    /// Starting positions and other conditions of a trial.
     Start = 0,
-    /// The noise of sensors.
+    /// Noise of sensors.
     Sensor = 1,
-    /// The noise of motors.
+    /// Noise of motors.
     Motor = 2,
-    /// The genomes of the first generation.
+    /// Genomes of the first generation.
     InitialGenome = 3,
-    /// The selection of parents, mutation and crossover.
+    /// Selection of parents, mutation and crossover.
     Mutation = 4,
-    /// The initial states and the noise of networks.
+    /// Initial states and the noise of networks.
     Network = 5,
     /// All other purposes. It is used by [`Stream::from_seed`].
     General = 6,

@@ -5,7 +5,7 @@ use farsa_num::{Real, Scalar};
 use crate::actuators::effort::Effort;
 use crate::actuators::muscle::MusclePair;
 
-/// A position servo, which acts like a spring and a damper. The effort is limited.
+/// A position servo that acts like a spring and a damper. The effort is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Servo<R> {

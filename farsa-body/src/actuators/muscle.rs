@@ -8,10 +8,10 @@ use crate::actuators::effort::Effort;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MuscleVariant {
-    /// The model as printed in the thesis, with the full passive tension and b = 0.9. See [`MusclePair::thesis`].
+    /// Model as printed in the thesis, with the full passive tension and b = 0.9. See [`MusclePair::thesis`].
     #[default]
     Thesis,
-    /// The model of the original program. The passive tension is multiplied by 0.5 and by a reduction factor, and b =
+    /// Model of the original program. The passive tension is multiplied by 0.5 and by a reduction factor, and b =
     /// 1.0. See [`MusclePair::original`].
     Original,
 }

@@ -1,4 +1,4 @@
-//! Motors, which convert values in [0, 1] to the commands of actuators.
+//! Motors that convert values in [0, 1] to the commands of actuators.
 //!
 //! | to drive | use | channels |
 //! |---|---|---|

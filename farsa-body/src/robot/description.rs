@@ -1,4 +1,4 @@
-//! The description of a robot, which consists of segments, joints, shapes, actuators and pairs that may touch.
+//! The description of a robot. This consists of segments, joints, shapes, actuators and pairs that may touch.
 
 use alloc::format;
 use alloc::string::String;
@@ -37,9 +37,9 @@ pub struct Joint {
     pub axis: [f64; 3],
     /// Frame of the joint at position 0, relative to the parent or the world.
     pub placement: Pose<f64>,
-    /// Lowest and the highest position in radians or meters. They may be infinite.
+    /// Lowest and highest position in radians or meters. They may be infinite.
     pub range: [f64; 2],
-    /// Inertia of the drive (in kg m2 or kg), which is added to that of the segment.
+    /// Inertia of the drive (in kg m2 or kg). This is added to that of the segment.
     pub armature: f64,
     /// Viscous damping (in N m s/rad or N s/m).
     pub damping: f64,
@@ -126,7 +126,7 @@ pub struct Actuator {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ground {
-    /// Body, which must be created by [`Robot::add_sliding_body`].
+    /// Body created by [`Robot::add_sliding_body`].
     pub body: BodyId,
     /// Coefficient of friction.
     pub friction: f64,

@@ -22,6 +22,6 @@ pub enum Shape {
         /// Half the edge lengths along x, y and z [m].
         half: [f64; 3],
     },
-    /// The half space z <= 0.
+    /// Half space z <= 0.
     Plane,
 }

@@ -1,4 +1,4 @@
-//! A hand with twenty joints and nine groups of servos, which can be attached to any palm on either side.
+//! A hand with twenty joints and nine groups of servos. You can attach it to any palm on either side.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -16,15 +16,15 @@ use crate::robots::mirror;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Finger {
-    /// The thumb, with the opposition J8 and the joints J9 to J11.
+    /// Thumb, with the opposition J8 and the joints J9 to J11.
     Thumb,
-    /// The index finger, with the abduction J12 and the joints J13 to J15.
+    /// Index finger, with the abduction J12 and the joints J13 to J15.
     Index,
-    /// The middle finger, with the abduction J16 and the joints J17 to J19.
+    /// Middle finger, with the abduction J16 and the joints J17 to J19.
     Middle,
-    /// The ring finger, with the abduction J20 and the joints J21 to J23.
+    /// Ring finger, with the abduction J20 and the joints J21 to J23.
     Ring,
-    /// The little finger, with the abduction J24 and the joints J25 to J27.
+    /// Little finger, with the abduction J24 and the joints J25 to J27.
     Little,
 }
 
@@ -219,7 +219,7 @@ impl Hand {
         ]
     }
 
-    /// The palm's collider, which is also the solid that has its mass.
+    /// The palm's collider. This is also the solid that has its mass.
     pub(crate) fn palm_collider(&self, wrist: &Wrist<'_>) -> Collider {
         let placement = Pose::at(wrist.point(self.palm_box));
         Collider::new(

@@ -176,15 +176,15 @@ impl MobileRobot {
 pub struct MobileParts {
     /// Body of the robot.
     pub body: BodyId,
-    /// Left and the right wheel.
+    /// Left and right wheels.
     pub wheels: [JointId; 2],
     /// Motors of the left and the right wheel. Their commands are speeds, in radians per second.
     pub motors: [ActuatorId; 2],
     /// The red, green and blue LEDs, if the robot has them. Their commands are brightnesses (between 0 and 1).
     pub leds: Option<[ActuatorId; 3]>,
-    /// Signal, whose command is its value (between 0 and 1).
+    /// Signal whose command is its value (between 0 and 1).
     pub signal: Option<ActuatorId>,
-    /// Attachment device, which holds for commands above 0.5.
+    /// Attachment device that holds for commands above 0.5.
     pub attachment: Option<ActuatorId>,
 }
 

@@ -24,7 +24,7 @@ pub struct Tabletop {
     pub table_depth: f64,
     /// Radius of the sphere (in meters).
     pub sphere_radius: f64,
-    /// Mass of the sphere, which is solid (in kilograms).
+    /// Mass of the solid sphere (in kilograms).
     pub sphere_mass: f64,
     /// Initial X and Y coordinates of the sphere on the table (in meters).
     pub sphere_start: [f64; 2],

@@ -29,10 +29,10 @@ impl<B: Copy> Point<B> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Axes {
-    /// The axes of the body that carries the sensor.
+    /// Axes of the body that carries the sensor.
     #[default]
     Body,
-    /// The axes of the world.
+    /// Axes of the world.
     World,
 }
 

@@ -53,7 +53,7 @@ impl PointWorld {
     /// Stiffness [N/m] and damping [N s/m] of the floor.
     const FLOOR: [f32; 2] = [2000.0, 20.0];
 
-    /// Creates a world with the given number of points, which are at rest on the floor.
+    /// Creates a new world with the given number of points, all at rest on the floor.
     pub fn new(points: usize) -> Self {
         Self { points: vec![Point::default(); points] }
     }

@@ -1,4 +1,4 @@
-//! Wrappers around sensors and motors, which modify their values.
+//! Wrappers that modify the values of sensors and motors.
 //!
 //! | to | use |
 //! |---|---|

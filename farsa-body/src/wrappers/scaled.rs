@@ -138,7 +138,7 @@ impl<T: Channels, M: AsMut<[f32]>> Thresholded<T, M> {
 /// the sensor.
 pub type Recorded<T, M> = Wrapped<T, Record, M>;
 
-/// The filter of [`Recorded`], which changes nothing.
+/// The filter of [`Recorded`]. This changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record;
 

@@ -1,4 +1,4 @@
-//! The common implementation of all wrappers, which passes values through a filter.
+//! The common implementation of all wrappers. This passes values through a filter.
 
 use core::ops::{Bound, Range, RangeBounds};
 

@@ -111,7 +111,7 @@ pub struct Ranges {
     pub bias: f64,
     /// Range of the time constants, as decimal logarithms of their values in seconds.
     pub time_constant_exponents: [f64; 2],
-    /// Smallest and the largest gain of a sensory neuron.
+    /// Smallest and largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 

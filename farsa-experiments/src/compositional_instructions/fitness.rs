@@ -82,7 +82,7 @@ pub struct RewardTotals {
     last_seen: [bool; 3],
     /// Least distance of the tip from the target's surface while the target was centered, 0 for a touch \[m\].
     nearest: Option<f64>,
-    /// Step that passed last.
+    /// Most recent step that passed.
     last: Observation,
 }
 

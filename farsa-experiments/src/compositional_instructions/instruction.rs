@@ -41,10 +41,10 @@ pub struct Instruction {
 /// A condition of the experiment, which defines the three actions of the agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Condition {
-    /// The actions INDICATE, TOUCH and MOVE.
+    /// Actions INDICATE, TOUCH and MOVE.
     #[default]
     WithIndicate,
-    /// The actions IGNORE, TOUCH and MOVE.
+    /// Actions IGNORE, TOUCH and MOVE.
     WithIgnore,
 }
 

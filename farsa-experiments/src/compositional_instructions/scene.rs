@@ -37,7 +37,7 @@ pub struct StartPose {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Arm and the objects, in one description.
+    /// Arm and objects in one description.
     pub robot: Robot,
     /// Configuration from which the scene was built.
     pub config: Config,

@@ -15,7 +15,7 @@ pub struct Config {
     pub velocities: bool,
     /// If true, the fitness also rewards rest \[Gruau1996\]. Otherwise it is the number of steps in balance.
     pub damping: bool,
-    /// Cart and the poles that it carries.
+    /// Cart with its poles.
     pub cart: Cart,
     /// Duration of a step of the integration (in seconds).
     pub time_step: f64,

@@ -14,7 +14,7 @@ pub const MOTORS: usize = 10;
 /// The area in which the ball is placed during evolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Area {
-    /// The full area that is used for the tests, 40 by 40 cm.
+    /// Full area that is used for the tests, 40 by 40 cm.
     #[default]
     Wide,
     /// An area of 20 by 20 cm.

@@ -30,7 +30,7 @@ struct Part {
 pub struct Scene {
     /// Robot, the ball and the table.
     pub robot: Robot,
-    /// ICub from which the description was built.
+    /// The iCub from which the description was built.
     pub icub: Icub,
     /// Configuration from which the scene was built.
     pub config: Config,

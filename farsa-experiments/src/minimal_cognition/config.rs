@@ -44,9 +44,9 @@ pub struct Config {
     pub weight_range: f64,
     /// Largest absolute value of a bias.
     pub bias_range: f64,
-    /// Smallest and the largest time constant.
+    /// Smallest and largest time constant.
     pub time_constants: [f64; 2],
-    /// Smallest and the largest gain of a sensory neuron.
+    /// Smallest and largest gain of a sensory neuron.
     pub gains: [f64; 2],
 }
 

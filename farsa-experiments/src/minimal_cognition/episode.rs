@@ -113,7 +113,7 @@ impl AgentEpisode {
         self.steps >= self.config.steps()
     }
 
-    /// Returns the height of the center of the object above the center of the agent.
+    /// Computes the height of the center of the object above the center of the agent.
     pub fn height(&self) -> f64 {
         let Config { start_height, speed, time_step, .. } = self.config;
         // Computed from the number of steps, so that rounding does not accumulate over a trial.

@@ -24,7 +24,7 @@ pub struct PushConfig {
     pub mass: f64,
     /// Coefficient of friction between the box and the ground.
     pub friction: f64,
-    /// Smallest and the largest initial distance between the robot and a circle around the box.
+    /// Smallest and largest initial distance between the robot and a circle around the box.
     pub apart: [f64; 2],
     /// Displacement of the box required in a successful trial.
     pub far: f64,
@@ -115,7 +115,7 @@ impl PushConfig {
         arena
     }
 
-    /// Returns the radius of the circle around the box, as seen from above.
+    /// Computes the radius of the circle around the box, as seen from above.
     pub fn around(&self) -> f64 {
         let [a, b, _] = self.size;
         0.5 * farsa_num::Scalar::sqrt(a * a + b * b)

@@ -26,10 +26,10 @@ pub enum Displacement {
 /// Defines how the positions (tx, ty) of the sphere in the source, in centimeters, are mapped to our world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SphereFrame {
-    /// The mapping X = ty, Y = tx. A negative tx is towards the right arm.
+    /// Mapping X = ty, Y = tx. A negative tx is towards the right arm.
     #[default]
     Forward,
-    /// The mapping X = -tx, Y = -ty, which corresponds to the axes of the iCub's root. It results in the same four
+    /// Mapping X = -tx, Y = -ty, which corresponds to the axes of the iCub's root. It results in the same four
     /// positions, but reverses their assignment to the initial postures of the arm.
     Icub,
 }
@@ -98,13 +98,13 @@ pub struct Config {
     pub sphere_radius: f64,
     /// Mass of the sphere (in kilograms).
     pub sphere_mass: f64,
-    /// Lower and the upper end of the table top along x (in meters).
+    /// Lower and upper ends of the table top along x (in meters).
     pub table_x: [f64; 2],
-    /// Lower and the upper end of the table top along y (in meters).
+    /// Lower and upper ends of the table top along y (in meters).
     pub table_y: [f64; 2],
     /// Depth of the table, which is a solid block below z = 0 (in meters).
     pub table_depth: f64,
-    /// Coefficient of sliding friction, which is the same for all surfaces.
+    /// Coefficient of sliding friction. This is the same for all surfaces.
     pub friction: f64,
     /// Rolling friction between the sphere and the table (in meters).
     pub rolling_friction: f64,

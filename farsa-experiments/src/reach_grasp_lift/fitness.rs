@@ -32,7 +32,7 @@ impl ContactTerm {
     /// All interpretations of the contact term.
     pub const ALL: [Self; 3] = [Self::Capped, Self::Literal, Self::Saturating];
 
-    /// Returns the contact term for the given number of phalanges that touch the sphere.
+    /// Computes the contact term for the given number of phalanges that touch the sphere.
     pub fn value(self, contacts: u32) -> f64 {
         let quarter = f64::from(contacts) / 4.0;
         match self {

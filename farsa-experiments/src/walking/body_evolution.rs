@@ -85,7 +85,7 @@ pub struct Config {
     pub walk: Walk,
     /// Properties that are the same for all bodies.
     pub walker: Walker,
-    /// Lowest and the highest value of each kind of gene.
+    /// Lowest and highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
     /// Number of hidden neurons of the network, which exists only if there is a motor.
     pub hidden: u32,

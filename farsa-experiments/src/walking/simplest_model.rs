@@ -1,4 +1,4 @@
-//! The simplest walking model, which consists of two massless legs, a point mass at the hip and very light feet on a
+//! The simplest walking model, consisting of two massless legs, a point mass at the hip and very light feet on a
 //! slope.
 
 use std::fmt;
@@ -12,7 +12,7 @@ const LONGEST: f64 = 20.0;
 /// By how much a state is moved for the derivatives of the return map.
 const PROBE: f64 = 1e-5;
 
-/// Smallest and the largest slope for which a long-period gait was found (in radians).
+/// Smallest and largest slope for which a long-period gait was found (in radians).
 pub const SLOPES: [f64; 2] = [1e-5, 0.06];
 
 /// The simplest walking model on a given slope \[Garcia1998\].
@@ -64,7 +64,7 @@ impl std::error::Error for SlopeError {}
 /// The result of one step of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelStep {
-    /// Angle and the angular velocity of the new stance leg just after the strike.
+    /// Angle and angular velocity of the new stance leg just after the strike.
     pub end: [f64; 2],
     /// Time since the last strike, in units of sqrt(leg length / gravity).
     pub period: f64,
@@ -86,7 +86,7 @@ pub struct ModelGait {
 }
 
 impl ModelGait {
-    /// Returns the larger absolute value of the two multipliers. If it is below 1, small disturbances decay.
+    /// Computes the larger absolute value of the two multipliers. If it is below 1, small disturbances decay.
     pub fn largest_multiplier(&self) -> f64 {
         let size = |[re, im]: [f64; 2]| Scalar::sqrt(re * re + im * im);
         size(self.multipliers[0]).max(size(self.multipliers[1]))

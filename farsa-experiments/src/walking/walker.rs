@@ -45,7 +45,7 @@ pub struct Legs {
 /// feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
-    /// Outer and the inner legs.
+    /// Outer and inner legs.
     pub legs: [Legs; 2],
     /// Mass at the hip (in kilograms).
     pub hip_mass: f64,

@@ -40,7 +40,7 @@ pub struct Group {
     pub activation: Activation,
     /// Factor by which the net input is multiplied.
     pub slope: f32,
-    /// If true, each neuron has a bias, which is the initial value of its net input. Otherwise it is 0.
+    /// If true, each neuron has a bias, and its net input starts at this value. Otherwise it is 0.
     pub bias: bool,
     /// If true, each neuron has a gain that multiplies its activation at all targets. Otherwise it is 1.
     pub gain: bool,

@@ -12,13 +12,13 @@ use crate::fault::LayoutFault;
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum BlockParameter {
-    /// The weight of a connection.
+    /// Weight of a connection.
     Weight,
-    /// The bias of a neuron.
+    /// Bias of a neuron.
     Bias,
-    /// The gain of a neuron.
+    /// Gain of a neuron.
     Gain,
-    /// The leak of a neuron [0..1].
+    /// Leak of a neuron [0..1].
     Leak,
 }
 

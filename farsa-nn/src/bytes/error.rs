@@ -8,26 +8,26 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
-    /// The version of the format, which must be supported by this program.
+    /// Version of the format. This must be supported by this program.
     Version,
     /// The CRC-32 at the end, which must match the preceding bytes.
     Checksum,
-    /// The number of the kind of controller.
+    /// Number of the kind of controller.
     Kind,
-    /// The stored hash of the layout, which must match the kind and the shape.
+    /// Stored hash of the layout. This must match the kind and the shape.
     LayoutHash,
-    /// The hash of the layout, which must be that of the caller.
+    /// Hash of the layout. This must be that of the caller.
     Layout,
-    /// The hash of the channels, which must be that of the caller.
+    /// Hash of the channels. This must be that of the caller.
     Channels,
 }
 
 /// A table of words in a binary format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// The eight words that describe the shape.
+    /// Eight words that describe the shape.
     Shape,
-    /// The description of the groups and blocks.
+    /// Description of the groups and blocks.
     Description,
 }
 

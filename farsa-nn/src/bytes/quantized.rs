@@ -99,7 +99,7 @@ impl NetworkBytes<'_, QuantizedShape> {
         self.shape.leak
     }
 
-    /// Gets the scale, which defines the positions of the binary points.
+    /// Gets the scale that defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.shape.scale
     }

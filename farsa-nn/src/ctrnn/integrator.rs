@@ -13,13 +13,13 @@ use crate::name::same_letters;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
-    /// The Euler method, `y(t+dt) = y + dt f(y)`. It is of first order and unstable if `tau < dt/2`.
+    /// Euler method, `y(t+dt) = y + dt f(y)`. It is of first order and unstable if `tau < dt/2`.
     #[default]
     Euler,
-    /// The exponential Euler method, `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`. It is of first order, exact
+    /// Exponential Euler method, `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`. It is of first order, exact
     /// for constant `net`, and stable for every `tau`.
     ExponentialEuler,
-    /// The classical fourth-order Runge-Kutta method with four evaluations per step. It is unstable if `tau <
+    /// Classical fourth-order Runge-Kutta method with four evaluations per step. It is unstable if `tau <
     /// dt/2.785`.
     #[cfg_attr(feature = "serde", serde(rename = "runge-kutta-4"))]
     RungeKutta4,

@@ -11,15 +11,15 @@ use crate::ctrnn::integrator::Integrator;
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum CtrnnParameter {
-    /// The weight `s_ki` from input `k` to neuron `i`.
+    /// Weight `s_ki` from input `k` to neuron `i`.
     InputWeight,
-    /// The weight `w_ji` from neuron `j` to neuron `i`.
+    /// Weight `w_ji` from neuron `j` to neuron `i`.
     Weight,
-    /// The bias `theta_i`, which is added to the state of neuron `i`.
+    /// Bias `theta_i` added to the state of neuron `i`.
     Bias,
-    /// The gain `g_i` of neuron `i`. It is 1 in experiments without gains.
+    /// Gain `g_i` of neuron `i`. It is 1 in experiments without gains.
     Gain,
-    /// The time constant `tau_i` of neuron `i` [s].
+    /// Time constant `tau_i` of neuron `i` [s].
     TimeConstant,
 }
 

@@ -49,7 +49,7 @@ pub struct CtrnnSymmetry<'a> {
 enum Origin {
     /// Its own gene.
     Gene,
-    /// The parameter at this lower index.
+    /// Parameter at this lower index.
     Parameter(usize),
     Constant(f32),
 }

@@ -15,10 +15,10 @@ use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Loss {
-    /// The squared error `(O - T)^2`.
+    /// Squared error `(O - T)^2`.
     #[default]
     SquaredError,
-    /// The cross entropy `-T ln O - (1-T) ln(1-O)`, minus its value for `O = T`. Wrong outputs near 0 and 1 are
+    /// Cross entropy `-T ln O - (1-T) ln(1-O)`, minus its value for `O = T`. Wrong outputs near 0 and 1 are
     /// corrected faster than with squared errors.
     CrossEntropy,
 }

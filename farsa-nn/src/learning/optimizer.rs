@@ -25,7 +25,7 @@ pub trait Optimizer<R: Real> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
-    /// Learning rate, by which the gradient is multiplied.
+    /// Learning rate. This multiplies the gradient.
     pub rate: f64,
     /// Fraction of a change added to the next one, in [0, 1).
     pub momentum: f64,

@@ -186,7 +186,7 @@ impl<P, S> QuantizedNetwork<P, S> {
         self.leak
     }
 
-    /// Gets the scale, which defines the positions of the binary points.
+    /// Gets the scale that defines the positions of the binary points.
     pub const fn scale(&self) -> QuantizedScale {
         self.scale
     }

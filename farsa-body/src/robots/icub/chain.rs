@@ -14,17 +14,17 @@ use crate::robots::icub::table::{ARM, NECK, Part, TORSO};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Chain {
-    /// The pitch, roll and yaw of the trunk.
+    /// Pitch, roll and yaw of the trunk.
     Torso,
-    /// The pitch, roll and yaw of the head.
+    /// Pitch, roll and yaw of the head.
     Neck,
-    /// The seven joints of the left arm, from the shoulder to the wrist.
+    /// Seven joints of the left arm, from the shoulder to the wrist.
     LeftArm,
-    /// The seven joints of the right arm, from the shoulder to the wrist.
+    /// Seven joints of the right arm, from the shoulder to the wrist.
     RightArm,
-    /// The twenty joints of the left hand, which are J8 to J27 of [`crate::robots::Hand`].
+    /// Twenty joints of the left hand, which are J8 to J27 of [`crate::robots::Hand`].
     LeftHand,
-    /// The twenty joints of the right hand.
+    /// Twenty joints of the right hand.
     RightHand,
 }
 
@@ -32,9 +32,9 @@ pub enum Chain {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Side {
-    /// The left side, where y > 0.
+    /// Left side, where y > 0.
     Left,
-    /// The right side, where y < 0.
+    /// Right side, where y < 0.
     Right,
 }
 

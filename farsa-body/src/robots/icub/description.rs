@@ -111,7 +111,7 @@ impl Default for Icub {
 }
 
 impl Icub {
-    /// Body of the trunk, which includes the bases of the shoulders.
+    /// Body of the trunk, including the bases of the shoulders.
     pub const CHEST: BodyId = BodyId(2);
     /// Body of the head.
     pub const HEAD: BodyId = BodyId(5);
