@@ -7,33 +7,34 @@ use serde::Serialize;
 
 use crate::experiment::network_export::NetworkExport;
 
-/// A controller with all that another program needs to run it in another world: numbers, and names of the model that
-/// `farsa export robot` writes.
+/// A controller with everything that another program needs to run it in a different world.
+///
+/// It refers to bodies, joints and actuators by their names in the model that `farsa export robot` writes.
 ///
 /// Units are SI unless a channel states otherwise. Single-precision numbers are written with the digits that single
 /// precision needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ControllerExport {
-    /// The network.
+    /// Network of the controller.
     pub network: NetworkExport,
-    /// The sensors in the order of the network's inputs.
+    /// Sensors, in the same order as the inputs of the network.
     pub sensors: Vec<SensorExport>,
-    /// The motors in the order of the network's outputs.
+    /// Motors, in the same order as the outputs of the network.
     pub motors: Vec<MotorExport>,
-    /// The laws of the actuators that motors command, in the order of the robot's description.
+    /// Laws of the actuators that motors command, in the order of the robot description.
     pub actuators: Vec<ActuatorExport>,
-    /// The surfaces of all pairs of shapes that may touch, in the order of the robot's description.
+    /// Surfaces of all pairs of shapes that may touch, in the order of the robot description.
     pub surfaces: Vec<SurfaceExport>,
-    /// Judgement of a trial, if sensors depend on it.
+    /// Judgement of a trial. This is `None` unless sensors depend on it.
     pub judge: Option<JudgeExport>,
     /// Control step \[s\].
     pub time_step: f64,
-    /// Most control steps of a trial.
+    /// Maximum number of control steps in a trial.
     pub steps: u32,
 }
 
 impl ControllerExport {
-    /// Builds a controller without actuators, surfaces or judge.
+    /// Creates a controller without actuators, surfaces or a judge. Set these fields afterwards if you need them.
     pub fn new(
         network: NetworkExport,
         sensors: Vec<SensorExport>,
@@ -45,7 +46,7 @@ impl ControllerExport {
         Self { network, sensors, motors, actuators, surfaces, judge: None, time_step, steps }
     }
 
-    /// Value of [`farsa_nn::bytes::channel_hash`] of the channel names.
+    /// Computes the [`channel_hash`](farsa_nn::bytes::channel_hash) of the names of all channels.
     pub fn channels(&self) -> u64 {
         let sensors = self.sensors.iter().map(|sensor| &sensor.name);
         channel_hash(sensors, self.motors.iter().map(|motor| &motor.name))
@@ -63,7 +64,9 @@ pub struct SensorExport {
 }
 
 impl SensorExport {
-    /// A channel that reads a quantity, 0 at `ends[0]` and 1 at `ends[1]`, in proportion between.
+    /// Creates a channel that reads a quantity.
+    ///
+    /// It reads 0 at `ends[0]` and 1 at `ends[1]`, and is linear in between.
     pub fn quantity(name: impl Into<String>, quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
         let [zero, one] = ends;
         let reads = SensorReading::Quantity { quantity: quantity.into(), unit, zero, one, linear: true };
@@ -72,7 +75,7 @@ impl SensorExport {
 }
 
 impl MotorExport {
-    /// A channel that drives a quantity, `ends[0]` at 0 and `ends[1]` at 1.
+    /// Creates a channel that drives a quantity, which is `ends[0]` at 0 and `ends[1]` at 1.
     pub fn quantity(name: impl Into<String>, quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
         let [zero, one] = ends;
         Self { name: name.into(), drives: MotorDrive::Quantity { quantity: quantity.into(), unit, zero, one } }

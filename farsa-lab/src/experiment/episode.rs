@@ -4,7 +4,9 @@ use farsa_body::Recorder;
 use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, World};
 use serde::{Deserialize, Serialize};
 
-/// Which episode of a run: every random number of an episode is drawn from a stream that these numbers name.
+/// Identifies an episode of a run.
+///
+/// These numbers select the streams that all random numbers of the episode are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct EpisodeId {
     /// Seed of the run.
@@ -18,21 +20,25 @@ pub struct EpisodeId {
 }
 
 impl EpisodeId {
-    /// The population of the individual, from 0, where each has `size` individuals (`evolution.population`).
+    /// Computes the index of the population that this individual belongs to.
+    ///
+    /// The `size` is the number of individuals in each population, which is the setting `evolution.population`.
     pub fn population(&self, size: usize) -> usize {
         self.individual as usize / size.max(1)
     }
 }
 
-/// One trial in a world of type `W`: a start, then steps until it is over.
+/// A trial in a world of type `W`, with a start and then steps until it ends.
 ///
 /// An episode steps no world: [`run_episode`] does, alone, and [`run_in_lanes`](crate::advanced::run_in_lanes) in a lane of a batch. So
 /// the same episode gives the same bits in both.
 pub trait Episode<W: ?Sized> {
-    /// Sets up the world and the episode. The previous episode is discarded.
+    /// Sets up the world and the episode. This discards the previous episode.
     fn start(&mut self, world: &mut W, id: EpisodeId);
 
-    /// Returns whether the start succeeded. Otherwise the episode ends before its first step with a return of NaN.
+    /// Checks whether the start succeeded.
+    ///
+    /// If this is `false`, the episode ends before its first step with a return of NaN.
     fn has_started(&self) -> bool {
         true
     }
@@ -42,16 +48,16 @@ pub trait Episode<W: ?Sized> {
 
     /// Judges the last step. `Some(return)` ends the episode.
     ///
-    /// A return of NaN means that the world or the controller produced a number that is not finite. The world is
-    /// mutable for surroundings that react, such as ground under a swinging foot.
+    /// Use a return of NaN if the world or the controller produced a number that is not finite. Note that the world is
+    /// mutable, since some surroundings react to the robot, such as the ground under a swinging foot.
     fn judge(&mut self, world: &mut W) -> Option<f64>;
 
-    /// Records what the sensors see where they are, after [`act`](Self::act) and before the step: their rays.
+    /// Records the rays of sensors. This is called after [`act`](Self::act) and before the world steps.
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         let _ = (world, recorder);
     }
 
-    /// Records the step that has been judged, and ends the recorder's tick.
+    /// Records the step that was just judged, and ends the tick of the recorder.
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let _ = (world, recorder);
     }
@@ -78,7 +84,7 @@ impl<W: ?Sized, E: Episode<W> + ?Sized> Episode<W> for &mut E {
     }
 }
 
-/// Runs one episode alone in `world` and returns its return. Recording does not change it.
+/// Runs a single episode in `world` and gives its return. Passing a recorder does not change the result.
 pub fn run_episode<W, E>(episode: &mut E, world: &mut W, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> f64
 where
     W: World + ?Sized,
@@ -104,7 +110,7 @@ where
     }
 }
 
-/// The empty world without a clock, for episodes that hold their whole state.
+/// An empty world without a clock. Use this if your episode already holds all of its state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct NoWorld;
 
@@ -122,7 +128,7 @@ impl World for NoWorld {
     }
 }
 
-/// Records a row of scalars and ends the recorder's tick at `time` \[s\], if there is a recorder.
+/// Records a row of scalars and ends the tick at `time` \[s\]. If there is no recorder, this does nothing.
 pub fn record_row(recorder: &mut Option<&mut dyn Recorder>, time: f64, values: &[f64]) {
     if let Some(recorder) = recorder {
         recorder.scalars(values);
@@ -130,7 +136,9 @@ pub fn record_row(recorder: &mut Option<&mut dyn Recorder>, time: f64, values: &
     }
 }
 
-/// Returns the time after `steps` steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
+/// Computes the time after the given number of steps \[s\].
+///
+/// This is rounded to the nanosecond, so that 201 steps of 0.1 s give 20.1 s.
 pub fn seconds(steps: u32, time_step: f64) -> f64 {
     (f64::from(steps) * time_step * 1e9).round() / 1e9
 }

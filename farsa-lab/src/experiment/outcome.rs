@@ -7,29 +7,30 @@ use farsa_evo::ObservationStatistics;
 /// The outcome of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
-    /// Terms of the fitness, named by [`TaskInfo::terms`](crate::TaskInfo::terms). A term that is not finite makes the
-    /// individual a failed one.
+    /// Terms of the fitness, with names given by [`TaskInfo::terms`](crate::TaskInfo::terms).
+    ///
+    /// If any of them is not finite, the individual counts as failed.
     pub terms: Vec<f64>,
     /// Steps of the episode.
     pub steps: u32,
-    /// Success of the trial. The definition may be stricter than the fitness.
+    /// Success of the trial. Note that its definition may be stricter than the fitness.
     pub success: bool,
     /// Further results for `farsa test` by name, such as `("phase", "lift".into())`. Every trial has the same names.
     pub notes: Vec<(&'static str, Note)>,
     /// Statistics of the observations if the [`Evaluation`](crate::Evaluation) normalizes them, from
     /// [`NormalizedController::observed`](crate::advanced::NormalizedController::observed).
     pub observed: Option<ObservationStatistics>,
-    /// Reason of a failure. A trial with a reason counts as failed whatever its terms are.
+    /// Reason of a failure. If this is set, the trial counts as failed, even if all terms are finite.
     pub failure: Option<Failure>,
 }
 
-/// Why a trial failed.
+/// Reason for the failure of a trial.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// It panicked: the message and the place in the source.
+    /// A panic, with its message and the position in the source.
     Panicked(String),
-    /// Not ended after this number of steps, [`TaskInfo::step_budget`](crate::TaskInfo::step_budget).
+    /// This occurs if an episode has not ended after [`TaskInfo::step_budget`](crate::TaskInfo::step_budget) steps.
     Endless(u64),
 }
 
@@ -43,7 +44,9 @@ impl fmt::Display for Failure {
 }
 
 impl Outcome {
-    /// A trial that broke down: its individual is counted as failed and ranks last.
+    /// Creates the outcome of a failed trial.
+    ///
+    /// Its only term is NaN, so the individual counts as failed and ranks last.
     pub fn failed() -> Self {
         Self { terms: vec![f64::NAN], ..Self::default() }
     }
@@ -53,7 +56,7 @@ impl Outcome {
         Self { failure: Some(Failure::Panicked(why.into())), ..Self::failed() }
     }
 
-    /// Returns whether nothing failed and all terms are finite.
+    /// Checks that there is no failure and that all terms are finite.
     pub fn is_finite(&self) -> bool {
         self.failure.is_none() && self.terms.iter().all(|term| term.is_finite())
     }
@@ -69,7 +72,9 @@ impl Outcome {
     }
 }
 
-/// The sum of all terms of all trials over their number: for experiments whose fitness is a mean.
+/// Computes the sum of all terms, divided by the number of trials.
+///
+/// Use this to implement [`Task::fitness`](crate::Task::fitness) if the fitness of your experiment is a mean over trials.
 pub fn mean_of_trials(trials: &[Outcome]) -> f64 {
     trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
 }
@@ -79,7 +84,7 @@ pub fn mean_of_trials(trials: &[Outcome]) -> f64 {
 pub enum Note {
     /// A quantity. `farsa test` prints its mean.
     Number(f64),
-    /// One of a few words. `farsa test` counts them.
+    /// A category, given by a word. `farsa test` counts how often each word occurs.
     Text(String),
 }
 
@@ -95,20 +100,20 @@ impl From<&str> for Note {
     }
 }
 
-/// The robot and its controller in `farsa info`.
+/// Description of a robot and its controller, as shown by `farsa info`.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct Description {
-    /// The sensors in the order of the network's inputs.
+    /// Sensors, in the same order as the inputs of the network.
     pub sensors: Vec<ChannelGroup>,
-    /// The motors in the order of the network's outputs.
+    /// Motors, in the same order as the outputs of the network.
     pub motors: Vec<ChannelGroup>,
-    /// The controller in one line.
+    /// Short description of the controller, in one line.
     pub network: String,
     /// Number of parameters that the genes become.
     pub parameters: usize,
-    /// Most steps of a trial.
+    /// Maximum number of steps in a trial.
     pub steps: usize,
-    /// Time between two steps \[s\]. 0 for an experiment without a clock.
+    /// Time between two steps \[s\]. Use 0 if your experiment has no clock.
     pub step_seconds: f64,
 }
 
@@ -124,7 +129,7 @@ pub struct ChannelGroup {
 }
 
 impl ChannelGroup {
-    /// A group of channels.
+    /// Creates a group with the given number of channels.
     pub fn new(name: &str, count: usize, meaning: &str) -> Self {
         Self { name: name.into(), count, meaning: meaning.into() }
     }

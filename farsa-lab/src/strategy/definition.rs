@@ -10,7 +10,7 @@ use crate::limits::Limits;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::settings::NORMALISE;
 
-/// A strategy as the command sees it: a name, a table of settings and a constructor.
+/// Describes a strategy to the command, with its name, its settings and a constructor.
 ///
 /// The strategy itself is a [`farsa_evo::Strategy`] of three methods. With both traits the command runs it, writes its
 /// checkpoints, resumes it, and replays any individual of any generation.
@@ -49,68 +49,71 @@ use crate::strategy::settings::NORMALISE;
 /// }
 /// ```
 pub trait StrategyDefinition: Sync {
-    /// The name: lower-case letters, digits and hyphens.
+    /// Name of the strategy, made of lowercase letters, digits and hyphens.
     fn name(&self) -> &'static str;
 
-    /// Returns the method in one line with its source. By default empty.
+    /// Short description of the method and its source, in one line. This is empty by default.
     fn summary(&self) -> &'static str {
         ""
     }
 
-    /// Returns the settings with their defaults, `evolution.generations` among them. An experiment may have other
-    /// defaults.
+    /// Lists the settings with their defaults.
+    ///
+    /// They must include `evolution.generations`. Note that an experiment may choose other defaults.
     fn settings(&self) -> Vec<Setting>;
 
-    /// Makes the strategy, at its first generation.
+    /// Creates the strategy at its first generation.
     ///
     /// # Errors
-    /// [`Error::setting`] for values that do not go together, [`Error::Other`] for a problem that it cannot search.
+    /// Return [`Error::setting`] if values contradict each other, and [`Error::Other`] if the strategy does not support
+    /// the problem.
     fn start(&self, start: &StrategyStart<'_>) -> Result<AnyStrategy, Error>;
 
-    /// Returns whether observations are normalized by those of all previous generations, if the experiment can
-    /// ([`TaskInfo::observations`](crate::TaskInfo::observations)). By default the value of the setting
-    /// `strategy.normalise_observations`, if there is one.
+    /// Checks whether observations should be normalized, using those of all previous generations.
+    ///
+    /// This has no effect unless the experiment supports it ([`TaskInfo::observations`](crate::TaskInfo::observations)).
+    /// By default it is the value of the setting `strategy.normalise_observations`, if there is one.
     fn normalises_observations(&self, settings: &Settings) -> bool {
         settings.has(NORMALISE) && settings.flag(NORMALISE).unwrap_or(false)
     }
 
-    /// Returns the form of [`Strategy::diagnostics`] in files and pictures, if there are any.
+    /// Describes the files and charts for [`Strategy::diagnostics`], if there are any.
     fn diagnostics(&self) -> Option<Diagnostics> {
         None
     }
 }
 
-/// The problem that a strategy is built for.
+/// A problem for a strategy to solve, as passed to [`StrategyDefinition::start`].
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct StrategyStart<'s> {
     /// Number of populations.
     pub populations: usize,
-    /// Trials of an evaluation.
+    /// Number of trials per evaluation.
     pub trials: usize,
-    /// Genes of an individual, one for each parameter of the experiment.
+    /// Number of genes of an individual, with one gene for each parameter of the experiment.
     pub genes: usize,
-    /// Bits of a gene, 1 to 16.
+    /// Number of bits of a gene, from 1 to 16.
     pub gene_bits: u32,
-    /// Objectives that the experiment names, the fitness among them.
+    /// Number of objectives of the experiment. This includes the fitness.
     pub objectives: usize,
     /// Ranges of the measures of behavior, low to high.
     pub measures: &'s [[f64; 2]],
-    /// The settings of the run.
+    /// Settings of the run.
     pub settings: &'s Settings,
-    /// The seed of the run.
+    /// Seed of the run.
     pub seed: u64,
-    /// Builds an evaluator of the run, for a strategy that evaluates something itself.
+    /// Builds an evaluator of the run. Use this only if your strategy evaluates something by itself.
     pub evaluator: &'s dyn Fn() -> Result<Box<dyn Evaluator>, Error>,
     /// Limits of the run.
     pub limits: Limits,
 }
 
 impl StrategyStart<'_> {
-    /// Returns the ranges of the measures, for a strategy of this name.
+    /// Gets the ranges of the measures, for strategies that cannot work without them.
     ///
     /// # Errors
-    /// [`Error::Other`] for an experiment without measures.
+    /// Returns [`Error::Other`] with the name of the strategy if the experiment has no measures.
     pub fn wanted_measures(&self, strategy: &str) -> Result<&[[f64; 2]], Error> {
         match self.measures {
             [] => Err(Error::Other(format!("says nothing of behaviour, which `{strategy}` wants"))),
@@ -118,10 +121,10 @@ impl StrategyStart<'_> {
         }
     }
 
-    /// The number of objectives, more than one, for a strategy of this name.
+    /// Gets the number of objectives, for strategies that need more than one.
     ///
     /// # Errors
-    /// [`Error::Other`] for an experiment with its fitness alone.
+    /// Returns [`Error::Other`] with the name of the strategy if the fitness is the only objective.
     pub fn wanted_objectives(&self, strategy: &str) -> Result<usize, Error> {
         match self.objectives {
             0 | 1 => Err(Error::Other(format!("has its fitness alone, where `{strategy}` wants several objectives"))),
@@ -129,10 +132,12 @@ impl StrategyStart<'_> {
         }
     }
 
-    /// A search over words of each population by the strategy that `search` makes of a seed.
+    /// Creates a search over integer genes.
+    ///
+    /// The closure `search` builds the strategy of each population from a seed.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the text of [`EvoError`].
+    /// If the closure fails, this returns [`Error::Usage`] with the text of its [`EvoError`].
     pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy + Snapshot + 'static,
@@ -146,10 +151,12 @@ impl StrategyStart<'_> {
         })
     }
 
-    /// A search over reals of each population by the strategy that `search` makes of a seed.
+    /// Creates a search over real numbers.
+    ///
+    /// The closure `search` builds the strategy of each population from a seed.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the text of [`EvoError`].
+    /// If the closure fails, this returns [`Error::Usage`] with the text of its [`EvoError`].
     pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy<f64> + Snapshot + 'static,
@@ -169,22 +176,24 @@ fn refused(error: &EvoError) -> Error {
     Error::Usage(error.to_string())
 }
 
-/// A table of a strategy's numbers about each generation, `FILE.csv`, and its picture, `FILE.svg`.
+/// A table with numbers of a strategy for each generation.
+///
+/// It is written to `FILE.csv`, and drawn in `FILE.svg`.
 #[derive(Clone, Copy, Debug)]
 pub struct Diagnostics {
-    /// The name of both files without its end.
+    /// Name of both files, without the extension.
     pub file: &'static str,
-    /// Pictures, top to bottom. Their curves in this order are the columns.
+    /// Charts from top to bottom. This is also the order of the columns.
     pub charts: &'static [DiagnosticsChart],
 }
 
-/// One picture of [`Diagnostics`].
+/// A single chart of [`Diagnostics`].
 #[derive(Clone, Copy, Debug)]
 pub struct DiagnosticsChart {
-    /// The title, after the name of the run.
+    /// Title of the chart, which is shown after the name of the run.
     pub title: &'static str,
     /// Title of the vertical axis.
     pub axis: &'static str,
-    /// For each curve the name of its column and its label.
+    /// Pairs of a column name and a label, one for each curve.
     pub curves: &'static [(&'static str, &'static str)],
 }

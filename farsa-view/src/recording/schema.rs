@@ -12,20 +12,23 @@ use crate::shape::scene_object::SceneObject;
 pub struct Channel {
     /// The name.
     pub name: String,
-    /// The label of pages, empty for the name.
+    /// Label for pages. If this is empty, pages show the name instead.
     pub label: String,
-    /// The unit, empty for none.
+    /// Unit of the values. This is empty for numbers without a unit.
     pub unit: String,
-    /// The group: `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator`, `force` or a custom word.
+    /// Group of the channel, such as `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator` or `force`. You
+    /// can also use a custom word.
     pub group: String,
-    /// The range of values by definition, or `None`.
+    /// Range of the values, if it is fixed by definition.
     pub range: Option<[f64; 2]>,
-    /// Words for the values 0, 1, 2 and so on, or nothing.
+    /// Words for the values 0, 1, 2 and so on. This is empty for ordinary numbers.
     pub words: Vec<String>,
 }
 
 impl Channel {
-    /// Creates a channel from its name with the unit in brackets: `"x [m]"`.
+    /// Creates a channel from its name.
+    ///
+    /// If there is a unit, add it in brackets, for example `"x [m]"`.
     pub fn new(name: &str) -> Self {
         let (name, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
             Some((name, unit)) => (name, unit),
@@ -34,27 +37,27 @@ impl Channel {
         Self { name: name.into(), unit: unit.into(), ..Self::default() }
     }
 
-    /// Returns the channel with a label, which pages show instead of its name.
+    /// Sets the label, which pages show instead of the name.
     pub fn labelled(self, label: &str) -> Self {
         Self { label: label.into(), ..self }
     }
 
-    /// Returns the channel in a group.
+    /// Sets the group of the channel.
     pub fn group(self, group: &str) -> Self {
         Self { group: group.into(), ..self }
     }
 
-    /// Returns the channel with the range of its values.
+    /// Sets the range of the values.
     pub fn range(self, low: f64, high: f64) -> Self {
         Self { range: Some([low, high]), ..self }
     }
 
-    /// Returns the channel with words for the values 0, 1, 2 and so on.
+    /// Sets words for the values 0, 1, 2 and so on.
     pub fn words(self, words: &[&str]) -> Self {
         Self { words: words.iter().map(|&word| word.into()).collect(), ..self }
     }
 
-    /// Returns name and unit as in [`Channel::new`].
+    /// Formats the name and the unit, in the same way as [`Channel::new`] expects them.
     pub fn title(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
     }
@@ -65,7 +68,7 @@ impl Channel {
 pub struct ImageChannel {
     /// The name.
     pub name: String,
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [usize; 2],
     /// The outer corners of the first and the last pixel on the ground [m], if it is an image there.
     pub ground: Option<[[f64; 2]; 2]>,
@@ -79,8 +82,8 @@ impl ImageChannel {
 
     /// Places the image on the ground, from the corner of its first pixel to that of its last one [m], with columns along x.
     ///
-    /// Each pixel that is not black is a mark on the ground in its color. Only changes are stored. A tick without pixels leaves
-    /// the image unchanged. Images of more than 65535 pixels are not stored.
+    /// Each pixel that is not black becomes a mark on the ground. This only stores changes, so a tick without pixels leaves
+    /// the image as it is. Note that images with more than 65535 pixels are not stored at all.
     pub fn on_ground(self, from: [f64; 2], to: [f64; 2]) -> Self {
         Self { ground: Some([from, to]), ..self }
     }
@@ -115,7 +118,7 @@ pub struct NodeParameters {
     pub first: usize,
 }
 
-/// The names and order of everything that a recorder receives in an episode.
+/// Names and order of all values that a recorder receives in an episode.
 ///
 /// ```
 /// use farsa_body::robots::ArmAndHand;
@@ -128,29 +131,29 @@ pub struct NodeParameters {
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Schema {
-    /// The bodies with their shapes, `None` without any.
+    /// Robot or scene with the bodies and their shapes.
     pub robot: Option<Robot>,
-    /// The names of bodies without a robot, by index.
+    /// Names of the bodies by index. This is only used if there is no robot.
     pub bodies: Vec<String>,
     /// Further visible objects.
     pub objects: Vec<SceneObject>,
-    /// The sensors.
+    /// Sensors of the controller.
     pub sensors: Vec<Channel>,
-    /// The neurons between sensors and motors.
+    /// Neurons between sensors and motors.
     pub neurons: Vec<Channel>,
-    /// The outputs of the controller.
+    /// Outputs of the controller.
     pub outputs: Vec<Channel>,
     /// Further named values.
     pub scalars: Vec<Channel>,
     /// Further points, by index.
     pub points: Vec<String>,
-    /// The images of cameras and those on the ground, by index.
+    /// Images of cameras and images on the ground, by index.
     pub images: Vec<ImageChannel>,
-    /// The links between nodes, for a picture of the network.
+    /// Links between nodes. These are needed to draw the network.
     pub links: Vec<Links>,
     /// Further parameters of nodes.
     pub node_parameters: Vec<NodeParameters>,
-    /// The initial camera of a page.
+    /// Initial camera of a page.
     pub view: View,
 }
 
@@ -159,32 +162,32 @@ fn channels<N: AsRef<str>>(names: impl IntoIterator<Item = N>, group: &str) -> V
 }
 
 impl Schema {
-    /// Creates a schema of the bodies of a robot or scene.
+    /// Creates a schema with the bodies of a robot or scene, and without channels.
     pub fn from_robot(robot: &Robot) -> Self {
         Self { robot: Some(robot.clone()), ..Self::default() }
     }
 
-    /// Creates a schema of named values with units in brackets: `["x [m]"]`.
+    /// Creates a schema with named values. Units are given in brackets, as in `["x [m]"]`.
     pub fn from_scalars<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> Self {
         Self::default().with_scalars(names)
     }
 
-    /// Returns the schema with these sensors.
+    /// Sets the names of the sensors.
     pub fn with_sensors<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { sensors: channels(names, "sensor"), ..self }
     }
 
-    /// Returns the schema with these outputs.
+    /// Sets the names of the outputs.
     pub fn with_outputs<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { outputs: channels(names, "output"), ..self }
     }
 
-    /// Returns the schema with further named values.
+    /// Sets the names of further values. This replaces earlier ones.
     pub fn with_scalars<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { scalars: channels(names, "value"), ..self }
     }
 
-    /// Returns the schema with labels for its present channels, as pairs of a name and a label.
+    /// Sets labels for existing channels, given as pairs of a name and a label.
     ///
     /// A pair matches a channel of that name, and one whose name starts with it and a space: `("J4", "elbow")` labels
     /// `J4 torque` as `elbow torque`. The first matching pair is used.
@@ -213,15 +216,16 @@ impl Schema {
         self
     }
 
-    /// Returns the schema with another image.
+    /// Appends an image with the given columns and rows.
     pub fn with_image(mut self, name: &str, size: [usize; 2]) -> Self {
         self.images.push(ImageChannel::new(name, size));
         self
     }
 
-    /// Returns the schema with the neurons and links of a network with the sensors and outputs of the schema.
+    /// Sets the neurons and links of a network, whose inputs and outputs are the sensors and outputs of the schema.
     ///
-    /// The recorder must also receive the parameters, by [`Recorder::parameters`](farsa_body::Recorder::parameters).
+    /// To show its weights, you also need to record the parameters using
+    /// [`Recorder::parameters`](farsa_body::Recorder::parameters).
     pub fn with_network(self, layout: &LeakyLayout) -> Self {
         let (n, h) = (layout.sensors(), layout.hidden());
         let (neurons, outputs) = ([n, n + h], [n + h, n + h + layout.outputs()]);
@@ -238,7 +242,7 @@ impl Schema {
         Self { neurons, links, node_parameters, ..self }
     }
 
-    /// Returns the visible bodies.
+    /// Iterates over the visible bodies.
     pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
         let of_robot = self.robot.iter().flat_map(Robot::shaped_bodies);
         let mut of_objects: Vec<BodyId> = self.objects.iter().filter_map(|object| object.body).collect();
@@ -255,7 +259,7 @@ impl Schema {
         self.robot.as_ref().map_or(self.bodies.len(), |robot| robot.segments.len())
     }
 
-    /// Returns the name of a body, empty for an unknown one.
+    /// Gets the name of a body. If there is no such body, the name is empty.
     pub(crate) fn body_name(&self, body: BodyId) -> &str {
         match &self.robot {
             Some(robot) => robot.segments.get(body.index()).map_or("", |segment| segment.name.as_str()),
@@ -272,7 +276,9 @@ impl Schema {
         scalars.chain(sensors).chain(neurons).chain(outputs)
     }
 
-    /// Returns the columns of a table of everything except bodies, contacts, rays, points and images.
+    /// Lists the columns of a table with all channels.
+    ///
+    /// This does not include bodies, contacts, rays, points and images.
     pub fn columns(&self) -> Vec<String> {
         self.channels().map(|(prefix, channel)| format!("{prefix}{}", channel.title())).collect()
     }
