@@ -22,7 +22,7 @@ pub enum Noise {
 /// Adds an independent random number to every value.
 ///
 /// All numbers are drawn from one stream in the order of ticks and channels. A reset rewinds the stream. Use
-/// [`Noisy::reseed`] if the noise should differ between episodes. The result is not clamped. Wrap it in
+/// `reseed` if the noise should differ between episodes. The result is not clamped. Wrap it in
 /// [`crate::wrappers::Saturated`] if it must stay within a range.
 pub type Noisy<T, M> = Wrapped<T, Source, M>;
 
