@@ -8,7 +8,7 @@ use core::fmt;
 pub enum ChannelError {
     /// A number is NaN, infinite or out of its range.
     Value {
-        /// Name of the number.
+        /// Name of the invalid number.
         field: &'static str,
         /// Invalid value.
         value: f32,
@@ -24,7 +24,7 @@ pub enum ChannelError {
     Selection {
         /// The first selected channel.
         start: usize,
-        /// Index after the last selected channel.
+        /// Index after the last selected channel. It can exceed `channels`.
         end: usize,
         /// Number of available channels.
         channels: usize,
@@ -42,7 +42,7 @@ pub enum ChannelError {
     Memory {
         /// Length of the memory.
         given: usize,
-        /// Required length.
+        /// Required length of the memory.
         needed: usize,
     },
 }

@@ -144,7 +144,7 @@ pub struct Seen<B> {
     pub color: Option<[f32; 3]>,
 }
 
-/// Support for cameras, which cast many rays from one point.
+/// Support for cameras that cast many rays from one point.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
 pub trait Vision: Handles {
     /// Finds the first surface on each ray that starts at `from` (in meters) in the given directions. The directions
@@ -183,11 +183,11 @@ pub struct PairContact {
 /// Access to the contacts between the pairs of colliders in the description of the robot.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not report its contacts (port `Contacts`)")]
 pub trait Contacts: Handles {
-    /// Returns the number of pairs. These are numbered in the order of the robot's list, starting at 0.
+    /// Returns the number of pairs. They are numbered in the order of the robot's list, starting at 0.
     fn pairs(&self) -> usize;
     /// Returns the two bodies of a pair. `None` represents the static environment.
     fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
-    /// Returns the contact of a pair at the end of the last step. This is all zero for a pair that does not exist.
+    /// Returns the contact of a pair at the end of the last step. If the pair does not exist, all values are zero.
     fn pair_contact(&self, pair: PairId) -> PairContact;
     /// Returns true if there is a contact point with a normal force > 0. This can be faster than
     /// [`pair_contact`](Self::pair_contact).
@@ -310,7 +310,7 @@ pub trait Channels {
     fn reset(&mut self) {}
 }
 
-/// A sensor, which reads values from a world.
+/// A sensor that reads values from a world.
 ///
 /// A custom sensor requires only the ports that it uses. It then works in every world that supports them:
 ///

@@ -90,7 +90,7 @@ impl<R: Real> Pose<R> {
         self.rotate_back([point[0] - p[0], point[1] - p[1], point[2] - p[2]])
     }
 
-    /// Converts the pose `inner`, which is relative to this frame, to the reference frame.
+    /// Converts the pose `inner` from this frame to the reference frame. You can chain poses with it.
     pub fn compose(&self, inner: &Self) -> Self {
         let [ax, ay, az, aw] = self.rotation;
         let [bx, by, bz, bw] = inner.rotation;

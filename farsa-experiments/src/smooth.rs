@@ -1,4 +1,4 @@
-//! Smooth trajectories between postures, which are used by the scripts.
+//! Smooth trajectories between postures, used by the scripts.
 
 /// From 0 to 1 while `s` does, with speed and acceleration 0 at both ends.
 pub(crate) fn smooth(s: f64) -> f64 {

@@ -22,7 +22,7 @@ pub enum Activation {
     Tanh,
     /// Identity function.
     Linear,
-    /// A step function, which is 1 for arguments >= 0 and 0 otherwise.
+    /// A step function. It is 1 for arguments >= 0 and 0 otherwise.
     Step,
     /// A rectified function. This is `x` for arguments > 0 and 0 otherwise.
     Rectified,

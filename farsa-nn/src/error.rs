@@ -30,7 +30,7 @@ pub enum Error {
         target: usize,
         /// Largest possible magnitude of the sum, in its units.
         largest: u64,
-        /// Largest magnitude that is allowed.
+        /// Largest allowed magnitude.
         limit: u64,
     },
     /// A state is NaN or infinite.
@@ -60,7 +60,7 @@ pub enum Error {
     },
     /// A name is unknown.
     Name {
-        /// Kind of thing that has this name.
+        /// Kind of item that the name should denote.
         of: &'static str,
         /// A list of all valid names.
         names: &'static str,

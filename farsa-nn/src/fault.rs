@@ -19,16 +19,16 @@ pub enum Slice {
 pub enum ParameterFault {
     /// The parameter is NaN or infinite.
     NotFinite,
-    /// The parameter is a leak with this value, which is outside [0, 1].
+    /// The parameter is a leak whose value is outside [0, 1].
     Leak(f32),
-    /// The parameter is a leak of this number of units of 2^-14, which is outside [0, 1]. It needs no floats.
+    /// The parameter is a leak outside [0, 1]. It is given as an integer in units of 2^-14.
     QuantizedLeak(i16),
     /// The parameter is a weight that is too large for an integer network, even without fraction bits. The value
     /// includes the slope.
     Weight(f64),
     /// The parameter is a time constant that is not above zero, or for which the integrator diverges.
     TimeConstant {
-        /// Value of the time constant [s].
+        /// Invalid time constant [s].
         value: f32,
         /// The smallest stable time constant [s], or 0 if all positive time constants are stable.
         least: f32,
@@ -84,7 +84,7 @@ pub enum LayoutFault {
     },
     /// The number of fraction bits of an integer network is invalid.
     FractionBits {
-        /// Kind of integers, which are inputs, weights or sums.
+        /// Kind of integers. These can be inputs, weights or sums.
         of: &'static str,
         /// Invalid number of fraction bits.
         found: u32,

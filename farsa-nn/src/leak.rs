@@ -19,11 +19,11 @@ use crate::name::same_letters;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Leak {
-    /// The low-pass filter `H(t) = d*y(t) + (1-d)*H(t-1)`, which the source describes in words.
+    /// The low-pass filter `H(t) = d*y(t) + (1-d)*H(t-1)`. The source describes it in words.
     // The source calls d the time constant of leaky-integrator neurons. The printed equation has no integrator.
     #[default]
     Filter,
-    /// Printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`, which has a memory of one step.
+    /// The printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`. Its memory is one step long.
     TwoTap,
     /// Equation `H(t) = d*H(t-1) + (1-d)*y(t)` of the original program. Here `d` is the weight of the previous
     /// value, which is computed from a gene `p` as `|p|/range` clamped to [0, 1].

@@ -1,4 +1,4 @@
-//! The layout of a network with three layers, which also defines the order of its parameters.
+//! The layout of a network with three layers. It also defines the order of the parameters.
 
 use core::ops::Range;
 
@@ -42,7 +42,7 @@ impl LeakyParameter {
 /// All counts saturate. If a layout is too large for the machine, it has `usize::MAX` parameters, which no slice can
 /// contain.
 ///
-/// Source: `[Ferrauto2010]` chapter 2, which has the totals 792 and 756 but not the order.
+/// Source: `[Ferrauto2010]` chapter 2. It has the totals 792 and 756 but not the order.
 ///
 /// ```
 /// use farsa_nn::LeakyLayout;
@@ -81,7 +81,7 @@ pub struct LeakyParts<'a> {
 }
 
 impl LeakyLayout {
-    /// Default slope of the logistic function, which is 0.2 (`[Ferrauto2010]` chapter 2).
+    /// Default slope of the logistic function (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
     /// Creates a layout with the default slope [`LeakyLayout::SLOPE`].
@@ -111,7 +111,7 @@ impl LeakyLayout {
         self.outputs
     }
 
-    /// Gets the slope of the logistic function. This is used for hidden neurons and outputs.
+    /// Gets the slope of the logistic function of hidden neurons and outputs.
     pub const fn slope(&self) -> f32 {
         self.slope
     }

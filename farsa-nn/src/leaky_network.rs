@@ -74,7 +74,7 @@ impl<P, S> Network<LeakyModel, P, S> {
         self.model.leak
     }
 
-    /// Returns the activations `H(t)` of the hidden neurons. These are in [0, 1].
+    /// Returns the activations `H(t)` of the hidden neurons. They are in [0, 1].
     pub fn hidden(&self) -> &[f32]
     where
         S: AsRef<[f32]>,

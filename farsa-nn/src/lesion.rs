@@ -1,4 +1,4 @@
-//! Lesions, which set the activations of neurons to constant values.
+//! Lesions that set the activations of neurons to constant values.
 
 use crate::controller::Controller;
 

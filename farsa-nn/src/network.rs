@@ -9,7 +9,7 @@ use crate::fault::{ParameterFault, Slice};
 use crate::kernel::level;
 use crate::lesion::{Ablatable, Lesion};
 
-/// A kind of network, which consists of a layout and settings but does not contain parameters or a state.
+/// A kind of network. It consists of a layout and settings but does not contain parameters or a state.
 pub trait Model {
     /// Returns the number of inputs.
     fn inputs(&self) -> usize;

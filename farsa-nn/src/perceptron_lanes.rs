@@ -9,7 +9,7 @@ use crate::kernel::level;
 use crate::network::check_parameters;
 use crate::perceptron::Perceptron;
 
-/// Several [`Perceptron`]s with the same shape and slope but different parameters, which are computed together.
+/// Several [`Perceptron`]s that are computed together. They have the same shape and slope but different parameters.
 ///
 /// All slices have the order `[values x lanes]`. The first value of all lanes is followed by the second value of all
 /// lanes. Each lane produces the same bits as a single [`Perceptron`].

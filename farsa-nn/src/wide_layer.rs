@@ -1,4 +1,4 @@
-//! The sums of layers with many targets, whose weights do not fit into the near caches.
+//! The sums of layers with many targets. Their weights do not fit into the near caches.
 //!
 //! For narrow layers, the inner loops read a few columns of the weights, so each row is on a different page. For wide
 //! layers, the sums are stored in `y`, and a few sources at a time are added to all of them. The weights are then read
@@ -51,7 +51,7 @@ impl<R: Real> Layer<'_, R> {
 /// A few sources and their weights.
 struct Rows<'a, S: Scalar, const N: usize> {
     x: [S; N],
-    /// Weights of each source to the requested targets, all of one length.
+    /// Weights of each source to the requested targets. All slices have the same length.
     weights: [&'a [S::Real]; N],
 }
 

@@ -1,4 +1,4 @@
-//! Checksums of numbers and bytes, which detect accidental changes. They do not protect against forgery.
+//! Checksums of numbers and bytes. They detect accidental changes but do not protect against forgery.
 
 /// A 64-bit hash of a sequence of values. It is used to check that two runs agree bit for bit.
 ///
@@ -71,7 +71,7 @@ impl Default for Digest {
     }
 }
 
-/// Computes the CRC-32 of IEEE 802.3, which is used as a checksum of files and flash images.
+/// Computes the CRC-32 of IEEE 802.3. This is the checksum of files and flash images.
 ///
 /// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones. No
 /// deviation.

@@ -13,11 +13,11 @@ use fearless_simd::Level;
 pub enum Instructions {
     /// No vector instructions. Lanes are computed one after the other.
     Fallback,
-    /// SSE2, which is supported by all x86-64 processors.
+    /// SSE2. All x86-64 processors support it.
     Sse2,
-    /// SSE4.2, which is part of x86-64-v2.
+    /// SSE4.2, part of x86-64-v2.
     Sse4_2,
-    /// AVX2, which is part of x86-64-v3.
+    /// AVX2, part of x86-64-v3.
     Avx2,
     /// AVX-512 in the version of Ice Lake.
     Avx512,

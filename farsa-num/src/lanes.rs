@@ -1,4 +1,4 @@
-//! Scalars with eight or sixteen lanes, which contain the values of several worlds.
+//! Scalars with eight or sixteen lanes. They contain the values of several worlds.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, mask32x8, mask32x16, u32x8, u32x16};
 

@@ -26,7 +26,7 @@ pub(crate) fn normal_pairs(
     ))
 }
 
-/// Loops over pairs, which the compiler vectorizes with the instructions of the token.
+/// Loops over pairs. The compiler vectorizes the loop with the instructions of the token.
 #[inline(always)]
 fn in_vectors<V: Simd>(simd: V, counter: [u32; 4], key: [u32; 2], row: &mut [f64; 2 * PAIRS]) -> [[u32; PAIRS]; 4] {
     let words = philox_of_many(counter, key);

@@ -1,4 +1,4 @@
-//! A random number generator with independent streams, which are addressed by their purpose.
+//! A random number generator with independent streams, addressed by their purpose.
 
 use fearless_simd::Level;
 
@@ -206,13 +206,13 @@ impl Stream {
         (product >> 32) as u32
     }
 
-    /// Draws a standard normal number, which is the first result of [`Stream::normal_pair`]. It uses two words.
+    /// Draws a standard normal number, the first result of [`Stream::normal_pair`]. It uses two words.
     #[inline]
     pub fn normal(&mut self) -> f32 {
         self.normal_pair()[0]
     }
 
-    /// Draws two independent standard normal numbers, whose magnitudes are below 6.67. They use two words.
+    /// Draws two independent standard normal numbers with magnitudes below 6.67. They use two words.
     ///
     /// Source: \[Box1958\], computed in `f64` and rounded. Deviation: the radius is computed from a uniform number in
     /// (0, 1].
@@ -226,7 +226,7 @@ impl Stream {
         [(radius * c) as f32, (radius * s) as f32]
     }
 
-    /// Draws two independent standard normal numbers in double precision, whose magnitudes are below 8.58. They use
+    /// Draws two independent standard normal numbers in double precision with magnitudes below 8.58. They use
     /// four words.
     ///
     /// Source: \[Box1958\]. Deviation: the radius is computed from a uniform number in (0, 1], which is a multiple of
@@ -241,7 +241,7 @@ impl Stream {
         [radius * c, radius * s]
     }
 
-    /// Fills a slice with independent standard normal numbers, which are drawn in pairs by
+    /// Fills a slice with independent standard normal numbers, drawn in pairs by
     /// [`normal_pair_f64`](Self::normal_pair_f64). If the length is odd, the last number is discarded.
     ///
     /// Long slices are computed with vector instructions. They are detected at run time if the feature `std` is

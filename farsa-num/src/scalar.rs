@@ -1,9 +1,9 @@
-//! The scalar type of generic numerical code, which contains either a single number or one number per lane.
+//! The scalar type of generic numerical code. It contains either a single number or one number per lane.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
-/// A truth value for each lane, which results from a comparison of [`Scalar`]s.
+/// A truth value for each lane. It results from a comparison of [`Scalar`]s.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Returns true if at least one lane is true.
     fn any(self) -> bool;
@@ -13,14 +13,14 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     fn lane(self, index: usize) -> bool;
 }
 
-/// The type of a single lane of a [`Scalar`], which is `f32` or `f64`.
+/// The type of a single lane of a [`Scalar`]. It is `f32` or `f64`.
 pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Default + Send + Sync + 'static {
-    /// The number of binary digits of the significand, which is 24 for `f32` and 53 for `f64`.
+    /// The number of binary digits of the significand. It is 24 for `f32` and 53 for `f64`.
     const DIGITS: u32;
 
     /// Converts a number to the nearest value of this type.
     fn from_f64(x: f64) -> Self;
-    /// Converts the value to double precision, which is always exact.
+    /// Converts the value to double precision. The conversion is always exact.
     fn to_f64(self) -> f64;
 }
 
@@ -101,7 +101,7 @@ pub trait Scalar:
     /// must be `#[inline(always)]` to inherit the instructions.
     fn vectorize<T>(simd: Self::Simd, work: impl FnOnce() -> T) -> T;
 
-    /// Computes the square root, which is correctly rounded. It is NaN for negative numbers.
+    /// Computes the correctly rounded square root. It is NaN for negative numbers.
     fn sqrt(self) -> Self;
     /// Computes the absolute value by clearing the sign.
     fn abs(self) -> Self;

@@ -3,7 +3,7 @@
 use crate::polynomial::polynomial;
 use crate::scalar::{Real, Scalar};
 
-/// Computes the sine and the cosine of `x`. This is given in radians. Both are accurate to 1.5 units in the last place
+/// Computes the sine and the cosine of an angle `x` in radians. Both are accurate to 1.5 units in the last place
 /// if |x| <= 10000.
 ///
 /// For larger arguments, the error grows to about the distance between neighboring arguments. The results are NaN for

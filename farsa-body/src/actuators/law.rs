@@ -1,4 +1,4 @@
-//! Actuator laws, which compute an effort and its derivatives from the state of a joint and a command.
+//! Actuator laws. They compute an effort and its derivatives from the state of a joint and a command.
 
 use farsa_num::{Real, Scalar};
 

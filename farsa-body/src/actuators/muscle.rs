@@ -1,4 +1,4 @@
-//! Pairs of antagonistic muscles, whose tension depends on length, rate of length and activation.
+//! Pairs of antagonistic muscles. Their tension depends on length, rate of length and activation.
 
 use farsa_num::{Real, Scalar, exp};
 
@@ -72,7 +72,7 @@ impl<S: Scalar> Tension<S> {
 }
 
 impl<R: Real> MusclePair<R> {
-    /// Creates a pair with the printed values, which are Ksh = 3, RL = 2.5, lengths from 1.3 to 3.7 and b = 0.9
+    /// Creates a pair with the printed values Ksh = 3, RL = 2.5, lengths from 1.3 to 3.7 and b = 0.9
     /// [Ferrauto2010, chapter 2].
     ///
     /// The `tension` is Tmax in newtons, and the `moment_arm` is given in meters. The `range` contains the lower and

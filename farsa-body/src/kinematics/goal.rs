@@ -1,4 +1,4 @@
-//! Goals for inverse kinematics, which specify the position and the orientation of a body.
+//! Goals for inverse kinematics. They specify the position and the orientation of a body.
 
 use farsa_num::atan2;
 
@@ -28,7 +28,7 @@ pub enum Orientation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Goal {
-    /// Body that should be moved.
+    /// Body to be moved.
     pub body: BodyId,
     /// Point in the frame of the body (in meters).
     pub point: [f64; 3],

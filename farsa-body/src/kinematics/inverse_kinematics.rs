@@ -1,4 +1,4 @@
-//! Inverse kinematics, which computes joint positions for a given goal.
+//! Inverse kinematics. It computes joint positions for a given goal.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -44,7 +44,7 @@ pub enum InverseKinematicsError {
     },
     /// All attempts ended outside the tolerances. The goal may be out of reach.
     NotReached {
-        /// Solution with the smallest error.
+        /// Solution with the smallest error. You can use it if a rough pose is sufficient.
         closest: Solution,
     },
 }
@@ -73,19 +73,19 @@ impl core::error::Error for InverseKinematicsError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct InverseKinematics {
-    /// Largest position error of a solution in meters.
+    /// Largest position error of a solution in meters. The default is 1e-6.
     pub position_tolerance: f64,
-    /// Largest angle error of a solution (in radians).
+    /// Largest angle error of a solution (in radians). The default is 1e-6.
     pub angle_tolerance: f64,
-    /// Distance weighted like an angle of one radian (in meters).
+    /// Distance that is equivalent to an angle error of one radian (in meters). The default is 0.1.
     pub angle_weight: f64,
-    /// Fraction of each joint range that can be used, in [0, 1]. It is centered in the range.
+    /// Fraction of each joint range that can be used, in [0, 1]. It is centered in the range. The default is 1.
     ///
     /// This is useful for muscles, because constant activations hold a joint only within 0.72 of its half range.
     pub range_fraction: f64,
-    /// Maximum number of iterations in each attempt.
+    /// Maximum number of iterations in each attempt. The default is 100.
     pub iterations: usize,
-    /// Maximum number of attempts, including the first one.
+    /// Maximum number of attempts, including the first one. The default is 50.
     pub attempts: usize,
 }
 

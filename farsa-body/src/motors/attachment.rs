@@ -1,4 +1,4 @@
-//! Attachment devices, which robots use to hold objects and each other.
+//! Attachment devices. Robots use them to hold objects and each other.
 
 use crate::channel::write;
 use crate::ports::{Actuated, ActuatorId, BodyId, Channels, Motor, Planar, Sensor};

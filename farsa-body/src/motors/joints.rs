@@ -41,11 +41,11 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for Muscles<A> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ServoRange<A = ActuatorId> {
-    /// Servo commanded.
+    /// Servo that the channel commands.
     pub servo: A,
     /// Desired position at a channel value of 0 (in radians or meters).
     pub from: f32,
-    /// Desired position at a channel value of 1 (in radians or meters).
+    /// Desired position at a channel value of 1 (in radians or meters). It can be lower than `from`.
     pub to: f32,
 }
 

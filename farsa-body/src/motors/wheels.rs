@@ -43,7 +43,7 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for WheelVelocity<A> 
     }
 }
 
-/// Drives both wheels with two channels, which control the speed and the turn.
+/// Drives both wheels with two channels that control the speed and the turn.
 ///
 /// Let s = 2 y - 1 for the first channel and t = 2 y - 1 for the second one. The left wheel turns at (s - t) and the
 /// right wheel at (s + t) times the largest speed. The robot drives backwards if the first channel is 0 and forwards if

@@ -33,15 +33,15 @@ pub struct Joint {
     pub name: String,
     /// Kind of motion that the joint permits.
     pub kind: JointKind,
-    /// Axis in the frame of the joint. It is normalized by the reader.
+    /// Axis in the frame of the joint. It does not have to be normalized, but it must be longer than 1e-6.
     pub axis: [f64; 3],
     /// Frame of the joint at position 0, relative to the parent or the world.
     pub placement: Pose<f64>,
     /// Lowest and highest position in radians or meters. They may be infinite.
     pub range: [f64; 2],
-    /// Inertia of the drive (in kg m2 or kg). This is added to that of the segment.
+    /// Inertia of the drive (in kg m2 or kg). It is added to the inertia of the segment.
     pub armature: f64,
-    /// Viscous damping (in N m s/rad or N s/m).
+    /// Viscous damping of the joint (in N m s/rad or N s/m).
     pub damping: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Joint {
 pub struct Segment {
     /// Name of the segment, unique in the robot.
     pub name: String,
-    /// Parent, which must be earlier in the list, or `None` for the world.
+    /// Parent of the segment, or `None` for the world. It must be earlier in the list.
     pub parent: Option<BodyId>,
     /// Joint that connects the segment to its parent.
     pub joint: Joint,
@@ -102,7 +102,7 @@ pub struct Surface {
 pub struct Pair {
     /// Indices of the two colliders.
     pub colliders: [usize; 2],
-    /// Properties of the contact.
+    /// Properties of the contact between them.
     pub surface: Surface,
     /// Consecutive pairs with the same number can be skipped together. This happens while the spheres around all first
     /// and all second colliders are far apart. Groups do not change the motion.
@@ -116,7 +116,7 @@ pub struct Pair {
 pub struct Actuator {
     /// Name of the actuator, unique in the robot.
     pub name: String,
-    /// Joint driven.
+    /// Joint that the actuator drives.
     pub joint: JointId,
     /// Law that determines the torque.
     pub law: Law<f64>,
@@ -128,7 +128,7 @@ pub struct Actuator {
 pub struct Ground {
     /// Body created by [`Robot::add_sliding_body`].
     pub body: BodyId,
-    /// Coefficient of friction.
+    /// Coefficient of friction between the body and the ground.
     pub friction: f64,
     /// Force that presses the body on the ground (in newtons), for example its weight.
     pub load: f64,
@@ -143,13 +143,13 @@ pub struct Ground {
 pub struct Robot {
     /// Name of the robot.
     pub name: String,
-    /// Segments. Parents must come before their children.
+    /// Segments of the robot. Parents must come before their children.
     pub segments: Vec<Segment>,
-    /// Shapes used for contacts and sensors.
+    /// Shapes that are used for contacts and sensors.
     pub colliders: Vec<Collider>,
     /// Pairs of colliders that may touch.
     pub pairs: Vec<Pair>,
-    /// Actuators of all joints.
+    /// Actuators that drive the joints.
     pub actuators: Vec<Actuator>,
     /// Ground below sliding bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
@@ -318,7 +318,7 @@ impl Robot {
         PairId((self.pairs.len() - 1) as u16)
     }
 
-    /// Adds a group of pairs, which are given by the indices of their colliders. The group needs almost no time as long
+    /// Adds a group of pairs, given by the indices of their colliders. The group needs almost no time as long
     /// as its first and its second colliders are far apart. This is useful for colliders that move together, such as
     /// the parts of a hand.
     pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {

@@ -1,4 +1,4 @@
-//! The shapes drawn, which are visuals and colliders of segments without visuals.
+//! The shapes drawn. These are the visuals, and the colliders of segments without visuals.
 
 use alloc::format;
 

@@ -52,7 +52,7 @@ pub enum RobotError {
     },
     /// There are more than 65535 parts of one kind, so they cannot be numbered.
     Count {
-        /// Kind of parts.
+        /// Kind of the parts.
         parts: &'static str,
         /// Number of parts.
         count: usize,

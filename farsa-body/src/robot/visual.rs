@@ -10,7 +10,7 @@ use crate::robot::shape::Shape;
 pub struct Visual {
     /// Segment to which the shape is attached, or `None` for the world.
     pub body: Option<BodyId>,
-    /// Shape drawn.
+    /// Shape that is drawn.
     pub shape: Shape,
     /// Pose of the shape in the frame of the segment.
     pub placement: Pose<f64>,

@@ -107,7 +107,7 @@ pub struct ArmAndHand {
     pub upper_arm_radius: f64,
     /// Radius of the forearm's capsule in meters.
     pub forearm_radius: f64,
-    /// Length of the axis of the forearm's capsule, which starts at the elbow (in meters).
+    /// Length of the axis of the forearm's capsule (in meters). The axis starts at the elbow.
     pub forearm_axis: f64,
     /// Half the edge lengths of the palm (in meters).
     pub palm_half: [f64; 3],

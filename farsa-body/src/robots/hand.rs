@@ -55,9 +55,9 @@ pub(crate) const fn deg(x: f64) -> f64 {
 /// Where a hand is attached, and which one it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wrist<'a> {
-    /// Palm.
+    /// Body of the palm.
     pub(crate) palm: BodyId,
-    /// Before each name.
+    /// Prefix of all names.
     pub(crate) prefix: &'a str,
     /// True if the hand is a left one.
     pub(crate) mirrored: bool,

@@ -1,4 +1,4 @@
-//! Reflection of parts in the plane y = 0, which converts a right arm to a left arm.
+//! Reflection of parts in the plane y = 0. It converts a right arm to a left arm.
 //!
 //! The x and z axes of a frame are reflected, and the y axis is reflected and inverted, so that the frame remains
 //! right-handed. Coordinates are subtracted from 0 and not negated, so that no negative zeros occur.

@@ -42,7 +42,7 @@ pub struct MobileRobot {
     pub infrared: InfraredRing,
     /// Positions of the ground color sensors in the frame of the robot (in meters).
     pub ground: Vec<[f64; 2]>,
-    /// Red, green and blue components of the hull's color (between 0 and 1), which is visible when no LED is on.
+    /// Red, green and blue components of the hull's color (between 0 and 1). It is visible when no LED is on.
     pub color: [f64; 3],
     /// True if the robot has LEDs. They are three actuators for red, green and blue.
     pub leds: bool,

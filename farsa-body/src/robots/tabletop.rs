@@ -20,7 +20,7 @@ pub struct Tabletop {
     pub table_x: [f64; 2],
     /// The lower and upper ends of the table along Y (in meters).
     pub table_y: [f64; 2],
-    /// Thickness of the table, which is solid (in meters).
+    /// Thickness of the solid table (in meters).
     pub table_depth: f64,
     /// Radius of the sphere (in meters).
     pub sphere_radius: f64,

@@ -1,4 +1,4 @@
-//! Sensors, which convert the state of a world to values for a network.
+//! Sensors that convert the state of a world to values for a network.
 //!
 //! | to sense | use | channels | port |
 //! |---|---|---|---|

@@ -129,7 +129,7 @@ impl PlaneWorld {
         self.add(Round { centre, heading: 0.0, radius, color, intensity: None, robot: None })
     }
 
-    /// Adds a lamp, which is a white disc that emits light.
+    /// Adds a lamp. It is a white disc that emits light.
     pub fn add_lamp(&mut self, centre: [f32; 2], radius: f32, intensity: f32) -> BodyId {
         self.add(Round { centre, heading: 0.0, radius, color: [1.0; 3], intensity: Some(intensity), robot: None })
     }

@@ -28,7 +28,7 @@ struct Point {
     height: f32,
     speed: f32,
     command: [f32; 2],
-    /// Force from outside in the next step [N].
+    /// External force in the next step [N].
     outside: f32,
 }
 

@@ -16,11 +16,11 @@ pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
     /// Bodies that can be placed anywhere on a plane. They keep their position and heading as long as they are not
     /// moved.
     pub planar: Vec<B>,
-    /// Joints that can be placed, each with two positions (in radians or meters) between which it can be placed.
+    /// Joints that can be placed, with the two ends of their ranges (in radians or meters).
     pub joints: Vec<(J, [f32; 2])>,
-    /// Actuators, each with the lower and upper limits of both values of its command.
+    /// Actuators with the lower and upper limits of both values of their commands.
     pub actuators: Vec<(A, [[f32; 2]; 2])>,
-    /// Number of steps in a run, which must be at least 16.
+    /// Number of steps in a run. At least 16 are required.
     pub steps: usize,
     /// The tolerance for the difference between the mean speed of a step and the speeds at its ends (in m/s or rad/s).
     pub slack: f32,

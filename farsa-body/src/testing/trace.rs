@@ -1,4 +1,4 @@
-//! Recorded runs of a world, which are compared bit by bit.
+//! Recorded runs of a world, compared bit by bit.
 
 use alloc::{format, string::String, vec, vec::Vec};
 use core::ops::Range;

@@ -18,7 +18,7 @@ pub struct Delayed<T, M> {
     channels: usize,
     /// One row of `channels` values for each tick on the way.
     memory: M,
-    /// Row that comes out next, and is then overwritten.
+    /// Row that is read next and then overwritten.
     row: usize,
     /// Number of rows with values of this episode.
     filled: usize,

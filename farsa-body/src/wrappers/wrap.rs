@@ -39,7 +39,7 @@ impl<T, F, M> Wrapped<T, F, M> {
 }
 
 impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
-    /// Checks the memory, which begins at 0.
+    /// Checks the memory and sets it to 0.
     pub(crate) fn over(inner: T, filter: F, mut memory: M) -> Result<Self, ChannelError> {
         room(&mut memory, inner.channels())?;
         memory.as_mut().fill(0.0);
@@ -48,7 +48,7 @@ impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
 }
 
 impl<T: Channels, F, M: AsRef<[f32]>> Wrapped<T, F, M> {
-    /// Returns the values that were passed on in the last tick, one per channel. These are 0 before the first tick.
+    /// Returns the values that were passed on in the last tick, one per channel. Before the first tick they are 0.
     pub fn values(&self) -> &[f32] {
         let memory = self.memory.as_ref();
         memory.get(..self.inner.channels()).unwrap_or(memory)

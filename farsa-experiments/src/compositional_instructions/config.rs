@@ -5,7 +5,7 @@ use farsa_num::{Scalar, sin_cos};
 
 use crate::compositional_instructions::instruction::{Action, Color, Condition, Instruction};
 
-/// The arm, which consists of two segments and is seen from above.
+/// The arm. It consists of two segments and is seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// Lengths of the segments in meters.

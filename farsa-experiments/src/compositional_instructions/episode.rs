@@ -147,7 +147,7 @@ impl<C: Controller> InstructionEpisode<C> {
         &self.totals
     }
 
-    /// Gets the reward for the first instruction and if it was successful, or `None` before the instruction changes.
+    /// Gets the reward and the success of the first instruction, or `None` before the instruction changes.
     pub fn before_change(&self) -> Option<(Parts, bool)> {
         self.before_change
     }

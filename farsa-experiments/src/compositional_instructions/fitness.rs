@@ -48,7 +48,7 @@ pub struct Parts {
     pub act: f64,
     /// Reward u for leaving the other objects in place.
     pub undisturbed: f64,
-    /// Resulting fitness F.
+    /// Fitness F that results from the three parts.
     pub fitness: f64,
 }
 
@@ -82,7 +82,7 @@ pub struct RewardTotals {
     last_seen: [bool; 3],
     /// Least distance of the tip from the target's surface while the target was centered, 0 for a touch \[m\].
     nearest: Option<f64>,
-    /// Most recent step that passed.
+    /// Observation of the most recent step.
     last: Observation,
 }
 
@@ -115,7 +115,7 @@ impl RewardTotals {
         }
     }
 
-    /// Gets the observation that was added last.
+    /// Gets the most recent observation.
     pub fn last(&self) -> &Observation {
         &self.last
     }

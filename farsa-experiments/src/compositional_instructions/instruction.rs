@@ -18,7 +18,7 @@ pub enum Action {
     Ignore,
 }
 
-/// The color of an object, which identifies it.
+/// The color that identifies an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Color {
     /// Identifies the red object.
@@ -32,13 +32,13 @@ pub enum Color {
 /// An instruction, such as "TOUCH green".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// Action that has to be performed.
+    /// Action that the agent should perform.
     pub action: Action,
     /// Color of the object on which the action is performed.
     pub color: Color,
 }
 
-/// A condition of the experiment, which defines the three actions of the agent.
+/// A condition of the experiment. It defines the three actions of the agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Condition {
     /// Actions INDICATE, TOUCH and MOVE.
@@ -81,7 +81,7 @@ impl Color {
         self as usize
     }
 
-    /// Returns the red, green and blue components, each between 0 and 1.
+    /// Returns the red, green and blue components (between 0 and 1).
     pub const fn rgb(self) -> [f64; 3] {
         match self {
             Self::Red => [1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! The scene of `compositional-instructions`, which contains an arm and three objects in a plane.
+//! The scene of `compositional-instructions`. It contains an arm and three objects in a plane.
 
 use farsa_body::Pose;
 use farsa_body::actuators::{Law, Velocity};
@@ -50,9 +50,9 @@ pub struct Scene {
 impl Scene {
     /// The first segment, to which the camera is attached.
     pub const FIRST: BodyId = BodyId(0);
-    /// Second segment, which can touch the objects.
+    /// Second segment of the arm. It can touch the objects.
     pub const SECOND: BodyId = BodyId(1);
-    /// Joint at the base, and the joint between the two segments.
+    /// The joint at the base and the joint between the two segments.
     pub const JOINTS: [JointId; 2] = [JointId(0), JointId(1)];
     /// Actuators of the two joints.
     pub const ACTUATORS: [ActuatorId; 2] = [ActuatorId(0), ActuatorId(1)];

@@ -48,7 +48,7 @@ pub struct Script {
     speeds: [f64; 2],
     deaf: Deaf,
     stage: Stage,
-    /// Side that the second segment was folded to at the start.
+    /// Side to which the second segment was folded at the start.
     folded_left: Option<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! The sensors of the agent, which are the camera, touch, the joint angles and the two words.
+//! The sensors of the agent: the camera, touch, the joint angles and the two words.
 
 use farsa_body::ports::{BodyId, Handles, JointId, Joints, Kinematics, Sight};
 use farsa_body::sensors::{Beam, ColorBand, LinearCamera};
@@ -16,7 +16,7 @@ pub trait ArmWorld: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint =
 
 impl<W> ArmWorld for W where W: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
 
-/// The sensors of the agent, which have 20 channels.
+/// The sensors of the agent. They have 20 channels.
 ///
 /// The first nine channels are the red, green and blue values of the camera's sectors from left to right. The next
 /// three channels measure touch on the left side, at the tip and on the right side of the second segment. They are

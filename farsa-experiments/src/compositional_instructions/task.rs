@@ -1,4 +1,4 @@
-//! The task of `compositional-instructions`, which runs and records episodes of evolved networks.
+//! The task of `compositional-instructions`. It runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 

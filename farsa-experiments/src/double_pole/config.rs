@@ -17,7 +17,7 @@ pub struct Config {
     pub damping: bool,
     /// Cart with its poles.
     pub cart: Cart,
-    /// Duration of a step of the integration (in seconds).
+    /// Duration of an integration step (in seconds).
     pub time_step: f64,
     /// Number of integration steps between two steps of the network.
     pub substeps: u32,
@@ -31,7 +31,7 @@ pub struct Config {
     pub most_position: f64,
     /// Largest force that the network can apply (in newtons).
     pub force: f64,
-    /// Smallest force that the network can apply (in newtons).
+    /// Smallest magnitude of the force that the network can apply (in newtons).
     pub least_force: f64,
     /// Number of hidden neurons in the network.
     pub hidden: u32,

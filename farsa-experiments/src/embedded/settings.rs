@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NamedSettings {
-    /// Setting that errors of the file are reported for.
+    /// Setting for which errors of the file are reported.
     pub(crate) refused: String,
     setting: Vec<NamedSetting>,
 }
@@ -21,9 +21,9 @@ struct NamedSetting {
     /// Keys of the file.
     #[serde(default)]
     sets: Vec<String>,
-    /// Default. Without it the value of the first key in the file.
+    /// Default of the setting. If it is missing, the value of the first key in the file is used.
     default: Option<toml::Value>,
-    /// One number sets all numbers of a list in the file.
+    /// If true, a single number sets all numbers of a list in the file.
     #[serde(default)]
     scalar: bool,
     /// A list has one number for each key.
@@ -38,10 +38,10 @@ struct NamedSetting {
     unit: String,
     #[serde(default)]
     source: Source,
-    /// Conditions whose default the source states, or empty for all.
+    /// Conditions whose default the source states. An empty list means all of them.
     #[serde(default)]
     given_in: Vec<String>,
-    /// Conditions that have the setting, or empty for all.
+    /// Conditions that have the setting. If the list is empty, all of them have it.
     #[serde(default)]
     conditions: Vec<String>,
     doc: String,

@@ -72,7 +72,7 @@ pub struct Config {
     pub torso: [f64; 3],
     /// Initial angles of the seven joints of the left arm (in degrees).
     pub arm: [f64; 7],
-    /// Position error at which a servo reaches the maximum effort of its joint (in radians).
+    /// Position error at which a servo reaches the maximum effort of its joint (in radians). The default is 0.1.
     pub saturation_angle: f64,
     /// Difference between the commanded and the actual speed at which a motor reaches its maximum effort (in
     /// radians per second).

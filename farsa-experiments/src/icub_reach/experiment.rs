@@ -17,7 +17,7 @@ use crate::strategy::strategy;
 /// which are constant during a trial. With `velocity`, it senses the vector from the hand to the target and commands
 /// joint speeds.
 ///
-/// Only the first pages of the sources were available. The settings mark all other values, which had to be chosen.
+/// Only the first pages of the sources were available. All other values had to be chosen. The settings mark them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReach;
 

@@ -1,4 +1,4 @@
-//! The scene of `icub-reach`, which contains the robot, its controlled joints and the targets.
+//! The scene of `icub-reach`. It contains the robot, its controlled joints and the targets.
 
 use farsa_body::actuators::{Law, Torque};
 use farsa_body::kinematics::KinematicTree;
@@ -43,7 +43,7 @@ pub(crate) struct Burdened {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Robot simulated.
+    /// Robot that is simulated.
     pub robot: Robot,
     /// Configuration from which the scene was built.
     pub config: Config,
@@ -55,7 +55,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The last body of the arm, which carries the palm.
+    /// The last body of the arm. It carries the palm.
     pub const PALM: BodyId = BodyId(12);
 
     /// Builds the scene for a configuration.

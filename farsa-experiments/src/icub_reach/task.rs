@@ -1,4 +1,4 @@
-//! The task of `icub-reach`, which runs and records episodes of evolved networks.
+//! The task of `icub-reach`. It runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 

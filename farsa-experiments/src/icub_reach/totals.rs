@@ -40,7 +40,7 @@ impl RewardTotals {
         if self.count > 0 { self.sum / f64::from(self.count) } else { self.last }
     }
 
-    /// Computes the fitness. This is 1 minus the ratio of the mean distance and the start distance. The start distance
+    /// Computes the fitness. It is 1 minus the ratio of the mean distance and the start distance. The start distance
     /// is at least `least` (in meters). The result is between 0 and 1, or NaN.
     pub fn fitness(&self, least: f64) -> f64 {
         // F = 1 - mean d / max(d0, least). The bound keeps a target near the start from a division by almost 0.

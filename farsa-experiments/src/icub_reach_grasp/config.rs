@@ -75,7 +75,7 @@ pub struct Config {
     pub neck: [f64; 3],
     /// Initial angles of the seven joints of the right arm (in degrees).
     pub right_arm: [f64; 7],
-    /// Angles of the left arm, which does not move (in degrees).
+    /// Angles of the left arm (in degrees). This arm does not move.
     pub left_arm: [f64; 7],
     /// Opposition of the thumb when the hand is open and when it is closed (in degrees).
     pub opposition: [f64; 2],

@@ -16,7 +16,7 @@ use crate::strategy::strategy;
 /// angles of the neck and the trunk indicate the position of the ball. In addition there are nine touch sensors. The
 /// network commands the joint angles of the trunk, the right arm and the hand.
 ///
-/// Only the first pages of the sources were available. The settings mark all other values, which had to be chosen.
+/// Only the first pages of the sources were available. All other values had to be chosen. The settings mark them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct IcubReachGrasp;
 

@@ -35,7 +35,7 @@ impl Observation {
         palm.iter().chain(ball).chain([opposition]).all(|x| x.is_finite())
     }
 
-    /// Computes the share of the touch reward. This is zero without contact, a quarter if the ball is touched on one
+    /// Computes the share of the touch reward. It is zero without contact, a quarter if the ball is touched on one
     /// side, and one if it is touched on opposite sides.
     pub fn touch(&self) -> f64 {
         if self.touching == 0 { 0.0 } else { ONE_TOUCH + (1.0 - ONE_TOUCH) * self.opposition }
@@ -47,7 +47,7 @@ impl Observation {
     }
 }
 
-/// Computes the largest opposition of two directions in a list of n vectors, which may have any length.
+/// Computes the largest opposition of two directions in a list of n vectors. They may have any length.
 ///
 /// The opposition of two vectors is (1 - cos) / 2 of the angle between them. It is 1 for opposite vectors. The result
 /// is 0 for lists with fewer than two vectors.

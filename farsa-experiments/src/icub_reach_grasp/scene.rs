@@ -28,16 +28,16 @@ struct Part {
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Robot, the ball and the table.
+    /// Description of the robot, the ball and the table.
     pub robot: Robot,
     /// The iCub from which the description was built.
     pub icub: Icub,
     /// Configuration from which the scene was built.
     pub config: Config,
-    /// Joints that move, with their angles at the start \[rad\].
+    /// Moving joints with their start angles \[rad\].
     start: Vec<(JointId, f32)>,
     parts: [Part; PARTS],
-    /// Ball with everything but the hand.
+    /// Contact pairs of the ball with everything except the hand.
     others: Vec<PairId>,
 }
 

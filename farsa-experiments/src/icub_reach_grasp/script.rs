@@ -1,4 +1,4 @@
-//! A handwritten controller, which demonstrates that the task can be solved with the motors of the evolved agents.
+//! A handwritten controller. It demonstrates that the task can be solved with the motors of the evolved agents.
 
 use farsa_body::Pose;
 use farsa_body::actuators::Law;
@@ -14,7 +14,7 @@ use crate::icub_reach_grasp::motors::CONTROLLED;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::smooth::smooth;
 
-/// Downward pitch of the palm, which comes from above and from the right \[deg\].
+/// Downward pitch of the palm as it approaches from above and from the right \[deg\].
 const DOWN: f64 = 60.0;
 /// Turns of the palm's direction about the vertical, from the left. The first one in reach of inverse kinematics is
 /// taken \[deg\].

@@ -1,4 +1,4 @@
-//! The sensors of the robot, which are the left eye, four joint angles and touch.
+//! The sensors of the robot. They measure the image of the left eye, four joint angles and touch.
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, PairId, Sensor};

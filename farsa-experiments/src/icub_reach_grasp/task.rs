@@ -1,4 +1,4 @@
-//! The task of `icub-reach-grasp`, which runs and records episodes of evolved networks.
+//! The task of `icub-reach-grasp`. It runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub struct GraspTask {
     episode: GraspEpisode<Agent>,
     protocols: Arc<Protocols>,
     parameters: Arc<[Parameter]>,
-    /// Recorded eye, the left one.
+    /// Left eye, whose image is recorded.
     eye: Arc<Camera>,
 }
 

@@ -1,4 +1,4 @@
-//! The demonstrator, which executes the scripted grasp and optionally mixes in the commands of the network.
+//! The demonstrator. It executes the scripted grasp and optionally mixes in the commands of the network.
 
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub(crate) struct Record {
     pub(crate) x: Vec<f32>,
     /// Desired motor values `[ticks x 23]`.
     pub(crate) wanted: Vec<f32>,
-    /// Trial succeeded by the experiment's definition.
+    /// Success of the trial by the experiment's definition.
     pub(crate) success: bool,
 }
 

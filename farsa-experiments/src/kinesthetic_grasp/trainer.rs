@@ -52,7 +52,7 @@ pub(crate) struct Trainer {
     layout: LeakyLayout,
     leak: Leak,
     weight_range: f64,
-    /// Divisor of each sensor value in training.
+    /// Divisors of the sensor values in training.
     units: Vec<f32>,
     demonstrator: Demonstrator,
     records: Vec<Record>,

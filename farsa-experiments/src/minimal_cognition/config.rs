@@ -12,7 +12,7 @@ use farsa_lab::{Error, Setting, Settings};
 pub struct Config {
     /// Width of the line on which the agent moves.
     pub width: f64,
-    /// Time step of the Euler method, which is used for the network and for all movements.
+    /// Time step of the Euler method. It is used for the network and for all movements.
     pub time_step: f64,
     /// Number of trials in an evaluation. Circles and diamonds alternate.
     pub trials: u32,
@@ -34,7 +34,7 @@ pub struct Config {
     pub speed: f64,
     /// Initial height of the center of an object above the center of the agent.
     pub start_height: f64,
-    /// Height at which a trial ends.
+    /// Height of the object at which a trial ends.
     pub end_height: f64,
     /// Largest horizontal distance between the object and the agent at the start.
     pub offset: f64,

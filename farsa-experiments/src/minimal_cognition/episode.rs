@@ -125,7 +125,7 @@ impl AgentEpisode {
         (self.places[1] - self.places[0]).abs()
     }
 
-    /// Computes the reward as if the trial ended now. This is between 0 and 1.
+    /// Computes the reward as if the trial ended now. It is between 0 and 1.
     pub fn score(&self) -> f64 {
         let part = (self.distance() / self.config.clip).min(1.0);
         match self.object {

@@ -1,4 +1,4 @@
-//! The experiment `minimal-cognition`, which studies categorical perception.
+//! The experiment `minimal-cognition`. It studies categorical perception.
 
 use core::f64::consts::FRAC_PI_4;
 
@@ -86,7 +86,7 @@ pub struct Agent {
     wiring: Wiring,
     episode: AgentEpisode,
     interventions: Interventions,
-    /// Shape that falls and the part of the line where it starts, in a case of `psychophysics`.
+    /// Falling shape and the part of the line where it starts, in a case of `psychophysics`.
     falling: Option<(Object, [f64; 2])>,
 }
 

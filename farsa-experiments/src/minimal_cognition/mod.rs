@@ -1,4 +1,4 @@
-//! The experiment `minimal-cognition`, which studies categorical perception.
+//! The experiment `minimal-cognition`. It studies categorical perception.
 
 /// The values of `minimal-cognition`, as settings.
 mod config;

@@ -6,9 +6,9 @@ use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry};
 
 use crate::minimal_cognition::config::Config;
 
-/// Number of rays, which equals the number of sensory neurons. They are ordered from left to right.
+/// Number of rays and of sensory neurons. They are ordered from left to right.
 pub const RAYS: usize = 7;
-/// Number of inner neurons, which are ordered from left to right.
+/// Number of inner neurons. They are ordered from left to right.
 pub const INNER: usize = 5;
 /// Number of motor neurons. The first one moves the agent to the right and the second one to the left.
 pub const MOTORS: usize = 2;
@@ -82,12 +82,12 @@ impl Wiring {
         Ok(Self { symmetry, parameters })
     }
 
-    /// Gets the number of genes. This is 47.
+    /// Gets the number of genes. It is always 47.
     pub fn genes(&self) -> usize {
         self.parameters.len()
     }
 
-    /// Gets the encoded parameters and their ranges. These are ordered by the first parameter of the network that
+    /// Gets the encoded parameters and their ranges. They are ordered by the first parameter of the network that
     /// they determine.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters

@@ -3,7 +3,7 @@
 /// The shape of a falling object. Coordinates are relative to its center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Object {
-    /// A circle, which the agent has to catch.
+    /// A circle that the agent has to catch.
     Circle {
         /// Radius of the circle.
         radius: f64,

@@ -24,7 +24,7 @@ pub struct PushConfig {
     pub mass: f64,
     /// Coefficient of friction between the box and the ground.
     pub friction: f64,
-    /// Smallest and largest initial distance between the robot and a circle around the box.
+    /// Smallest and largest initial distance between the hull of the robot and a circle around the box.
     pub apart: [f64; 2],
     /// Displacement of the box required in a successful trial.
     pub far: f64,
@@ -126,7 +126,7 @@ impl PushConfig {
         self.robot.max_wheel_speed * self.robot.wheel_radius
     }
 
-    /// Gets the number of infrared sensors. These are the inputs of the controller.
+    /// Gets the number of infrared sensors. It equals the number of inputs of the controller.
     pub fn inputs(&self) -> usize {
         self.robot.infrared.angles.len()
     }

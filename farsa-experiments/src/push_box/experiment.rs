@@ -1,4 +1,4 @@
-//! The experiment `push-box`, which requires a world with movable objects.
+//! The experiment `push-box`. It requires a world with movable objects.
 
 use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 

@@ -1,4 +1,4 @@
-//! The experiment `push-box`, which requires a world with movable objects.
+//! The experiment `push-box`. It requires a world with movable objects.
 
 /// A pusher without evolution, to compare evolved ones with.
 #[cfg(feature = "rapier")]

@@ -1,4 +1,4 @@
-//! The task of `push-box`, which runs and records episodes of evolved controllers.
+//! The task of `push-box`. It runs and records episodes of evolved controllers.
 
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};

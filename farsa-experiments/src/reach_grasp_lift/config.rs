@@ -29,7 +29,7 @@ pub enum SphereFrame {
     /// Mapping X = ty, Y = tx. A negative tx is towards the right arm.
     #[default]
     Forward,
-    /// Mapping X = -tx, Y = -ty, which corresponds to the axes of the iCub's root. It results in the same four
+    /// Mapping X = -tx, Y = -ty, corresponding to the axes of the iCub's root. It results in the same four
     /// positions, but reverses their assignment to the initial postures of the arm.
     Icub,
 }
@@ -62,15 +62,15 @@ pub struct Config {
     pub arm_poses: [f64; 4 * TRIALS],
     /// Initial position (tx, ty) of the sphere in each trial (in centimeters).
     pub sphere_positions: [f64; 2 * TRIALS],
-    /// Mapping of these positions to the world.
+    /// Mapping from these positions to the world.
     pub sphere_frame: SphereFrame,
     /// Largest random displacement of a joint at the start (in degrees).
     pub joint_displacement: f64,
-    /// Largest random displacement of the sphere along x and y at the start (in centimeters).
+    /// Largest random displacement of the sphere along x and along y at the start (in centimeters).
     pub sphere_displacement: f64,
     /// Defines which individuals share the displacements.
     pub displacement: Displacement,
-    /// Point in which the axes of the joints J1 to J3 intersect (in meters).
+    /// Position in the world at which the axes of J1 to J3 intersect (in meters).
     pub shoulder: [f64; 3],
     /// Variant of the muscle model.
     pub muscles: MuscleVariant,
@@ -102,7 +102,7 @@ pub struct Config {
     pub table_x: [f64; 2],
     /// Lower and upper ends of the table top along y (in meters).
     pub table_y: [f64; 2],
-    /// Depth of the table, which is a solid block below z = 0 (in meters).
+    /// Depth of the table (in meters). The table is a solid block below z = 0.
     pub table_depth: f64,
     /// Coefficient of sliding friction. This is the same for all surfaces.
     pub friction: f64,
@@ -277,7 +277,7 @@ impl Config {
         LeakyLayout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
     }
 
-    /// Returns the number of control steps per second. This is at least one.
+    /// Returns the number of control steps per second. It is at least one.
     pub fn steps_per_second(&self) -> u32 {
         (1.0 / self.time_step).round().max(1.0) as u32
     }

@@ -19,7 +19,7 @@ pub struct Judge {
     trial: Trial,
     seen: Observation,
     earned: Rewards,
-    /// Trials whose posture and place there are at the start, where they are not the trial's own.
+    /// Trials whose start posture and place replace those of the current trial.
     starts: Option<[usize; 2]>,
 }
 

@@ -22,7 +22,7 @@ pub enum ContactTerm {
     /// `720 = 0.6 * 1200`.
     #[default]
     Capped,
-    /// The term is 0.2/(1 + contacts/4), which follows the print literally. Note that it penalizes contacts.
+    /// The term is 0.2/(1 + contacts/4), following the print literally. Note that it penalizes contacts.
     Literal,
     /// The term is 0.2 (1 - 1/(1 + contacts/4)).
     Saturating,
@@ -73,11 +73,11 @@ impl Default for Judgement {
 /// The terms of the reward before the caps are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Rewards {
-    /// Term FR, which is the sum of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot) over all reach steps.
+    /// Term FR, the sum of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot) over all reach steps.
     pub reach: f64,
-    /// Term FG, which is the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
+    /// Term FG, the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
     pub grasp: f64,
-    /// Term FL, which is the number of lift steps in which the fingers touched the sphere and the table did not.
+    /// Term FL, the number of lift steps in which the fingers touched the sphere and the table did not.
     pub lift: f64,
     /// Sum of the bonuses of all trials that have ended.
     pub bonus: f64,

@@ -120,7 +120,7 @@ impl Phase {
         }
     }
 
-    /// Returns the bonus for a trial that ends in this phase. This is added to the rewards of its steps \[Ferrauto2010,
+    /// Returns the bonus for a trial that ends in this phase. It is added to the rewards of its steps \[Ferrauto2010,
     /// 2.3.4\].
     pub fn bonus(self) -> f64 {
         match self {

@@ -34,7 +34,7 @@ type TouchPatches = Vec<Touch<Vec<PairId>>>;
 /// The description of the robot, together with the identifiers of its parts.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Arm, the hand, the sphere and the table.
+    /// Description of the arm, the hand, the sphere and the table.
     pub robot: Robot,
     /// Arm and hand from which the description was built.
     pub arm: ArmAndHand,

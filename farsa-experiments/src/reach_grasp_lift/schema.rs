@@ -58,7 +58,7 @@ fn labels() -> Vec<(String, &'static str)> {
 pub(crate) struct EpisodeRecorder {
     /// The arm's muscles, for their lengths and torques.
     muscles: Vec<MusclePair<f32>>,
-    /// Bodies that have a shape, but for the palm and the sphere.
+    /// Bodies that have a shape, except for the palm and the sphere.
     other_bodies: Vec<BodyId>,
 }
 

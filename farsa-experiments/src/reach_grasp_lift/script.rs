@@ -24,7 +24,7 @@ const PALM_DOWN: [[f64; 7]; 4] = [
 /// The places that they belong to, X and Y in the world \[m\].
 const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
-/// The timing and the gains of the script, which were tuned by hand in two simulators.
+/// The timing and the gains of the script. They were tuned by hand in two simulators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
     /// Durations of reaching the way-point, descending, closing and lifting (in seconds). The lifted posture is
@@ -62,7 +62,7 @@ impl Default for Timetable {
     }
 }
 
-/// A static model of the arm, which computes postures and the muscle activations that hold them.
+/// A static model of the arm. It computes postures and the muscle activations that hold them.
 #[derive(Clone, Debug)]
 pub struct Statics {
     tree: KinematicTree,

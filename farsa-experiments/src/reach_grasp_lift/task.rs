@@ -1,4 +1,4 @@
-//! The task of `reach-grasp-lift`, which runs and records episodes of evolved networks.
+//! The task of `reach-grasp-lift`. It runs and records episodes of evolved networks.
 
 use std::sync::Arc;
 

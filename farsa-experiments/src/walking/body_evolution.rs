@@ -1,4 +1,4 @@
-//! The experiment `body-evolution`, which evolves the body of a walker and optionally a network at its hip.
+//! The experiment `body-evolution`. It evolves the body of a walker and optionally a network at its hip.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -87,7 +87,7 @@ pub struct Config {
     pub walker: Walker,
     /// Lowest and highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
-    /// Number of hidden neurons of the network, which exists only if there is a motor.
+    /// Number of hidden neurons of the network. If there is no motor, there is no network.
     pub hidden: u32,
     /// Largest absolute value of a weight.
     pub weights: f64,

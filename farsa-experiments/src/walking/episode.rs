@@ -18,7 +18,7 @@ use farsa_num::{Domain, Scalar, Stream};
 use crate::walking::gait::{End, Gait, Rules};
 use crate::walking::walker::{Posture, Walker, WalkerParts};
 
-/// Number of inputs of a walker's network, which are two angles, two speeds and two touch sensors.
+/// Number of inputs of a walker's network. They are two angles, two speeds and two touch sensors.
 pub const SENSES: usize = 6;
 /// The number of last steps in the mean of the pace.
 const LAST: usize = 10;
@@ -37,7 +37,7 @@ pub struct Launch {
 /// The environment of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// Slope of the ground, which descends in the walking direction (in radians).
+    /// Slope of the ground (in radians). The ground descends in the walking direction.
     pub slope: f64,
     /// Acceleration of gravity (in m/s2).
     pub gravity: f64,
@@ -229,7 +229,7 @@ impl WalkerEpisode {
         })
     }
 
-    /// Computes the unit of time of the walking model in seconds. This is sqrt(leg length / gravity) for the outer legs.
+    /// Computes the unit of time of the walking model in seconds. It is sqrt(leg length / gravity) for the outer legs.
     pub fn unit_of_time(&self) -> f64 {
         Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
     }

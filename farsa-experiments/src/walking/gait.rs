@@ -1,4 +1,4 @@
-//! Tracks the feet of a walker, which alternate between stance and swing, and detects the end of a walk.
+//! Tracks the alternating stance and swing of a walker's feet and detects the end of a walk.
 
 use farsa_body::ports::{Arrange, Contacts, Handles, JointId, Joints};
 
@@ -67,7 +67,7 @@ impl Default for Rules {
 pub struct Footfall {
     /// Time at which the foot touched the ground (in seconds). It is interpolated between two ticks.
     pub time: f64,
-    /// Index of the foot, which is 0 for the outer and 1 for the inner foot.
+    /// Index of the foot. It is 0 for the outer and 1 for the inner foot.
     pub foot: usize,
     /// Position at which the sole touched the ground (in meters).
     pub place: f64,
@@ -329,7 +329,7 @@ impl Gait {
         self.footfalls
     }
 
-    /// Gets the index of the stance foot. This is 0 for the outer and 1 for the inner foot.
+    /// Gets the index of the stance foot. It is 0 for the outer and 1 for the inner foot.
     pub fn stance(&self) -> usize {
         self.stance
     }

@@ -1,6 +1,6 @@
 //! The experiments `passive-walker` and `body-evolution`, and the simplest walking model.
 
-/// The experiment `body-evolution`, which evolves the body of a walker and optionally a network at its hip.
+/// The experiment `body-evolution`. It evolves the body of a walker and optionally a network at its hip.
 pub mod body_evolution;
 /// An episode of a walker, with or without a network at the hip: a launch, then steps until it falls or its time is
 /// over.

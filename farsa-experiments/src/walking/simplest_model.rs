@@ -81,7 +81,7 @@ pub struct ModelGait {
     pub swing_rate: f64,
     /// Duration of a step, in units of sqrt(leg length / gravity).
     pub period: f64,
-    /// Eigenvalues of the derivative of the return map, each as real and imaginary part.
+    /// Eigenvalues of the derivative of the return map, as real and imaginary parts.
     pub multipliers: [[f64; 2]; 2],
 }
 

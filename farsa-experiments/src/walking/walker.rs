@@ -22,11 +22,11 @@ const RAIL: f64 = 1e-9;
 pub struct Legs {
     /// Distance from the hip to the sole in meters.
     pub length: f64,
-    /// Mass of the shanks, which is uniformly distributed between hip and sole (in kilograms).
+    /// Mass of the shanks (in kilograms). It is uniformly distributed between hip and sole.
     pub mass: f64,
     /// Mass at the sole (in kilograms).
     pub foot_mass: f64,
-    /// Radius of the round sole, whose center is on the leg (in meters).
+    /// Radius of the round sole (in meters). Its center is on the leg.
     pub foot_radius: f64,
 }
 
@@ -69,7 +69,7 @@ pub struct Walker {
 pub struct WalkerParts {
     /// Joints that move the hip along x and z.
     pub slides: [JointId; 2],
-    /// Joint between the hip and the outer legs, and the joint between the outer and the inner legs. A positive
+    /// The joint of the hip and the outer legs and the joint of the outer and the inner legs. A positive
     /// angle moves the foot back.
     pub hinges: [JointId; 2],
     /// Joints of the ground plates for the outer and the inner legs.

@@ -86,7 +86,7 @@ impl Architecture {
         Self { inputs_to_outputs: true, ..self }
     }
 
-    /// Adds connections among the outputs, which use the activations of the previous step.
+    /// Adds connections among the outputs. They use the activations of the previous step.
     pub const fn with_recurrent_outputs(self) -> Self {
         Self { among_outputs: true, ..self }
     }

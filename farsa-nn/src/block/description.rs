@@ -38,7 +38,7 @@ pub struct Group {
     pub neurons: usize,
     /// Activation function. It is not applied to inputs.
     pub activation: Activation,
-    /// Factor by which the net input is multiplied.
+    /// Factor by which the net input is multiplied. The default is 1.
     pub slope: f32,
     /// If true, each neuron has a bias, and its net input starts at this value. Otherwise it is 0.
     pub bias: bool,
@@ -92,7 +92,7 @@ pub enum Block {
         from: Span,
         /// Neurons at which the connections end.
         to: Span,
-        /// Delay of the activations in steps. Before the first step they are 0.
+        /// Delay of the activations in steps. Delayed activations from before the first step are 0.
         delay: usize,
     },
     /// Computes new activations from the net inputs.
@@ -101,9 +101,9 @@ pub enum Block {
     Gain(Span),
     /// Copies the activation of a neuron to the gains of a span.
     ModulatedGain {
-        /// Neurons whose gains are set.
+        /// Neurons whose gains are replaced.
         neurons: Span,
-        /// Neuron that provides the activation.
+        /// Neuron whose activation becomes the gain.
         by: usize,
     },
 }

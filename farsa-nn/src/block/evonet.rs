@@ -15,7 +15,7 @@ pub struct EvonetRanges {
     pub weight: f32,
     /// Largest absolute value of a bias.
     pub bias: f32,
-    /// Largest gain.
+    /// Largest gain of a neuron.
     pub gain: f32,
 }
 

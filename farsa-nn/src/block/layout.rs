@@ -1,4 +1,4 @@
-//! The layout of a block network, which also defines the order of its parameters.
+//! The layout of a block network. It also defines the order of the parameters.
 
 use core::ops::Range;
 

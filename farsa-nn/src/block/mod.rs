@@ -1,4 +1,4 @@
-//! Block networks, which permit any connections between groups of neurons and any order of evaluation.
+//! Block networks. They permit any connections between groups of neurons and any order of evaluation.
 
 /// Common architectures as blocks.
 mod architecture;

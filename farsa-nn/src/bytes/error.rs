@@ -8,17 +8,17 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
-    /// Version of the format. This must be supported by this program.
+    /// Version of the format. The program must support it.
     Version,
-    /// The CRC-32 at the end, which must match the preceding bytes.
+    /// CRC-32 at the end. It must match the preceding bytes.
     Checksum,
     /// Number of the kind of controller.
     Kind,
-    /// Stored hash of the layout. This must match the kind and the shape.
+    /// Stored hash of the layout. It must match the kind and the shape.
     LayoutHash,
-    /// Hash of the layout. This must be that of the caller.
+    /// Hash of the layout. It must equal the hash that the caller expects.
     Layout,
-    /// Hash of the channels. This must be that of the caller.
+    /// Hash of the channels. It must equal the hash that the caller expects.
     Channels,
 }
 
@@ -67,7 +67,7 @@ pub enum BytesError {
     },
     /// The numbers cannot be used in place, because the address of the bytes is not aligned.
     Misaligned {
-        /// Remainder of the address.
+        /// Remainder of the address when divided by the alignment.
         remainder: usize,
         /// Required alignment.
         alignment: usize,
@@ -76,7 +76,7 @@ pub enum BytesError {
     BigEndian,
     /// A buffer has the wrong length.
     Buffer {
-        /// Required length.
+        /// Required length of the buffer.
         expected: usize,
         /// Length of the buffer.
         found: usize,

@@ -1,4 +1,4 @@
-//! The common frame of all binary formats, which consists of a header, the content and a checksum.
+//! The common frame of all binary formats. It consists of a header, the content and a checksum.
 
 use farsa_num::{Digest, crc32};
 

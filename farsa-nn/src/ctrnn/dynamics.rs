@@ -16,7 +16,7 @@ use crate::lesion::Lesion;
 pub(crate) struct Dynamics<'a, R = f32> {
     pub(crate) integrator: Integrator,
     pub(crate) activation: Activation,
-    /// States.
+    /// States of the neurons.
     pub(crate) y: &'a mut [R],
     /// Outputs that belong to `y`, before and after a step.
     pub(crate) o: &'a mut [R],

@@ -31,7 +31,7 @@ use crate::fault::{LayoutFault, Slice};
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 ///
-/// Source: `[Beer1996]`, which reports the number of genes of its agent.
+/// Source: `[Beer1996]`. It reports the number of genes of its agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CtrnnSymmetry<'a> {
     layout: CtrnnLayout,

@@ -29,7 +29,7 @@ pub enum Loss {
 pub struct Demonstration<'a> {
     /// Sensor values `[ticks x sensors]`.
     pub x: &'a [f32],
-    /// Target motor values `[ticks x outputs]`, which are in [0, 1].
+    /// Target motor values `[ticks x outputs]`, in [0, 1].
     pub wanted: &'a [f32],
 }
 

@@ -53,9 +53,9 @@ pub struct Learner<R, O> {
 /// The mean of parameters over steps.
 #[derive(Clone, Debug)]
 struct Mean<R> {
-    /// Weight of each step.
+    /// Weight of each new step.
     share: R,
-    /// Total weight so far, from 0 to 1, then the mean \[parameters\].
+    /// Total weight so far (between 0 and 1), followed by the mean \[parameters\].
     state: Vec<R>,
 }
 

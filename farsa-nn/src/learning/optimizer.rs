@@ -1,8 +1,8 @@
-//! Optimizers, which change parameters in the direction of a gradient.
+//! Optimizers that change parameters by means of a gradient.
 
 use farsa_num::Real;
 
-/// An optimizer, which minimizes a cost by means of its gradient.
+/// An optimizer that minimizes a cost by means of its gradient.
 ///
 /// An implementation contains only its settings. Its memory is a slice provided by the caller and initially zero, so a
 /// checkpoint consists of two slices.
@@ -25,9 +25,9 @@ pub trait Optimizer<R: Real> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
-    /// Learning rate. This multiplies the gradient.
+    /// Learning rate by which the gradient is multiplied.
     pub rate: f64,
-    /// Fraction of a change added to the next one, in [0, 1).
+    /// Fraction of a change that is added to the next one, in [0, 1).
     pub momentum: f64,
 }
 
@@ -52,11 +52,11 @@ impl<R: Real> Optimizer<R> for Momentum {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adam {
-    /// Size of a step.
+    /// Approximate change of a parameter in a step.
     pub rate: f64,
-    /// Decay rates of the mean gradient and of the mean squared gradient, each in [0, 1).
+    /// Decay rates of the mean gradient and of the mean squared gradient, in [0, 1).
     pub decays: [f64; 2],
-    /// A small number added to the root of the mean squared gradient.
+    /// Small number added to the root of the mean squared gradient. The default is 1e-8.
     pub epsilon: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The logistic function in integer arithmetic, which is interpolated linearly between the entries of a table.
+//! The logistic function in integer arithmetic, interpolated linearly between the entries of a table.
 
 /// Fraction bits of activations: 2^15 is 1.
 pub(crate) const ACTIVATION_BITS: u32 = 15;

@@ -53,7 +53,7 @@ impl TryFrom<SavedScale> for QuantizedScale {
 }
 
 impl QuantizedScale {
-    /// Smallest number of fraction bits of a sum, which is 10. With fewer bits, the error of the logistic function
+    /// Smallest number of fraction bits of a sum. With fewer than 10 bits, the error of the logistic function
     /// would exceed 1e-4.
     pub const SUM_BITS_MIN: u32 = 10;
 

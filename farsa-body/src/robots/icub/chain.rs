@@ -14,15 +14,15 @@ use crate::robots::icub::table::{ARM, NECK, Part, TORSO};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Chain {
-    /// Pitch, roll and yaw of the trunk.
+    /// Pitch, roll and yaw of the trunk (in radians).
     Torso,
-    /// Pitch, roll and yaw of the head.
+    /// Pitch, roll and yaw of the head (in radians).
     Neck,
     /// Seven joints of the left arm, from the shoulder to the wrist.
     LeftArm,
     /// Seven joints of the right arm, from the shoulder to the wrist.
     RightArm,
-    /// Twenty joints of the left hand, which are J8 to J27 of [`crate::robots::Hand`].
+    /// Twenty joints of the left hand. They are J8 to J27 of [`crate::robots::Hand`].
     LeftHand,
     /// Twenty joints of the right hand.
     RightHand,
@@ -86,7 +86,7 @@ impl Chain {
         }
     }
 
-    /// Returns the indices of the bodies. These are also the indices of the joints.
+    /// Returns the indices of the bodies. The joints have the same indices.
     pub fn bodies(self) -> Range<usize> {
         [0..3, 3..6, 6..13, 13..20, 20..40, 40..60][self as usize].clone()
     }

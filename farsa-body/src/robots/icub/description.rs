@@ -25,9 +25,9 @@ const RIGHT_PALM: [f64; 4] = [0.5, 0.5, -0.5, 0.5];
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum JointControl {
-    /// Commands are joint speeds [rad/s], which are controlled by [`Law::Velocity`].
+    /// Commands are joint speeds [rad/s]. Motors follow them with [`Law::Velocity`].
     Velocity,
-    /// Commands are joint positions [rad], which are controlled by [`Law::Servo`].
+    /// Commands are joint positions [rad]. Servos follow them with [`Law::Servo`]. This is the default.
     #[default]
     Position,
 }
@@ -63,15 +63,15 @@ pub enum JointControl {
 pub struct Icub {
     /// Position of the root link in the world (in meters).
     pub root: [f64; 3],
-    /// Chains actuated, in any order. The joints of all other chains are fixed.
+    /// Actuated chains, in any order. The joints of all other chains are fixed.
     pub actuated: Vec<Chain>,
-    /// Angles at which rigid chains are fixed, and the initial angles of the other chains.
+    /// Joint angles of all chains. Rigid chains are fixed at these angles, and all other chains start at them.
     pub posture: IcubPosture,
     /// Interpretation of commands for the torso, the neck and the arms. The hands always use position servos.
     pub control: JointControl,
-    /// Position error at which a servo reaches the maximum effort of its joint (in radians).
+    /// Position error at which a servo reaches the maximum effort of its joint (in radians). The default is 0.1.
     pub saturation_angle: f64,
-    /// Ratio of the damping and the stiffness of a servo (in seconds).
+    /// Ratio of the damping and the stiffness of a servo (in seconds). The default is 0.05.
     pub servo_time: f64,
     /// Speed error at which a velocity motor reaches the maximum effort of its joint (in radians per second).
     pub saturation_speed: f64,
@@ -124,7 +124,7 @@ impl Icub {
     /// Outward normal of the inner side of the palm, in the frame of the palm.
     pub const PALM_NORMAL: [f64; 3] = Hand::PALM_NORMAL;
 
-    /// Returns the palm on the given side. This is the last segment of the arm.
+    /// Returns the palm on the given side. It is the last segment of the arm.
     pub fn palm(side: Side) -> BodyId {
         BodyId(side.arm().bodies().end as u16 - 1)
     }

@@ -7,9 +7,9 @@ use crate::robots::icub::chain::Chain;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct IcubPosture {
-    /// Pitch, roll and yaw of the trunk.
+    /// Pitch, roll and yaw of the trunk (in radians).
     pub torso: [f64; 3],
-    /// Pitch, roll and yaw of the head.
+    /// Pitch, roll and yaw of the head (in radians).
     pub neck: [f64; 3],
     /// Angles of the left arm.
     pub left_arm: [f64; 7],

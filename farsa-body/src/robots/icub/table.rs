@@ -55,7 +55,7 @@ impl Part {
 /// Sine and cosine of the 15 degrees by which the axes of the shoulder are turned.
 const SHOULDER: [f64; 2] = [0.258_819_045_102_520_74, 0.965_925_826_289_068_3];
 
-/// Pitch, roll and yaw of the trunk. The first is in the world.
+/// Pitch, roll and yaw of the trunk (in radians). The first is in the world.
 pub(super) const TORSO: [Part; 3] = [
     Part {
         joint: "torso_pitch",
@@ -92,7 +92,7 @@ pub(super) const TORSO: [Part; 3] = [
     },
 ];
 
-/// Pitch, roll and yaw of the head. The first is on the chest.
+/// Pitch, roll and yaw of the head (in radians). The first is on the chest.
 pub(super) const NECK: [Part; 3] = [
     Part {
         joint: "neck_pitch",

@@ -22,13 +22,13 @@ pub struct IcubTabletop {
     pub table_y: [f64; 2],
     /// Height of the table top in meters.
     pub table_top: f64,
-    /// Thickness of the table, which is solid (in meters).
+    /// Thickness of the solid table (in meters).
     pub table_depth: f64,
     /// Red, green and blue components of the color of the table (between 0 and 1).
     pub table_color: [f64; 3],
     /// Radius of the ball in meters.
     pub ball_radius: f64,
-    /// Mass of the ball, which is solid (in kilograms).
+    /// Mass of the solid ball (in kilograms).
     pub ball_mass: f64,
     /// Red, green and blue components of the color of the ball (between 0 and 1).
     pub ball_color: [f64; 3],

@@ -1,4 +1,4 @@
-//! Cameras with two-dimensional images, which can be attached to any body.
+//! Cameras with two-dimensional images. You can attach them to any body.
 
 /// The places and sizes of colors in the image.
 mod blobs;

@@ -7,7 +7,7 @@ use crate::recorder::Recorder;
 use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 
-/// Converts the infrared channels of a robot to rays, which can be drawn in recordings.
+/// Converts the infrared channels of a robot to rays that can be drawn in recordings.
 ///
 /// ```
 /// use farsa_body::robots::MobileRobot;

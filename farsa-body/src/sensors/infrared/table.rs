@@ -163,7 +163,7 @@ pub enum InfraredTableError {
     Size {
         /// Number of the line.
         line: usize,
-        /// Name of the size.
+        /// Name of the size that the line should contain.
         field: &'static str,
         /// Text in the file.
         found: String,
@@ -195,7 +195,7 @@ pub enum InfraredTableError {
     Turn {
         /// Number of the line.
         line: usize,
-        /// Number that is expected after `TURN`.
+        /// Expected number after `TURN`.
         expected: usize,
         /// Text in the file.
         found: String,
