@@ -52,7 +52,7 @@ pub trait Handles {
     note = "a lane of a batch and a board have ports but no step"
 )]
 pub trait World: Handles {
-    /// Advances the world by one control step, whose duration is [`World::time_step`].
+    /// Advances the world by one control step. Its duration is [`World::time_step`].
     fn step(&mut self);
     /// Returns the duration of a control step (in seconds).
     fn time_step(&self) -> f32;
@@ -175,8 +175,8 @@ pub struct PairContact {
     /// Mean position of the contact points in the world, weighted by normal force (in meters). It is zero if there
     /// is no contact.
     pub point: [f32; 3],
-    /// Largest penetration depth (in meters). A negative value is the remaining distance, which only some worlds
-    /// compute.
+    /// Largest penetration depth (in meters). A negative value is the remaining distance. Only some worlds
+    /// compute it.
     pub depth: f32,
 }
 
@@ -278,7 +278,7 @@ pub trait Planar: Sight {
 pub trait Snapshot {
     /// Returns the length of a snapshot.
     fn snapshot_len(&self) -> usize;
-    /// Writes a snapshot to `out`, which must have [`snapshot_len`](Self::snapshot_len) elements. It contains
+    /// Writes a snapshot to `out`. This slice must have [`snapshot_len`](Self::snapshot_len) elements. It then contains
     /// everything that influences later steps or is reported by a port.
     fn save(&self, out: &mut [f32]);
     /// Restores a snapshot that was written by [`Snapshot::save`]. The simulation then continues with identical bits.

@@ -3,7 +3,7 @@
 use farsa_body::robots::MobileRobot;
 use farsa_lab::exports::{SensorExport, SensorReading};
 
-/// The infrared sensors of these names, which look along these angles \[rad\], as another program reads them.
+/// The infrared sensors with these names and directions \[rad\], as another program reads them.
 pub(crate) fn infrared_exports<'a>(
     names: impl IntoIterator<Item = String> + 'a,
     angles: &'a [f64],

@@ -26,7 +26,7 @@ pub enum Leak {
     /// The printed equation `H(t) = d*y(t) + (1-d)*y(t-1)`. Its memory is one step long.
     TwoTap,
     /// Equation `H(t) = d*H(t-1) + (1-d)*y(t)` of the original program. Here `d` is the weight of the previous
-    /// value, which is computed from a gene `p` as `|p|/range` clamped to [0, 1].
+    /// value. It is computed from a gene `p` as `|p|/range` clamped to [0, 1].
     Evonet,
 }
 
@@ -46,7 +46,7 @@ impl Leak {
     /// Returns the time constant (in seconds) of a neuron with leak `d` (between 0 and 1) that is updated every
     /// `time_step` (in seconds).
     ///
-    /// In each step, the fraction `1-d` or `d` of the previous activation is kept, which corresponds to `exp(-dt/tau)`.
+    /// In each step, the fraction `1-d` or `d` of the previous activation is kept. This equals `exp(-dt/tau)`.
     /// If the response is constant, the neuron follows `tau da/dt = -a + y`. The result is 0 if nothing is kept and
     /// infinite if everything is kept. It is `None` for [`Leak::TwoTap`], whose memory is one step, and for values of
     /// `d` outside [0, 1].

@@ -16,7 +16,7 @@ pub enum LeakyParameter {
     OutputWeight,
     /// Bias `beta_i` added to the net input of hidden neuron `i`.
     Bias,
-    /// Leak `d_i` of hidden neuron `i` [0..1], which is interpreted according to a [`Leak`](crate::Leak).
+    /// Leak `d_i` of hidden neuron `i` [0..1]. It is interpreted according to a [`Leak`](crate::Leak).
     Leak,
 }
 
@@ -25,7 +25,7 @@ impl LeakyParameter {
     pub const ALL: [Self; 5] = [Self::SensorWeight, Self::RecurrentWeight, Self::OutputWeight, Self::Bias, Self::Leak];
 }
 
-/// The layout of a [`LeakyNetwork`](crate::LeakyNetwork), which consists of the numbers of sensors `n`, hidden neurons
+/// The layout of a [`LeakyNetwork`](crate::LeakyNetwork). It consists of the numbers of sensors `n`, hidden neurons
 /// `h` and outputs `o`, and of the slope of its logistic function.
 ///
 /// All parameters are stored in one slice. Weights are ordered by source, so the weights to all targets of a source are
@@ -39,8 +39,8 @@ impl LeakyParameter {
 /// | [`Bias`](LeakyParameter::Bias) | `h` | `n*h + h*h + h*o + i` |
 /// | [`Leak`](LeakyParameter::Leak) | `h` | `n*h + h*h + h*o + h + i` |
 ///
-/// All counts saturate. If a layout is too large for the machine, it has `usize::MAX` parameters, which no slice can
-/// contain.
+/// All counts saturate. If a layout is too large for the machine, it has `usize::MAX` parameters. No slice can
+/// contain them.
 ///
 /// Source: `[Ferrauto2010]` chapter 2. It has the totals 792 and 756 but not the order.
 ///

@@ -24,7 +24,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// For lesions, hidden neurons are numbered first, followed by outputs. The value of a lesioned hidden neuron is set
 /// before and after the step, so its recurrent connections transmit this value, too.
 ///
-/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is added first and not last, which only affects rounding.
+/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is added first and not last. This only affects rounding.
 /// The recurrent sum, which the source describes in words and confirms by its parameter counts, is explicit and uses
 /// `H(t-1)`. The initial state is zero, since the source does not specify it.
 ///

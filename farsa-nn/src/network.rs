@@ -41,8 +41,8 @@ pub struct Data<'a> {
 /// A network of the kind `M` with parameters `P` and a state `S`.
 ///
 /// The parameters can be a `static` array, a borrowed slice or a `Vec`. The state can be an array, a mutable slice or a
-/// `Vec`. Usually this type is used by the names of its kinds, which are [`LeakyNetwork`](crate::LeakyNetwork),
-/// [`Perceptron`](crate::Perceptron), [`Ctrnn`](crate::Ctrnn) and [`BlockNetwork`](crate::block::BlockNetwork).
+/// `Vec`. Usually you use its aliases [`LeakyNetwork`](crate::LeakyNetwork), [`Perceptron`](crate::Perceptron),
+/// [`Ctrnn`](crate::Ctrnn) and [`BlockNetwork`](crate::block::BlockNetwork).
 #[derive(Clone, Debug)]
 pub struct Network<M, P, S> {
     pub(crate) model: M,

@@ -36,7 +36,7 @@ pub(crate) fn ln_of_unit(x: f64) -> f64 {
     of_normal(x, 1023.0)
 }
 
-/// The logarithm of a positive normal number, whose exponent is biased by `shift`.
+/// The logarithm of a positive normal number with an exponent biased by `shift`.
 #[inline(always)]
 fn of_normal(x: f64, shift: f64) -> f64 {
     const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;

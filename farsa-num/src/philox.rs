@@ -229,7 +229,7 @@ impl Stream {
     /// Draws two independent standard normal numbers in double precision with magnitudes below 8.58. They use
     /// four words.
     ///
-    /// Source: \[Box1958\]. Deviation: the radius is computed from a uniform number in (0, 1], which is a multiple of
+    /// Source: \[Box1958\]. Deviation: the radius is computed from a uniform number in (0, 1] that is a multiple of
     /// 2^-53.
     #[inline]
     pub fn normal_pair_f64(&mut self) -> [f64; 2] {
@@ -273,8 +273,8 @@ impl Stream {
     /// Draws the number of failures before the next success, given ln(1 - p) for a success probability p. It uses two
     /// words.
     ///
-    /// This is useful for skip sampling, which only visits genes that mutate. The result is `u64::MAX` if ln(1 - p) is
-    /// not below 0 (p = 0 or NaN), and 0 if it is negative infinity (p = 1).
+    /// This is useful for skip sampling, where only mutating genes are visited. The result is `u64::MAX` if ln(1 - p)
+    /// is not below 0 (p = 0 or NaN), and 0 if it is negative infinity (p = 1).
     ///
     /// Source: inversion, \[Devroye1986\] chapter X.2. The uniform number is in (0, 1] and a multiple of 2^-53.
     #[inline]

@@ -97,7 +97,7 @@ pub trait Scalar:
     fn set_lane(&mut self, index: usize, x: Self::Real);
     /// Calls a function that is compiled for the instructions of the token.
     ///
-    /// This is useful for large pieces of code, which are then compiled only once and not in every caller. The closure
+    /// This is useful for large pieces of code. They are then compiled only once and not in every caller. The closure
     /// must be `#[inline(always)]` to inherit the instructions.
     fn vectorize<T>(simd: Self::Simd, work: impl FnOnce() -> T) -> T;
 

@@ -85,8 +85,8 @@ impl<R: Real> Servo<R> {
 impl<R: Real> Velocity<R> {
     /// Computes the effort at speed `qdot`. The desired speed is `command[0]`.
     ///
-    /// The damping of a saturated motor is limit / |speed error|, which is the slope between the present effort and
-    /// zero effort at the desired speed. Therefore a strong motor on a light joint reaches its speed within one step
+    /// The damping of a saturated motor is limit / |speed error|. This is the slope between the present effort and zero
+    /// effort at the desired speed. Therefore a strong motor on a light joint reaches its speed within one step
     /// without overshooting, and it never exceeds the limit.
     #[inline(always)]
     pub fn effort<S: Scalar<Real = R>>(&self, qdot: S, command: [S; 2]) -> Effort<S> {

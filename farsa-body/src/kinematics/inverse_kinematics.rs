@@ -138,7 +138,7 @@ fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; 
     Some(b)
 }
 
-/// The square roots of the primes, whose multiples modulo 1 spread evenly over the unit cube [Richtmyer1951].
+/// The square roots of the primes. Their multiples modulo 1 spread evenly over the unit cube [Richtmyer1951].
 fn roots_of_primes() -> impl Iterator<Item = f64> {
     let prime = |n: &u32| (2..*n).all(|d| !n.is_multiple_of(d));
     (2u32..).filter(prime).map(|n| Scalar::sqrt(f64::from(n)))
@@ -163,7 +163,7 @@ fn check(tree: &KinematicTree, goal: &Goal, start: &[f64]) -> Result<(), Inverse
 }
 
 impl InverseKinematics {
-    /// Searches joint positions for `goal`. The search begins at `start`, which contains one value per joint of the
+    /// Searches joint positions for `goal`. The search begins at `start`. It contains one value per joint of the
     /// tree (in radians or meters).
     ///
     /// The start is clamped to the joint limits. Since the first attempt moves continuously from there, the previous

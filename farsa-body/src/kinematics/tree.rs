@@ -24,8 +24,8 @@ struct Link {
 
 /// The kinematics of a robot in double precision.
 ///
-/// Joint positions are passed as slices in the order of [`KinematicTree::joints`], which contains all joints that turn
-/// or slide. Floating segments remain at the placement of their joint. A world provides the same information about its
+/// Joint positions are passed as slices in the order of [`KinematicTree::joints`]. These are all joints that turn or
+/// slide. Floating segments remain at the placement of their joint. A world provides the same information about its
 /// current state. Use this type for states that are not simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinematicTree {

@@ -212,7 +212,7 @@ impl ArmAndHand {
     }
 
     /// Returns the anatomical names of the agonist and the antagonist of each joint from J1 to J7. The agonist turns
-    /// its joint in the negative direction. The antagonist turns it in the positive direction, which is described by
+    /// its joint in the negative direction. The antagonist turns it in the positive direction. For the directions, see
     /// [`ArmAndHand::joint_labels`].
     pub const fn muscle_labels() -> [[&'static str; 2]; 7] {
         MUSCLE_LABELS
@@ -259,7 +259,7 @@ impl ArmAndHand {
     }
 
     /// Returns the distal phalange of a finger and the position of its tip in this frame (in meters). The tip is the
-    /// end of the capsule's axis, which is one radius below its surface.
+    /// end of the capsule's axis, one radius below its surface.
     pub fn fingertip(&self, finger: Finger) -> (BodyId, [f64; 3]) {
         (Self::phalanges(finger)[2], self.hand().fingertip(finger))
     }

@@ -36,7 +36,7 @@ impl Finger {
         ["thumb", "index", "middle", "ring", "little"][self as usize]
     }
 
-    /// The number of its first joint, which abducts or opposes it.
+    /// The number of its first joint. This joint abducts or opposes it.
     pub(crate) fn first_joint(self) -> u16 {
         FIRST + 4 * self as u16
     }
@@ -174,7 +174,7 @@ impl Hand {
     }
 
     /// Returns the tip of a finger of the right hand in the frame of its distal phalange (in meters). The tip is the
-    /// end of the capsule's axis, which is one radius below its surface. For the left hand, y has the opposite sign.
+    /// end of the capsule's axis, one radius below its surface. For the left hand, y has the opposite sign.
     pub fn fingertip(&self, finger: Finger) -> [f64; 3] {
         let tip = self.phalange_lengths[finger as usize][2];
         if finger == Finger::Thumb { [0.0, tip, 0.0] } else { [tip, 0.0, 0.0] }

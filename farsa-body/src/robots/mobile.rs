@@ -61,8 +61,8 @@ impl MobileRobot {
     /// Returns the Khepera. It has a radius of 35 mm, wheels of 15 mm at a distance of 55 mm that turn at up to 1.1
     /// turns/s, and eight infrared sensors.
     ///
-    /// The values are those of FARSA2, except for the height, the color and the aperture, which is interpreted as half
-    /// the angle of the cone.
+    /// The values are those of FARSA2, except for the height, the color and the aperture. The aperture is
+    /// interpreted as half the angle of the cone.
     pub fn khepera() -> Self {
         Self {
             name: "Khepera".into(),

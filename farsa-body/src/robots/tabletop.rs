@@ -11,8 +11,7 @@ use crate::robots::hand::Finger;
 
 /// A table with a sphere in front of the arm and hand. All values can be changed.
 ///
-/// The table top is at z = 0. The default values were chosen, except for the radius of the sphere, which is given by
-/// the source.
+/// The table top is at z = 0. The default radius of the sphere is given by the source. All other defaults were chosen.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Tabletop {

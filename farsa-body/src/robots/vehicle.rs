@@ -1,4 +1,4 @@
-//! Descriptions of wheeled robots with bodies and joints, which are used for model files and for worlds that support
+//! Descriptions of wheeled robots with bodies and joints. They are used for model files and for worlds that support
 //! joints.
 
 use alloc::format;
@@ -45,7 +45,7 @@ impl MobileRobot {
     ///
     /// Deviations from the planar robots: since descriptions have no cylinders, the hull is a polygon with 16 sides
     /// that deviates from the circle by at most 2 %. It ends above the ground at half the radius of a wheel, or at half
-    /// its height. The wheels are spheres, which touch the ground in one point. The friction is 0.8 below the wheels
+    /// its height. The wheels are spheres that touch the ground in one point. The friction is 0.8 below the wheels
     /// and 0 below the skids. Contacts are critically damped and 0.1 mm deep under the weight of the robot. These
     /// values were chosen. LEDs, signals and attachment devices are not represented.
     pub fn description(&self) -> Robot {

@@ -5,7 +5,7 @@ use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
 use crate::sensors::stance::Stance;
 
 /// A sensor that reads the color of the ground at several points below a robot. By default there is one channel per
-/// point, which is the mean of red, green and blue in [0, 1].
+/// point. It is the mean of red, green and blue in [0, 1].
 ///
 /// Use [`GroundColor::rgb`] to read three channels per point. The points are given in the frame of the robot and can be
 /// stored in any list. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.

@@ -4,8 +4,8 @@ use crate::channel::{ChannelError, finite, groups, positive, unit};
 use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
 use crate::sensors::beam::{Beam, BeamFrame};
 
-/// A sensor that measures distances along several beams. Each beam has one channel, which is distance / range in [0,
-/// 1]. It is 1 if nothing is within the range.
+/// A sensor that measures distances along several beams. Each beam has one channel in [0, 1]. Its value
+/// is distance / range, or 1 if nothing is within the range.
 ///
 /// Distances are measured from the hull. The beams can be stored in any list, for example one created with
 /// [`Beam::in_cone`]. Wrap the sensor in [`crate::wrappers::Noisy`] to add noise.

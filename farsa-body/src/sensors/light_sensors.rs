@@ -12,7 +12,7 @@ use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
-/// A ring of light sensors. Each sensor has one channel in [0, 1], which is the brightness of all visible lamps.
+/// A ring of light sensors. Each sensor has one channel in [0, 1]. It is the brightness of all visible lamps.
 ///
 /// A lamp contributes intensity cos(a) (reference / d)^2, where d is the distance from the sensor to the center of the
 /// lamp. The angle a is measured between this direction and the axis of the sensor. Lamps with an angle of more than 90
@@ -44,8 +44,8 @@ impl<L: AsRef<[Beam]>, B> LightSensors<L, B> {
 
 #[cfg(feature = "alloc")]
 impl<B> LightSensors<Vec<Beam>, B> {
-    /// Creates light sensors at the positions of the robot's infrared sensors. This corresponds to the Khepera, whose
-    /// sensors measure both.
+    /// Creates light sensors at the positions of the robot's infrared sensors. In the Khepera, the same sensors
+    /// measure both.
     ///
     /// # Errors
     /// Returns the errors of [`LightSensors::new`].

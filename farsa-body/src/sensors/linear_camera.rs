@@ -181,7 +181,7 @@ where
 /// sides of straight ahead, and a little more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wedge {
-    /// Cosine and sine of the angle. Both are 0 for an angle beyond 90 degrees, whose wedge has no edge.
+    /// Cosine and sine of the angle. Both are 0 for an angle beyond 90 degrees, because its wedge has no edge.
     edge: [f32; 2],
     /// Largest distance of a ray's start from the robot's origin [m].
     aside: f32,

@@ -3,8 +3,8 @@
 use crate::channel::{ChannelError, finite_range, write};
 use crate::ports::{Channels, JointId, Joints, Sensor};
 
-/// A sensor with one channel that measures the position of a joint relative to a range, which is (q - from) / (to -
-/// from).
+/// A sensor with one channel that measures the position of a joint relative to a range. The value is (q - from) /
+/// (to - from).
 ///
 /// The reading is not clamped. It is below 0 or above 1 if the joint is pushed beyond the range. It is also possible to
 /// use a decreasing range. For example, a finger that flexes towards -90 degrees can be measured with `from` 0 and `to`

@@ -7,7 +7,7 @@ use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::sensors::stance::Stance;
 
 /// A sensor that receives the signals of other robots in `SECTORS` equal sectors. Each sector has one channel in [0,
-/// 1], which is the strongest signal in the sector.
+/// 1]. It is the strongest signal in the sector.
 ///
 /// Use [`SignalSensor::mean`] to read the mean signal instead. A channel is 0 if there is no robot in the sector. The
 /// first sector is centered straight ahead, and the others follow counter-clockwise. For example, four sectors are

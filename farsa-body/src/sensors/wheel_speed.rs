@@ -3,10 +3,10 @@
 use crate::channel::{ChannelError, positive, signed_unit, unit, write};
 use crate::ports::{BodyId, Channels, JointId, Joints, Kinematics, Sensor};
 
-/// A sensor that measures the speeds of wheels. Each wheel has one channel in [0, 1], which is 1/2 + speed / (2
-/// largest). It is 1/2 at rest.
+/// A sensor that measures the speeds of wheels. Each wheel has one channel in [0, 1]. Its value is 1/2 + speed /
+/// (2 largest), or 1/2 at rest.
 ///
-/// Use [`WheelSpeed::signed`] for readings of speed / largest in [-1, 1], which are 0 at rest. Speeds beyond the
+/// Use [`WheelSpeed::signed`] for readings of speed / largest in [-1, 1]. They are 0 at rest. Speeds beyond the
 /// largest speed are clamped, and NaN is read like a wheel at rest. Wrap the sensor in [`crate::wrappers::Noisy`] to
 /// add noise.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,8 +13,8 @@ use crate::pose::{Pose, Twist};
 /// A world with points of 1 kg that move on vertical screws above a floor. Its dynamics consist of a few explicit
 /// equations.
 ///
-/// Point i is attached to joint i, whose position is the height q (in meters). The point is body i at the position (0.1
-/// i, 0, q) and rotates about the vertical axis by 10 rad per meter. Actuator i pushes it upwards with a force of
+/// Point i is attached to joint i. The joint position is the height q (in meters). The point is body i at the position
+/// (0.1 i, 0, q) and rotates about the vertical axis by 10 rad per meter. Actuator i pushes it upwards with a force of
 /// `command[0] - command[1]` (in newtons). Below the height 0, the floor pushes back. Its contact is pair i, in which
 /// the point is the first body. Rays hit the floor and green spheres of 2 cm around the points. The time step is 10 ms,
 /// and there are no floating bodies. Identifiers that do not exist read as 0, and commands to them have no effect.

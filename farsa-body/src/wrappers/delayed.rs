@@ -37,7 +37,7 @@ impl<T: Channels> Delayed<T, Vec<f32>> {
 }
 
 impl<T: Channels, M: AsMut<[f32]>> Delayed<T, M> {
-    /// Wraps a sensor or motor and uses the provided `memory`, which must have at least ticks x channels elements.
+    /// Wraps a sensor or motor and uses the provided `memory`. It must have at least ticks x channels elements.
     ///
     /// # Errors
     /// Returns [`ChannelError::Memory`] if the memory is too short.

@@ -37,7 +37,7 @@ impl Agent {
             && self.network.controller_mut().copy_parameters(&self.parameters).is_ok()
     }
 
-    /// Applies the changes of a test, which remain until the next call of [`load`](Self::load). Returns `false` if the
+    /// Applies the changes of a test. They remain until the next call of [`load`](Self::load). Returns `false` if the
     /// changed parameters do not form a valid network.
     pub fn change(&mut self, intervention: &Intervention, id: EpisodeId) -> bool {
         self.network.intervene(intervention, id, 0);

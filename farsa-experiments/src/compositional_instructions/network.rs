@@ -57,7 +57,7 @@ const RELAY: f64 = 0.05;
 
 /// Defines which parameters of the network are encoded as genes.
 ///
-/// The genes start with the 180 weights, which are ordered by neuron, and 15 biases. They are followed by 5 gains of
+/// The genes start with the 180 weights, ordered by neuron, and 15 biases. They are followed by 5 gains of
 /// the sensory neurons, one for each kind, and 10 time constants of the inner and motor neurons. Time constants are
 /// encoded as decimal logarithms. Note that a sensory neuron computes sigma(gain input + bias). Since the network
 /// multiplies the bias by the gain, it stores bias / gain instead.

@@ -218,7 +218,7 @@ impl Task for Balancing {
         }
     }
 
-    /// The mean over the trials, which are all the same.
+    /// The mean over the trials. All trials are the same.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
     }

@@ -1,6 +1,6 @@
 //! Experiments whose files are embedded in the program.
 //!
-//! Each experiment is described by a file of farsa-compose, which contains the robot, the world and the fitness. A
+//! Each experiment is described by a file of farsa-compose. It contains the robot, the world and the fitness. A
 //! second file defines the settings of the experiment. There are fewer of them than values in the first file.
 
 mod experiment;
@@ -62,7 +62,7 @@ pub static BRAITENBERG: EmbeddedExperiment = EmbeddedExperiment::new(
 ///
 /// Chosen: the number of robots, the time step, the camera's view and the network's other traits. The load of a robot is not
 /// limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors. The source's bias neuron is the
-/// network's biases, which only its hidden neurons have.
+/// network's biases. Only its hidden neurons have biases.
 pub static FORAGING: EmbeddedExperiment = EmbeddedExperiment::new(
     "foraging",
     include_str!("../../experiments/foraging.toml"),

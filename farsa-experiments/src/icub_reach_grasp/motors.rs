@@ -30,7 +30,7 @@ const THUMB: [u16; 3] = [9, 10, 11];
 
 /// The motors, in the same order as the outputs of the network.
 ///
-/// The first nine outputs are desired angles, which are scaled from the lower to the upper joint limit. They control
+/// The first nine outputs are desired angles, scaled from the lower to the upper joint limit. They control
 /// the pitch and yaw of the trunk and the seven joints of the right arm. The last output opens the hand at 0 and closes
 /// it at 1. The roll of the trunk and the abduction of the fingers are constant. The neck either follows the ball by
 /// means of [`HeadTracking`] or keeps its angles.

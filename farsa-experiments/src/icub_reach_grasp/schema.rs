@@ -30,7 +30,7 @@ const SCALARS: [(&str, &str); 13] = [
     ("place", "ball z [m]"),
 ];
 
-/// Columns and rows of the left eye's image, which is recorded and which the agent does not see.
+/// Columns and rows of the left eye's image. It is recorded but not visible to the agent.
 pub(crate) const IMAGE: [usize; 2] = [32, 24];
 
 /// The schema of episodes in a scene.

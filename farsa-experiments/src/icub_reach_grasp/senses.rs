@@ -15,7 +15,7 @@ const JOINTS: [&str; 4] = ["neck_pitch", "neck_yaw", "torso_pitch", "torso_yaw"]
 /// Range of the eye \[m\]. Nothing hides the ball.
 const RANGE: f32 = 10.0;
 
-/// The four patches of the palm, which feel the ball: towards fingers or wrist, on the thumb's side or the other.
+/// The four patches of the palm that touch the ball: towards fingers or wrist, on the thumb's side or the other.
 #[derive(Clone, Debug)]
 struct PalmPatches {
     on_ball: PairId,

@@ -22,7 +22,7 @@ use farsa_lab::{Error, Evaluation, Evaluator, Experiment, InWorld, Outcome, Sett
 /// of evolving a population, this experiment trains a single network. A scripted grasp guides the arm through the
 /// phases reach, grasp and lift while the sensor values and the desired motor values are recorded. The network learns
 /// the desired motor values with back-propagation through time. In every generation the network is first evaluated in
-/// the four trials, which determines its fitness. Then an iteration of the training follows. The errors are written to
+/// the four trials to determine its fitness. Then an iteration of the training follows. The errors are written to
 /// `learning.csv` in the directory of the run.
 ///
 /// The desired motor values are computed by the script for the current state of the arm. A network trained only with

@@ -104,7 +104,7 @@ impl Trainer {
         self.learner(seed).map_or_else(Vec::new, |learner| learner.state().collect())
     }
 
-    /// The parameters of the network, which are last in the state of its learner: their mean over the latest steps.
+    /// The mean parameters of the network over the latest steps. They are last in the state of the learner.
     pub(crate) fn parameters(&self, state: &[f64]) -> Vec<f32> {
         let hidden = self.layout.hidden().max(1);
         let of_sensors = self.layout.range(LeakyParameter::SensorWeight);

@@ -77,7 +77,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Returns the number of steps of a trial, which follows from the speed of the objects and the distance that they
+    /// Returns the number of steps of a trial. It follows from the speed of the objects and the distance that they
     /// fall.
     pub fn steps(&self) -> u32 {
         let steps = (self.start_height - self.end_height) / (self.speed * self.time_step);

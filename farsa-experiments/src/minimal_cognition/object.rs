@@ -8,7 +8,7 @@ pub enum Object {
         /// Radius of the circle.
         radius: f64,
     },
-    /// A square that is rotated by 45 degrees, which the agent has to avoid. It contains all points with |x| + |y| <=
+    /// A square that the agent has to avoid. It is rotated by 45 degrees and contains all points with |x| + |y| <=
     /// `half`.
     Diamond {
         /// Half the length of the diagonal.

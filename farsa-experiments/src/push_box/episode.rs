@@ -58,7 +58,7 @@ pub struct PushEpisode<C> {
 }
 
 impl<C: Controller> PushEpisode<C> {
-    /// Creates an episode for a controller with two outputs, which drive the left and the right wheel. The number of
+    /// Creates an episode for a controller with two outputs that drive the left and the right wheel. The number of
     /// inputs is given by [`PushConfig::inputs`].
     ///
     /// # Errors

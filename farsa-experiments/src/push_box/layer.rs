@@ -47,7 +47,7 @@ pub(super) fn applied(task: &impl Task, evaluation: &Evaluation<'_>) -> Interven
     protocols.applied(evaluation).into_owned()
 }
 
-/// The left and the right wheel, whose largest speed this is \[rad/s\], as another program drives them.
+/// The left and the right wheel with this largest speed \[rad/s\], as another program drives them.
 pub(super) fn wheel_exports(largest: f64) -> Vec<MotorExport> {
     let wheel = |side: &str| {
         MotorExport::quantity(

@@ -13,7 +13,7 @@ use farsa_lab::{Error, Evaluator, Experiment, InWorld, Setting, Settings};
 ///
 /// A simulated arm and hand, similar to those of the iCub, evolve to reach for a sphere, grasp it and lift it. With the
 /// condition `labels` (A), three additional inputs indicate the phase of the task. The condition `no-labels` (B)
-/// removes these inputs. All values that the source does not specify are settings, which also state the reasons for the
+/// removes these inputs. All values that the source does not specify are settings. They also state the reasons for the
 /// choice. See [`Config`] for a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ReachGraspLift;

@@ -18,7 +18,7 @@ pub const LIFT_CAP: f64 = 1600.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactTerm {
-    /// The term is 0.2 min(1, contacts/4). A grasp step then earns at most 0.6, which agrees with the cap
+    /// The term is 0.2 min(1, contacts/4). A grasp step then earns at most 0.6. This agrees with the cap
     /// `720 = 0.6 * 1200`.
     #[default]
     Capped,

@@ -166,7 +166,7 @@ impl Scene {
     ///
     /// The displacements are drawn from the stream of [`Domain::Start`]. The joints come first, followed by x and y of
     /// the sphere. Angles are clamped to the range of the joint. Deviations: the source displaces "each joint" by up to
-    /// 1 degree and the sphere by up to 1.5 cm. It does not specify the distribution, which is uniform here, and it
+    /// 1 degree and the sphere by up to 1.5 cm. It does not specify the distribution (uniform here), and it
     /// does not state that the joints of the hand are displaced.
     pub fn start(&self, id: EpisodeId) -> ([f64; 27], [f64; 2]) {
         self.start_from(id, [id.trial as usize; 2])
@@ -195,7 +195,7 @@ impl Scene {
         (joints, sphere)
     }
 
-    /// Returns the options for a MuJoCo model of the scene, which contain the dynamics step and the starts without
+    /// Returns the options for a MuJoCo model of the scene. They contain the dynamics step and the starts without
     /// displacements.
     pub fn mjcf_options(&self) -> MjcfOptions {
         let config = &self.config;

@@ -167,7 +167,7 @@ fn seven(joints: &[f64]) -> [f64; 7] {
 
 impl GraspPlan {
     /// Plans the grasp of a sphere at the given position on the table (in meters). The arm starts at the posture
-    /// `start`, which contains the angles of J1..J27 in radians.
+    /// `start`. It contains the angles of J1..J27 in radians.
     ///
     /// # Errors
     /// Returns [`InverseKinematicsError`] if the sphere is out of reach.

@@ -178,8 +178,8 @@ impl WalkingModel {
     /// if the iteration does not converge.
     ///
     /// The iteration starts with `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` where `s =
-    /// slope^(1/3)`, which approximates the gaits on small slopes. Note that there is a second gait with a shorter
-    /// period, which is unstable.
+    /// slope^(1/3)`. These values approximate the gaits on small slopes. Note that there is also an
+    /// unstable gait with a shorter period.
     pub fn gait(self) -> Option<ModelGait> {
         let size = farsa_num::exp(farsa_num::ln(self.slope) / 3.0);
         let square = size * size;

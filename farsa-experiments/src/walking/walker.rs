@@ -6,7 +6,7 @@ use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
 use farsa_body::robot::{Collider, Joint, MassProperties, Robot, Segment, Shape, Surface};
 use farsa_num::{Scalar, sin_cos};
 
-/// Half the thickness of legs and of the hip's axle, which nothing but their own small inertia depends on \[m\].
+/// Half the thickness of legs and of the hip's axle. Only their own small inertia depends on it \[m\].
 const THIN: f64 = 0.01;
 /// Distance of a withdrawn plate to the side, and half its width \[m\].
 pub(crate) const ASIDE: f64 = 8.0;
@@ -37,7 +37,7 @@ pub struct Legs {
 /// slides along x and z without friction, the outer legs rotate about it, and the inner legs rotate relative to the
 /// outer legs. A slope is represented by tilted gravity (see [`Walker::gravity`]).
 ///
-/// Stiff legs cannot clear the ground when they pass each other. Therefore each pair has a separate ground plate, which
+/// Stiff legs cannot clear the ground when they pass each other. Therefore each pair has a separate ground plate that
 /// can be moved aside while the pair swings. The plates slide perpendicular to the plane of motion. They are not
 /// affected by the forces of the walk, and their weight has no effect.
 ///
@@ -126,8 +126,8 @@ impl Walker {
         self.hip_mass + self.legs.iter().map(|legs| legs.mass + legs.foot_mass).sum::<f64>()
     }
 
-    /// Returns the gravity vector (in m/s2) of the given magnitude in the frame of a slope, which descends along x at
-    /// the given angle (in radians).
+    /// Returns the gravity vector (in m/s2) of the given magnitude in the frame of a slope. It descends along x at the
+    /// given angle (in radians).
     pub fn gravity(size: f64, slope: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(slope);
         // Axis x points down the slope, and z is its normal. Walking ahead is walking down.

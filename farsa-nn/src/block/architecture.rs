@@ -75,7 +75,7 @@ impl Architecture {
         Self { outputs_to_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
     }
 
-    /// Creates a fully recurrent network. It has a single layer of hidden neurons and outputs, which receives the
+    /// Creates a fully recurrent network. It has a single layer of hidden neurons and outputs. This layer receives the
     /// inputs and the activations of the layer in the previous step.
     pub const fn fully_recurrent(inputs: usize, hidden: usize, outputs: usize) -> Self {
         Self { together: true, ..Self::feed_forward(inputs, hidden, outputs) }

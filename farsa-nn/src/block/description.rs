@@ -44,7 +44,7 @@ pub struct Group {
     pub bias: bool,
     /// If true, each neuron has a gain that multiplies its activation at all targets. Otherwise it is 1.
     pub gain: bool,
-    /// If true, each neuron has a leak, which is interpreted according to the selected [`Leak`](crate::Leak). Otherwise
+    /// If true, each neuron has a leak. It is interpreted according to the selected [`Leak`](crate::Leak). Otherwise
     /// the activation equals the response.
     pub leak: bool,
 }

@@ -91,7 +91,7 @@ impl<'a> BlockLayout<'a> {
         flags.chain(blocks)
     }
 
-    /// Converts numbers in the order of the original program to parameters, which are written to a slice of length
+    /// Converts numbers in the order of the original program to parameters. They are written to a slice of length
     /// [`parameter_count`](Self::parameter_count).
     ///
     /// # Errors

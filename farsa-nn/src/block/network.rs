@@ -21,7 +21,7 @@ use crate::network::{Data, Model, Network, check_parameters};
 /// modulated gain g_i = a_by
 /// ```
 ///
-/// Feed-forward, Elman, Jordan and fully recurrent networks are special cases, which can be created with
+/// Feed-forward, Elman, Jordan and fully recurrent networks are special cases. You can create them with
 /// [`Architecture`](crate::block::Architecture). All activations are initially zero. As in a
 /// [`LeakyNetwork`](crate::LeakyNetwork), inputs must not be NaN or infinite. Networks with equal blocks produce equal
 /// bits.

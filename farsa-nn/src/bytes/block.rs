@@ -71,7 +71,7 @@ impl<'a> NetworkBytes<'a, BlockShape<'a>> {
         frame_len(layout.parameter_count().saturating_add(description).saturating_mul(4))
     }
 
-    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
+    /// Writes a network to `out`. The length of `out` must be [`byte_count`](Self::byte_count).
     ///
     /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///
@@ -138,7 +138,7 @@ impl<'a> NetworkBytes<'a, BlockShape<'a>> {
         self.shape.blocks()
     }
 
-    /// Copies the groups and blocks to the given buffers, which must have the right lengths. Returns a layout that
+    /// Copies the groups and blocks to the given buffers. They must have the right lengths. Returns a layout that
     /// borrows the buffers.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ impl NetworkBytes<'_, CtrnnModel> {
         byte_count::<f32>(layout.parameter_count())
     }
 
-    /// Writes a network to `out`, whose length must be [`byte_count`](Self::byte_count).
+    /// Writes a network to `out`. The length of `out` must be [`byte_count`](Self::byte_count).
     ///
     /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///

@@ -1,4 +1,4 @@
-//! A binary format for trained networks, which can be stored in flash memory or files, or sent over a wire. It is
+//! A binary format for trained networks. You can store it in flash memory or files, or send it over a wire. It is
 //! specified in `docs/controller-format.md`.
 //!
 //! All bytes are checked when a network is read. Reading never allocates or panics, and the parameters are used in

@@ -90,7 +90,7 @@ pub trait Shape<'a>: Sized {
 
 /// A trained network in its binary format. The bytes have been checked, and the parameters are used in place.
 ///
-/// Usually this type is used by the names of its kinds, which are
+/// Usually you use its aliases
 /// [`LeakyNetworkBytes`](crate::bytes::LeakyNetworkBytes),
 /// [`QuantizedNetworkBytes`](crate::bytes::QuantizedNetworkBytes), [`CtrnnBytes`](crate::bytes::CtrnnBytes),
 /// [`PerceptronBytes`](crate::bytes::PerceptronBytes) and [`BlockNetworkBytes`](crate::bytes::BlockNetworkBytes).

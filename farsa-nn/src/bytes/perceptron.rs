@@ -18,7 +18,7 @@ impl NetworkBytes<'_, PerceptronModel> {
         byte_count::<f32>(Perceptron::parameter_count(inputs, outputs))
     }
 
-    /// Writes a layer to `out`, whose length must be [`byte_count`](Self::byte_count).
+    /// Writes a layer to `out`. The length of `out` must be [`byte_count`](Self::byte_count).
     ///
     /// The argument `channels` is the [`channel_hash`](crate::bytes::channel_hash) of the inputs and outputs, or 0.
     ///

@@ -10,7 +10,7 @@ impl CtrnnLayout {
     /// Sets the biases to `theta_i = - sum_j w_ji / 2`. With these values, the nullclines of all neurons intersect at
     /// the centers of their activation functions, where rich dynamics are most likely.
     ///
-    /// The formula assumes the logistic function and inputs at rest. For the hyperbolic tangent, whose center is 0, the
+    /// The formula assumes the logistic function and inputs at rest. The center of the hyperbolic tangent is 0, so the
     /// biases are set to 0.
     ///
     /// Source: `[Mathayomchan2002]`. No deviation for the logistic function.

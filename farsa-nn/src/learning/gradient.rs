@@ -138,7 +138,7 @@ impl<R: Real> Gradient<R> {
         Ok(self.run(parameters, demonstration))
     }
 
-    /// Adds the gradient of a demonstration and returns its cost, which is summed over its ticks and motor values. The
+    /// Adds the gradient of a demonstration and returns its cost. The cost is the sum over ticks and motor values. The
     /// number of parameters must be [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors

@@ -88,7 +88,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
     }
 
     /// Advances the network by one tick. It reads the sensor values `x` in units of
-    /// 2^-[`input_bits`](QuantizedScale::input_bits) and overwrites the motor values `y`, which are in 0..=32767 in
+    /// 2^-[`input_bits`](QuantizedScale::input_bits) and overwrites the motor values `y`. They are in 0..=32767 in
     /// units of 2^-15.
     ///
     /// All integers are valid sensor values. If a slice has the wrong length, the shorter length is used.
@@ -101,7 +101,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         self.advance(x.iter().copied(), y, |motor| motor);
     }
 
-    /// Advances from sensor values to motor values, which `write` converts.
+    /// Advances from sensor values to motor values. The function `write` converts them.
     // Each sensor value is read once, so a float is converted once.
     #[inline(always)]
     fn advance<Y>(&mut self, x: impl Iterator<Item = i16>, y: &mut [Y], write: impl Fn(i16) -> Y) {
@@ -246,7 +246,7 @@ fn share(d: i32, difference: i32) -> i32 {
     ((d * (difference >> HALF)) << (HALF - LEAK_BITS)) + ((d * (difference & ((1 << HALF) - 1))) >> LEAK_BITS)
 }
 
-/// Checks the parameters of a network, which `value` decodes.
+/// Checks the parameters of a network. The function `value` decodes them.
 pub(crate) fn check<T: Copy>(
     layout: &LeakyLayout,
     scale: QuantizedScale,

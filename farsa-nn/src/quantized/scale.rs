@@ -152,7 +152,7 @@ impl QuantizedScale {
         self.inputs as u32
     }
 
-    /// Returns the number of fraction bits of weights and biases, which include the slope.
+    /// Returns the number of fraction bits of weights and biases. Their values include the slope.
     pub const fn weight_bits(self) -> u32 {
         self.weights as u32
     }

@@ -71,7 +71,7 @@ impl Chain {
     /// Returns the chain with the given name.
     ///
     /// # Errors
-    /// Returns [`IcubError::Chain`], which lists all chains, if the name is unknown.
+    /// Returns [`IcubError::Chain`] if the name is unknown. The error lists all chains.
     pub fn from_name(name: &str) -> Result<Self, IcubError> {
         let found = Self::ALL.into_iter().find(|chain| chain.name() == name);
         found.ok_or_else(|| IcubError::Chain { name: name.into() })

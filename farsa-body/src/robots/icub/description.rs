@@ -50,12 +50,12 @@ pub enum JointControl {
 /// Since the file has no fingers, the hands are those of [`crate::robots::ArmAndHand`]. They are as light as the hands
 /// of the file, which have 0.213 kg, but their center of mass differs by 7 mm.
 ///
-/// In the file, the left side is not exactly the mirror image of the right side, which is used for both sides here. The
-/// inertia of the first shoulder segment is half of that on the right side, and the center of mass of the second one
+/// In the file, the left side is not exactly the mirror image of the right side. Here the right side is used for
+/// both. The inertia of the first shoulder segment is half of that on the right side, and the center of mass of the second one
 /// differs by 0.18 mm.
 ///
 /// The neck, the head and the wrist, for which the file has no inertia, have the inertia of spheres whose radius was
-/// chosen. In the file, every joint has a damping of 1 N m s/rad, which the motors of the wrist could not overcome. It
+/// chosen. In the file, every joint has a damping of 1 N m s/rad. This is too large for the motors of the wrist. It
 /// is replaced by a damping that is proportional to the effort. The armature, the gains and the surfaces were chosen.
 /// There are no legs.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +118,7 @@ impl Icub {
     /// Centers of the left and the right eye in the frame of the head (in meters). Their distance is 68 mm, and
     /// they cannot move.
     ///
-    /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011], which describes a different
+    /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011]. This source describes a different
     /// version of the neck than the file.
     pub const EYES: [[f64; 3]; 2] = [[0.054, 0.034, 0.0825], [0.054, -0.034, 0.0825]];
     /// Outward normal of the inner side of the palm, in the frame of the palm.

@@ -126,8 +126,8 @@ impl<B: Copy> Camera<B> {
     }
 
     /// Projects a point of the world (in meters) to the image. The result is the position to the left and upwards in
-    /// units of half the width, which exceeds 1 outside the image. It is `None` if the point is not in front of the
-    /// camera.
+    /// units of half the width. Its magnitude exceeds 1 outside the image. If the point is not in
+    /// front of the camera, the result is `None`.
     pub fn project(&self, pose: &Pose, place: [f32; 3]) -> Option<[f32; 2]> {
         let [ahead, left, up] = pose.transform_back(place);
         (ahead > 0.0).then(|| [left, up].map(|x| x / (ahead * self.tangent)))

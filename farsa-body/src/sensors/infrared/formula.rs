@@ -31,7 +31,7 @@ pub struct InfraredFormula<L, B = BodyId> {
 }
 
 impl<L: AsRef<[[f32; 2]]>, B> InfraredFormula<L, B> {
-    /// Creates a ring of sensors with the given `axes` on the round hull of `body`, whose `radius` is given in meters.
+    /// Creates a ring of sensors with the given `axes` on the round hull of `body`. The `radius` is given in meters.
     ///
     /// # Errors
     /// Returns [`ChannelError::Groups`] if there are no axes. Returns [`ChannelError::Value`] if an axis is not a unit

@@ -12,11 +12,11 @@ use crate::robots::mobile::MobileRobot;
 use crate::sensors::beam::{Beam, BeamFrame};
 
 /// A ring of infrared sensors that measure the proximity of the nearest surface in a cone. Each sensor has one channel
-/// in [0, 1]. The reading is 1 - distance / range, which is 1 at the hull and 0 if nothing is within the range.
+/// in [0, 1]. The reading is 1 - distance / range. It is 1 at the hull and 0 if nothing is within the range.
 ///
 /// The distance is that of the nearest hit of all rays in the cone, measured along the ray from the hull. A larger
 /// number of rays detects smaller objects, but does not change the reading for a wall in front of the sensor. Note that
-/// a real sensor sums up the light of the whole cone, which is modeled more accurately by
+/// a real sensor sums up the light of the whole cone. For a more accurate model, use
 /// [`SampledInfrared`](crate::sensors::infrared::SampledInfrared). The robot itself is invisible.
 ///
 /// The beams can be stored in any list and are grouped by sensor. Use a wrapper to add noise:

@@ -101,7 +101,7 @@ pub struct SampledInfrared<T, B = BodyId> {
 }
 
 impl<T: Borrow<InfraredTables>, B> SampledInfrared<T, B> {
-    /// Creates a ring with all sensors of the tables on the round hull of `body`, whose `radius` is given in meters.
+    /// Creates a ring with all sensors of the tables on the round hull of `body`. The `radius` is given in meters.
     ///
     /// # Errors
     /// Returns [`ChannelError::Value`] if `radius` is not a finite number > 0.
