@@ -25,7 +25,7 @@ fn noise_of(id: EpisodeId) -> Stream {
 pub struct TrialInstructions {
     /// Instruction given at the start.
     pub first: Instruction,
-    /// Step at which the instruction changes, and the new instruction. `None` if it stays the same.
+    /// Step at which the instruction changes and the new instruction, or `None` if it stays the same.
     pub change: Option<(u32, Instruction)>,
     /// Number of steps of the trial.
     pub steps: u32,

@@ -30,7 +30,7 @@ pub struct Script {
     ranges: [[f64; 2]; 6],
     stiffness: [f64; 6],
     poses: Vec<Pose<f64>>,
-    /// Inputs for which the joints' angles were computed, and the motor values.
+    /// Inputs for which the joint angles were computed, with the resulting motor values.
     found: Option<([f32; 3], [f32; 6])>,
 }
 

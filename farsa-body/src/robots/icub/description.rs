@@ -51,8 +51,8 @@ pub enum JointControl {
 /// of the file, which have 0.213 kg, but their center of mass differs by 7 mm.
 ///
 /// In the file, the left side is not exactly the mirror image of the right side. Here the right side is used for
-/// both. The inertia of the first shoulder segment is half of that on the right side, and the center of mass of the second one
-/// differs by 0.18 mm.
+/// both. On the left side of the file, the inertia of the first shoulder segment is half as large, and the center of
+/// mass of the second one differs by 0.18 mm.
 ///
 /// The neck, the head and the wrist, for which the file has no inertia, have the inertia of spheres whose radius was
 /// chosen. In the file, every joint has a damping of 1 N m s/rad. This is too large for the motors of the wrist. It
@@ -118,7 +118,7 @@ impl Icub {
     /// Centers of the left and the right eye in the frame of the head (in meters). Their distance is 68 mm, and
     /// they cannot move.
     ///
-    /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011]. This source describes a different
+    /// The transformation from the neck yaw to the eyes is taken from [Pattacini2011]. This source describes another
     /// version of the neck than the file.
     pub const EYES: [[f64; 3]; 2] = [[0.054, 0.034, 0.0825], [0.054, -0.034, 0.0825]];
     /// Outward normal of the inner side of the palm, in the frame of the palm.

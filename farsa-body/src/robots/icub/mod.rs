@@ -1,7 +1,7 @@
 //! The upper body of the iCub [Metta2010] with 60 joints in six chains.
 //!
 //! The values are taken from a URDF file [Gepetto2025], and the hands from [`crate::robots::ArmAndHand`]. The masses
-//! and limits are compared with the file in docs/icub-tables.md. This page also lists the Denavit-Hartenberg parameters.
+//! and limits are compared with the file in docs/icub-tables.md. This page also lists Denavit-Hartenberg parameters.
 
 /// The six chains, the two sides, and which joints and bodies are theirs.
 pub(crate) mod chain;
