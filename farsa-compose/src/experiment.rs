@@ -28,7 +28,7 @@ use crate::parts::reflex::{Reflex, ReflexController};
 /// Most bytes of a file.
 const MAX_BYTES: u64 = 1_000_000;
 
-/// An experiment from a file, as `farsa run NAME.toml` runs it.
+/// An experiment from a file, as used by `farsa run NAME.toml`.
 ///
 /// ```
 /// use farsa_compose::ComposedExperiment;
@@ -70,31 +70,38 @@ pub struct ComposedExperiment {
 }
 
 impl ComposedExperiment {
-    /// Reads a file, and the files that it names in its folder. The name of the file without `.toml` is the experiment's.
+    /// Reads an experiment from a file. Other files that it names must be in the same folder.
+    ///
+    /// Its name is the name of the file without `.toml`.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::File`] for unreadable files, and the errors of [`from_text`](Self::from_text).
+    /// Returns [`Error::Io`] and [`Error::File`] for files that cannot be read, and the errors of
+    /// [`from_text`](Self::from_text).
     pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         let text = read_text_file(path, MAX_BYTES)?;
         Self::read(Limits::default(), &path.display().to_string(), &text, path.parent(), strategies)
     }
 
-    /// Reads a text as the content of a file of this name, which may name these strategies.
+    /// Reads an experiment from a text, as if it were the content of this file. It may use any of the given
+    /// strategies.
     ///
-    /// The text contains the files that it names in its table `files`, as the [`definition`](Experiment::definition) of a
-    /// run does. No other file is read.
+    /// If the text names other files, it must contain them in its table `files`, as the
+    /// [`definition`](Experiment::definition) of a run does. This never reads any files.
     ///
     /// # Errors
-    /// [`Error::Usage`] for invalid TOML, [`Error::Setting`] with the nearest word for an unknown one, and [`Error::Setting`]
-    /// for an invalid value, each with file, line and key. [`Error::Several`] for more than one of them.
+    /// Returns [`Error::Usage`] for invalid TOML, and [`Error::Setting`] for an invalid value. If a word is unknown,
+    /// [`Error::Setting`] also mentions the nearest one. Each error has file, line and key. If there are several, you
+    /// get [`Error::Several`].
     pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         Self::from_text_within(Limits::default(), file, text, strategies)
     }
 
-    /// Reads a text with other [`Limits`] than the default ones.
+    /// Reads a text like [`from_text`](Self::from_text), but with custom [`Limits`].
+    ///
+    /// You usually don't need this, unless your experiment is unusually large.
     ///
     /// # Errors
-    /// As [`from_text`](Self::from_text).
+    /// Returns the errors of [`from_text`](Self::from_text).
     pub fn from_text_within(
         limits: Limits,
         file: &str,
@@ -182,10 +189,13 @@ impl ComposedExperiment {
         Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
     }
 
-    /// Prepares the experiment with functions that drive some robots, by their numbers from 0, instead of networks.
+    /// Prepares the experiment, but drives some robots by functions instead of networks. Robots are numbered from 0.
+    ///
+    /// This is useful to compare an evolved controller with one that was written by hand.
     ///
     /// # Errors
-    /// As [`Experiment::prepare`], and [`Error::Usage`] for a robot that does not exist or has joints.
+    /// Returns the errors of [`Experiment::prepare`]. You also get [`Error::Usage`] for a robot that does not exist
+    /// or has joints.
     pub fn prepare_with(
         &self,
         settings: &Settings,

@@ -10,7 +10,8 @@ use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;
 use crate::limits::Limits;
 
-/// Support of experiment files for [`Laboratory`](farsa_lab::Laboratory).
+/// Support for experiment files. Pass this to a [`Laboratory`](farsa_lab::Laboratory) to make its commands accept
+/// them.
 ///
 /// ```no_run
 /// use farsa_lab::Laboratory;

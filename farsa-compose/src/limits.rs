@@ -2,19 +2,21 @@
 
 use farsa_lab::Error;
 
-/// The largest experiment that a reader accepts.
+/// Limits on the size of an experiment. Larger experiments are rejected.
 ///
-/// A file of a few letters can request a large network or many robots. The limits bound the memory and the time of a step.
+/// Note that even a very short file can request a huge network or for many robots. Therefore, these limits bound the
+/// memory and the time of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Parameters of a network, and values of its state. Wrappers and networks of all robots keep at most ten times as many.
+    /// Maximum number of parameters of a network, and of values of its state. Wrappers and networks of all robots
+    /// together can have ten times as many.
     pub network_values: usize,
-    /// Robots.
+    /// Maximum number of robots.
     pub robots: usize,
-    /// Sensors and motors of all robots.
+    /// Maximum number of sensors and motors of all robots.
     pub parts: usize,
-    /// Rays of all sensors in a step.
+    /// Maximum number of rays of all sensors in a step.
     pub rays: usize,
 }
 

@@ -19,7 +19,7 @@ use crate::store::directory::Directory;
 use crate::store::log::Line;
 use crate::strategy::history::History;
 
-/// The directory of a run, read without changing it.
+/// Directory of a run. It is only read, and never changed.
 ///
 /// ```no_run
 /// use std::path::Path;
@@ -49,40 +49,41 @@ pub struct RunDirectory<'l> {
     plan: Plan<'l>,
 }
 
-/// The champion of each population.
+/// Champions of all populations of a run.
 #[derive(Debug, Clone)]
 pub struct RunChampion {
-    /// The generation of the champions, from 0.
+    /// Generation in which they were evaluated, from 0.
     pub generation: u32,
-    /// Their numbers in the generation, counted through all populations.
+    /// Index of each champion in the generation. Individuals are counted through all populations.
     pub individuals: Vec<u32>,
-    /// Their fitness.
+    /// Fitness of each champion.
     pub fitness: Vec<f64>,
-    /// Their parameters.
+    /// Parameters of each champion.
     pub parameters: Vec<Vec<f32>>,
-    /// The normalization of their observations, where observations are normalized:
-    /// [`Evaluation::normalisation`](crate::Evaluation::normalisation).
+    /// Statistics that normalize the observations, as in
+    /// [`Evaluation::normalisation`](crate::Evaluation::normalisation). This is `None` unless observations are
+    /// normalized.
     pub normalisation: Option<ObservationStatistics>,
 }
 
-/// The fitness of a generation.
+/// Fitness of a single generation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogRow {
-    /// The largest fitness.
+    /// Best fitness.
     pub best: f64,
-    /// The mean fitness.
+    /// Mean fitness.
     pub mean: f64,
-    /// The smallest fitness.
+    /// Worst fitness.
     pub worst: f64,
-    /// Best, mean and worst of each population, where there are several.
+    /// Best, mean and worst fitness of each population. This is empty if there is only one population.
     pub populations: Vec<[f64; 3]>,
-    /// Number of evaluated individuals.
+    /// Number of individuals that were evaluated.
     pub evaluations: u64,
-    /// Number of individuals with a failed trial.
+    /// Number of individuals for which a trial failed.
     pub failed: u64,
 }
 
-/// All finished generations of a run.
+/// Record of all finished generations of a run. You can use it to rebuild any individual.
 pub struct GenerationRecord<'r> {
     rows: Vec<LogRow>,
     history: History<'r>,
@@ -90,58 +91,58 @@ pub struct GenerationRecord<'r> {
 }
 
 impl<'l> RunDirectory<'l> {
-    /// Opens the directory of a run of an experiment and a strategy of a laboratory.
+    /// Opens the directory of a run. Its experiment and its strategy must be part of the laboratory.
     ///
     /// # Errors
-    /// [`Error::File`] for a directory without a run, and the errors of an invalid configuration.
+    /// Returns [`Error::File`] if there is no run in this directory, or other errors if its configuration is invalid.
     pub fn open(path: &Path, laboratory: &Laboratory<'l>) -> Result<Self, Error> {
         let directory = Directory::open(path)?;
         let plan = Plan::from_file(laboratory, &ConfigFile::read_regular(&directory.config())?)?;
         Ok(Self { directory, plan })
     }
 
-    /// Returns the path of the directory.
+    /// Gets the path of this directory.
     pub fn path(&self) -> &Path {
         self.directory.path()
     }
 
-    /// Returns the name of the experiment.
+    /// Gets the name of the experiment.
     pub fn experiment(&self) -> &str {
         self.plan.experiment.name()
     }
 
-    /// Returns the condition, which is empty for an experiment without conditions.
+    /// Gets the condition. This is empty if the experiment has no conditions.
     pub fn condition(&self) -> &str {
         &self.plan.condition
     }
 
-    /// Returns the name of the strategy.
+    /// Gets the name of the strategy.
     pub fn strategy(&self) -> &str {
         self.plan.definition().name()
     }
 
-    /// Returns the seed.
+    /// Gets the seed of the run.
     pub fn seed(&self) -> u64 {
         self.plan.seed
     }
 
-    /// Returns all settings.
+    /// Gets the values of all settings.
     pub fn settings(&self) -> &Settings {
         &self.plan.settings
     }
 
-    /// Returns the complete configuration as TOML, with the documentation of every setting.
+    /// Writes the complete configuration as TOML, including the documentation of every setting.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a setting without a value.
+    /// Returns [`Error::Setting`] if a setting has no value.
     pub fn config(&self) -> Result<String, Error> {
         self.plan.to_toml()
     }
 
-    /// Prepares the experiment for evaluations.
+    /// Prepares the experiment, so that you can evaluate individuals by yourself.
     ///
     /// # Errors
-    /// The errors of [`Experiment::prepare`](crate::Experiment::prepare).
+    /// Returns the errors of [`Experiment::prepare`](crate::Experiment::prepare).
     pub fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
         self.plan.evaluator()
     }
@@ -149,8 +150,8 @@ impl<'l> RunDirectory<'l> {
     /// Reads the champion of each population.
     ///
     /// # Errors
-    /// [`Error::File`] before the first generation and for an invalid file, and [`Error::File`] for a run whose trials
-    /// this program computes differently.
+    /// Returns [`Error::File`] if there is no generation yet, or if the file is invalid. You also get this error if
+    /// this version of the program would compute different trials.
     pub fn champion(&self) -> Result<RunChampion, Error> {
         let evaluator = self.evaluator()?;
         let champions = Champions::read_checked(&self.plan, &self.directory, evaluator.as_ref())?;
@@ -167,10 +168,12 @@ impl<'l> RunDirectory<'l> {
         })
     }
 
-    /// Reads all finished generations. Imported genotypes are one generation without a log.
+    /// Reads all finished generations.
+    ///
+    /// Note that imported genotypes are a single generation without a log.
     ///
     /// # Errors
-    /// [`Error::File`] for an invalid checkpoint or record.
+    /// Returns [`Error::File`] if the checkpoint or the record is invalid.
     pub fn record(&self) -> Result<GenerationRecord<'_>, Error> {
         let genotype = self.plan.genotype(self.evaluator()?.as_ref());
         if self.directory.genotypes().is_file() {
@@ -186,10 +189,10 @@ impl<'l> RunDirectory<'l> {
         })
     }
 
-    /// Reads the trials of the last `farsa test`. The result is empty if the champion was never tested.
+    /// Reads the trials of the last `farsa test`. If the champion was never tested, the list is empty.
     ///
     /// # Errors
-    /// [`Error::File`] for an invalid table.
+    /// Returns [`Error::File`] if the table is invalid.
     #[cfg(feature = "command")]
     pub fn test(&self) -> Result<Vec<TestTrial>, Error> {
         let Some((table, _)) = test::read(&self.directory)? else { return Ok(Vec::new()) };
@@ -205,15 +208,17 @@ impl From<Line> for LogRow {
 }
 
 impl GenerationRecord<'_> {
-    /// Returns the fitness of each generation.
+    /// Gets the fitness of all generations, starting with the first one.
     pub fn log(&self) -> &[LogRow] {
         &self.rows
     }
 
-    /// Rebuilds the parameters of all individuals of a generation, those of one population after the other.
+    /// Rebuilds the parameters of all individuals of a generation.
+    ///
+    /// If there are several populations, their individuals follow one after the other.
     ///
     /// # Errors
-    /// [`Error::File`] for a generation that is not finished, and for genomes of another strategy.
+    /// Returns [`Error::File`] if the generation is not finished, or if the genomes belong to another strategy.
     pub fn parameters(&self, generation: u32) -> Result<Vec<Vec<f32>>, Error> {
         let mut parameters = Vec::new();
         self.history.visit([generation], |_, genomes| {

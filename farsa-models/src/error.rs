@@ -1,16 +1,16 @@
-//! Why a robot could not be read from a file, and where in the file.
+//! Errors of reading a robot from a file, together with their location in the file.
 
 use std::fmt;
 
 use farsa_body::robot::RobotError;
 
-/// A line of a file.
+/// Location in a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SourceLocation {
-    /// The file, as it was named.
+    /// Name of the file, as it was given.
     pub file: String,
-    /// The line, from 1.
+    /// Number of the line, from 1.
     pub line: usize,
 }
 
@@ -20,79 +20,81 @@ impl fmt::Display for SourceLocation {
     }
 }
 
-/// Why no robot could be made of a file.
+/// Error of reading a robot from a file. It usually names the file and the line of the fault.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The operating system does not read a file, or it is no text.
+    /// A file could not be read by the operating system, or is not text.
     File {
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// Its reason.
+        /// Reason given by the operating system.
         why: String,
     },
-    /// A file's path leads out of the folders that may be read, or to nothing.
+    /// A path leads out of the folders that may be read, or to a file that does not exist.
     Path {
-        /// The place of the path.
+        /// Location of the path in the model.
         place: SourceLocation,
-        /// The path.
+        /// Path as written in the model.
         path: String,
-        /// The fault.
+        /// Description of the fault.
         why: &'static str,
     },
-    /// More of something than the [`Limits`](crate::Limits) allow.
+    /// A model is larger than the [`Limits`](crate::Limits) allow. If you trust the file, you can raise them.
     TooMuch {
-        /// Where the limit was passed.
+        /// Location at which the limit was exceeded.
         place: SourceLocation,
-        /// The kind of parts.
+        /// Name of the parts that were counted.
         what: &'static str,
-        /// The limit.
+        /// Value of the limit.
         limit: usize,
     },
-    /// XML that is not a valid model.
+    /// The XML is not a valid model.
     ///
-    /// The reason may be the syntax, a document type, an unknown or repeated name, a missing part, an impossible value,
-    /// several roots, or links that carry each other.
+    /// There are several possible reasons, such as wrong syntax, a document type, a repeated or unknown name, a
+    /// missing part or an impossible value. You also get this error if there are several roots, or if links form a
+    /// loop.
     Malformed {
-        /// The place.
+        /// Location of the fault.
         place: SourceLocation,
-        /// The fault.
+        /// Description of the fault.
         why: String,
     },
-    /// A valid part that a description cannot hold, and whose omission would change the robot.
+    /// A part is valid, but a robot description cannot hold it. Leaving it out would change the robot.
     Unsupported {
-        /// The place.
+        /// Location of the part.
         place: SourceLocation,
-        /// The element.
+        /// Name of the element.
         element: String,
-        /// The part that cannot be held, and a remedy.
+        /// Description of the part, and of a way to avoid it.
         why: String,
     },
-    /// A mass or inertia that a body cannot have, or that one that moves cannot do with.
+    /// A mass or an inertia is impossible, or it is missing for a body that moves. You may be able to fix this with
+    /// [`Repair`](crate::Repair).
     Mass {
-        /// Where the body is.
+        /// Location of the body.
         place: SourceLocation,
-        /// Its name.
+        /// Name of the body.
         body: String,
-        /// Its mass [kg].
+        /// Mass of the body [kg].
         mass: f64,
-        /// Its inertia [xx, yy, zz, xy, xz, yz, kg m2].
+        /// Inertia of the body [xx, yy, zz, xy, xz, yz, kg m2].
         inertia: [f64; 6],
     },
-    /// A mesh's file that contains no mesh.
+    /// A file of a mesh does not contain a valid mesh.
     Mesh {
-        /// Where the mesh is named.
+        /// Location at which the model names the mesh.
         place: SourceLocation,
-        /// The file.
+        /// Path of the file of the mesh.
         path: String,
-        /// The fault.
+        /// Description of the fault.
         why: String,
     },
-    /// The robot that the file describes is not valid for another reason.
+    /// A robot was read, but is not valid for any other reason.
     Robot {
-        /// The file.
+        /// Path of the model.
         file: String,
-        /// The reason.
+        /// Error of the robot description.
         error: RobotError,
     },
 }

@@ -1,15 +1,15 @@
-//! Where the parts of the file are in the robot.
+//! Frames of a file's links and bodies.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
-/// Where a link or body of the file is in the robot.
+/// Frame of a link or body of the file.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
-    /// Its name in the file, or `bodyN` for MJCF's N-th if it has none.
+    /// Name of the link or body in the file. If the N-th body of an MJCF has no name, this is `bodyN`.
     pub name: String,
-    /// The segment that it is fixed to, or `None` for the world.
+    /// Segment to which it is fixed. This is `None` for the world.
     pub body: Option<BodyId>,
-    /// Where its frame is in the segment's. The identity unless a joint is off the body's origin.
+    /// Pose in the frame of this segment. It is the identity, except for bodies whose joint is not at their origin.
     pub placement: Pose<f64>,
 }

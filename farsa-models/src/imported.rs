@@ -1,4 +1,4 @@
-//! A robot from a file or a text, in either format.
+//! Reading of a robot from a file or a text, in either format.
 
 use std::path::Path;
 
@@ -16,66 +16,69 @@ use crate::xml::tree::Tree;
 
 /// A robot that was read from a file.
 ///
-/// **Content.** URDF: links, inertials, joints except `planar` and `spherical` ones, limits, damping, collision shapes.
-/// A joint's largest effort makes a [`Torque`](farsa_body::actuators::Torque) of the joint's name.
+/// **Content.** A URDF is read with its links, inertials, limits, damping and collision shapes. Joints can be of any
+/// type except `planar` and `spherical`. If a joint has a maximum effort, it becomes a
+/// [`Torque`](farsa_body::actuators::Torque) with the name of the joint.
 ///
-/// MJCF: `compiler`, `default` classes, `include`, bodies and `frame`s, inertials or the geoms' inertias. Hinges,
-/// slides and free joints have range, damping, armature and `ref`. Geoms and contact pairs have exclusions and surfaces
-/// at rest. Motors, position and velocity actuators act on joints (also as `general`).
+/// An MJCF is read with `compiler`, `default` classes, `include`, bodies and `frame`s. Inertials are used if they
+/// exist, and otherwise inertias of the geoms. Hinges, slides and free joints have range, damping, armature and
+/// `ref`. Geoms and contact pairs have exclusions and surfaces at rest. Actuators on joints can be motors, position
+/// and velocity actuators (also as `general`).
 ///
-/// Unknown names are errors, with the nearest valid name. A part without a counterpart in a description is listed in
-/// [`Imported::warnings`]. It is an error if its omission would make another robot: ball joints, `attach`, `replicate`,
-/// `composite`, `flexcomp`.
+/// If a name is unknown, you get an error with the nearest valid name. Parts that a description cannot hold are
+/// listed in [`Imported::warnings`]. However, if leaving them out would make a different robot, this is an error.
+/// Examples are ball joints, `attach`, `replicate`, `composite` and `flexcomp`.
 ///
 /// **Rules of translation.**
-/// - *Several joints of a MuJoCo body* make segments between them, named after body and joint. Each has a small share
-///   of the body's mass ([`ReadOptions::between`]), because a description has one joint a segment, and every moving
-///   segment a mass.
-/// - *A joint off its body's origin*: the segment's frame is at the joint, and [`Imported::frames`] has the body's
-///   frame.
-/// - *Fixed links* stay segments. Only if a moving one has no mass itself it takes over that of the links fixed to it.
-/// - *Several bodies in the world* are one description. A URDF has one root.
-/// - *Shapes that we lack*: a cylinder becomes the capsule of its radius and length, or a ball of its radius if it is
-///   flatter than that. An ellipsoid the capsule along its longest axis with the radius of the next. In a URDF a
-///   cylinder with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses
-///   are those of the true shapes.
-/// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that contain all their points.
-///   Capsule and box are along the mesh's own axes or the principal axes of its surface. Meshes that can touch nothing
-///   are left out.
-/// - *Visuals*: visuals of a URDF, except those of links with a mesh, become [`Visual`](farsa_body::robot::Visual)s. So
-///   do geoms of an MJCF of group 1 or 2 that can touch nothing. Their colors are those without a texture. Colors of
-///   other geoms are listed, because cameras do not see visuals.
-/// - *Bounds*: radii and halves of lengths and edges of 1e9 m or more are errors. Ends of ranges and efforts from 1e9
-///   on become infinite. The robot is written and read back unchanged, except for the parts that
+/// - *Several joints of a MuJoCo body* are separated by additional segments, which are named after body and joint. Since
+///   every moving segment needs a mass, each of them gets a small share of the body's mass ([`ReadOptions::between`]).
+/// - *If a joint is not at its body's origin*, the frame of the segment is at the joint. You can get the frame of the
+///   body from [`Imported::frames`].
+/// - *Fixed links* remain segments. If a moving link has no mass, it takes over the mass of the links fixed to it.
+/// - *Several bodies in the world* belong to a single description. A URDF always has one root.
+/// - *Cylinders* become capsules with the same radius and length. If this is impossible because a cylinder is too flat,
+///   it becomes a ball of its radius. In a URDF, a cylinder with equal spheres at its ends is a capsule, as
+///   [`urdf::write`](crate::urdf::write()) writes it.
+/// - *Ellipsoids* become capsules along their longest axis, with the radius of the second longest. As for cylinders,
+///   masses are still computed from the true shapes.
+/// - *Meshes* (STL, OBJ) become a ball, a capsule or a box that contains all points, whichever has the least volume.
+///   Capsule and box use either the axes of the mesh or the principal axes of its surface. Meshes that cannot touch
+///   anything are left out.
+/// - *Visuals* of a URDF become [`Visual`](farsa_body::robot::Visual)s, except for links with a mesh. Geoms of an MJCF
+///   also become visuals if they are in group 1 or 2 and cannot touch anything. Textures are ignored. Colors of other
+///   geoms are listed as warnings, since cameras do not see visuals.
+/// - *Bounds*: radii and halves of lengths and edges must be below 1e9 m. If an end of a range or an effort is at least
+///   1e9, it becomes infinite. Robots survive writing and reading, except for the parts that
 ///   [`mjcf::write`](crate::mjcf::write()) and [`urdf::write`](crate::urdf::write()) list.
-/// - *Contacts of MuJoCo* are springs and dampers here: stiffness and damping are those at rest at full impedance.
-/// - *Commands* are efforts and joint positions. MuJoCo's, before its gears, are other numbers.
+/// - *Contacts of MuJoCo* become springs and dampers. Their stiffness and damping are those at rest and full impedance.
+/// - *Commands* are efforts and joint positions. Note that MuJoCo uses different numbers, before its gears.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Imported {
-    /// The robot, valid.
+    /// Robot description, which is always valid.
     pub robot: Robot,
-    /// Where the file's links or bodies are in it, in the file's order.
+    /// Frames of all links or bodies, in the order of the file.
     pub frames: Vec<Frame>,
-    /// The omitted and replaced parts, in alphabetical order.
+    /// Warnings about omitted and replaced parts, in alphabetical order.
     pub warnings: Vec<Warning>,
 }
 
 impl Imported {
-    /// Reads a URDF or MJCF file. The root element decides between the two.
+    /// Reads a URDF or MJCF file. Its root element determines the format.
     ///
-    /// The file may be a pipe, which is read to its end or [`Limits::bytes`](crate::Limits::bytes). Files that the
-    /// model names must be regular ones.
+    /// You can also pass a pipe, which is read until it ends or until [`Limits::bytes`](crate::Limits::bytes) is
+    /// exceeded. Other files that the model names must be regular files.
     ///
     /// # Errors
-    /// The fault and its line: see [`ReadError`].
+    /// Returns the fault and its line, see [`ReadError`].
     pub fn from_file(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
         let mut files = ModelFiles::new(path.parent(), options)?;
         let text = files.model(path)?;
         Self::read(&path.display().to_string(), &text, files, options)
     }
 
-    /// Reads the text of a URDF or MJCF. Without [`ReadOptions::root`] it must name no files.
+    /// Reads a robot from the text of a URDF or MJCF. If the text names other files, you need to set
+    /// [`ReadOptions::root`].
     ///
     /// ```
     /// use farsa_models::{Imported, ReadOptions};
@@ -92,7 +95,7 @@ impl Imported {
     /// ```
     ///
     /// # Errors
-    /// The fault and its line: see [`ReadError`].
+    /// Returns the fault and its line, see [`ReadError`].
     pub fn from_text(text: &str, options: &ReadOptions) -> Result<Self, ReadError> {
         Self::read("text", text, ModelFiles::new(None, options)?, options)
     }
@@ -110,7 +113,7 @@ impl Imported {
         Ok(Self { robot, frames, warnings: context.warnings.list() })
     }
 
-    /// Where the link or body of this name in the file is.
+    /// Finds the frame of a link or body by its name in the file. If there is no such name, this returns `None`.
     pub fn frame(&self, name: &str) -> Option<&Frame> {
         self.frames.iter().find(|frame| frame.name == name)
     }

@@ -3,20 +3,20 @@
 
 /// Bounds of a model's numbers.
 mod bounds;
-/// The shared state of both readers.
+/// Shared state of both readers.
 mod context;
-/// The error of readers.
+/// Errors of reading.
 mod error;
-/// The files that a model names, found within its folders only.
+/// Files that a model names, which must be in its folders.
 mod files;
-/// Where the file's links and bodies are in the robot.
+/// Frames of the file's links and bodies.
 mod frame;
-/// The entry: a robot from a file or a text.
+/// Reading of a robot from a file or a text.
 mod imported;
 /// Triangles, the solids that replace them, and their principal axes.
 mod mesh;
 pub mod mjcf;
-/// Options of readers: strictness, repairs, limits.
+/// Options for reading, such as repairs and limits.
 mod options;
 /// Masses that no body can have.
 mod repair;
@@ -25,7 +25,7 @@ pub mod urdf;
 mod vector;
 /// Omitted and replaced parts.
 mod warnings;
-/// XML: checked before it is parsed, asked for names and numbers, written.
+/// Checked XML, its names and numbers, and its writer.
 mod xml;
 
 pub use error::{ReadError, SourceLocation};

@@ -1,4 +1,4 @@
-//! Options of readers.
+//! Options for reading models.
 
 use std::path::PathBuf;
 
@@ -33,8 +33,11 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 32 MiB a file and 1 GiB in all, 100 000 elements 30 000 deep with 64 attributes each, 2000 files. 1000 defaults,
-    /// 2000 geoms that may touch. A few hundred MiB of memory at most, and seconds.
+    /// Creates the default limits.
+    ///
+    /// They allow 32 MiB for each file and 1 GiB in total. A model can have 100 000 elements, which may be nested 30
+    /// 000 deep, with 64 attributes each, and 2000 files. There can be 1000 defaults, and 2000 geoms that may touch.
+    /// This means that reading takes seconds, and a few hundred MiB of memory at most.
     fn default() -> Self {
         Self {
             bytes: 32 << 20,

@@ -1,20 +1,20 @@
-//! Parts of a file that the robot does not have.
+//! Warnings about parts of a file that the robot does not have.
 
 use std::collections::BTreeMap;
 
 use crate::error::SourceLocation;
 
-/// A part of a file that the robot does not have.
+/// Warning about a part of a file that was omitted or replaced.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Warning {
-    /// The first place.
+    /// Location of the first occurrence.
     pub place: SourceLocation,
-    /// The element, with the attribute if that alone is meant.
+    /// Name of the element. If the warning is about one of its attributes, this includes the attribute.
     pub what: String,
-    /// The treatment and its reason.
+    /// Description of the treatment and its reason.
     pub why: String,
-    /// The number of times.
+    /// Number of occurrences.
     pub count: usize,
 }
 

@@ -2,25 +2,25 @@
 
 use std::fmt;
 
-/// An error of a picture or page.
+/// Error of drawing a picture or writing a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
-    /// An unknown name of a camera.
+    /// There is no camera with this name.
     UnknownCamera {
-        /// The name.
+        /// Name that was not found.
         name: String,
-        /// The most similar valid name.
+        /// Valid name that is most similar.
         nearest: Option<String>,
     },
-    /// An invalid size of a picture.
+    /// A picture cannot have this size.
     Size {
         /// Width and height [pixels].
         size: [u32; 2],
-        /// The reason.
+        /// Description of the fault.
         why: String,
     },
-    /// A text that is not valid JSON, with the reason.
+    /// A text is not valid JSON. This contains the reason.
     NotJson(String),
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::document::Document;
 
-/// Returns the JSON schema of the format.
+/// Creates the JSON schema of the format. You can use it to check files in an editor, for example.
 pub fn schema() -> Value {
     let settings = schemars::generate::SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Document>().to_value();

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use farsa_nn::{Ablatable, Controller, Lesion};
 
-/// A function that fills the motor values of a robot from its sensor values. It replaces the robot's network, for
-/// comparisons with controllers without evolution.
+/// A function that computes the motor values of a robot from its sensor values.
+///
+/// It replaces the network of the robot. This is useful for comparisons with controllers that did not evolve.
 pub type Reflex = Arc<dyn Fn(&[f32], &mut [f32]) + Send + Sync>;
 
 /// A function as the controller of a robot.

@@ -10,7 +10,7 @@ use crate::escaped::Quoted;
 use crate::experiment::intervention::{Intervention, input_ranges};
 use crate::experiment::outcome::Description;
 
-/// The parts of a controller that a test can change, by name: what `farsa test --lesion` understands.
+/// Named parts of a controller that a test can change. It defines what you can write after `farsa test --lesion`.
 ///
 /// A list such as `neuron:3,link:2-5,sensor:touch` names what is changed together:
 ///
@@ -53,20 +53,22 @@ pub struct Anatomy {
     order: Option<Vec<usize>>,
 }
 
-/// A kind of change with its valid names.
+/// A kind of change, together with its valid names.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct PartNames {
-    /// Word before the colon: `sensor`, `neuron`, `bias`.
+    /// Word before the colon, such as `sensor`, `neuron` or `bias`.
     pub kind: String,
-    /// Valid words after the colon.
+    /// All valid words after the colon.
     pub names: Vec<String>,
 }
 
 impl Anatomy {
-    /// The parts of a network whose nodes, links and parameters a schema names, and whose inputs are grouped as described.
+    /// Creates the parts of a network from a schema, which names all nodes, links and parameters. Inputs are grouped
+    /// in the same way as in the description.
     ///
-    /// The neurons and then the outputs of the schema are taken to be numbered from 0 where they are held, and the parameters
-    /// as in the schema.
+    /// This assumes that neurons are numbered from 0, followed by the outputs, and that parameters have the order of
+    /// the schema. If this is not the case, also use [`with_first`](Self::with_first) or
+    /// [`with_parameter_order`](Self::with_parameter_order).
     pub fn new(schema: &Schema, description: &Description) -> Self {
         let names = |channels: &[Channel]| channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
         let sensors = names(&schema.sensors);
@@ -83,14 +85,16 @@ impl Anatomy {
         }
     }
 
-    /// The same where the first neuron and the first output have these numbers as [`Lesion::neuron`].
+    /// Sets the numbers of the first neuron and the first output, as used by [`Lesion::neuron`].
     #[must_use]
     pub fn with_first(self, neuron: usize, output: usize) -> Self {
         Self { first: [neuron, output], ..self }
     }
 
-    /// The same where `in_schema_order` brings the network's own parameters, of which there are `count`, into the order of the
-    /// schema.
+    /// Sets the order of the network's own parameters, if it differs from the schema.
+    ///
+    /// The closure `in_schema_order` receives all `count` parameters of the network, and arranges them in the order
+    /// of the schema.
     #[must_use]
     pub fn with_parameter_order(self, count: usize, in_schema_order: impl Fn(&[f32]) -> Vec<f32>) -> Self {
         // Numbers of parameters are exact in single precision: networks are far smaller than 2^24.
@@ -99,7 +103,9 @@ impl Anatomy {
         Self { order: Some(order), ..self }
     }
 
-    /// Returns the kinds of changes that name a part, with their valid names. A link is named by two nodes.
+    /// Lists all kinds of changes with their valid names. Kinds without any names are left out.
+    ///
+    /// Since a link is named by two nodes, its only entry is the pattern `FROM-TO`.
     pub fn names(&self) -> Vec<PartNames> {
         let groups = self.groups.iter().map(|(group, _)| group);
         let single = self.sensors.iter().filter(|&name| self.groups.iter().all(|(group, _)| group != name));
@@ -117,11 +123,11 @@ impl Anatomy {
         lists.into_iter().chain(rows).filter(|part| !part.names.is_empty()).collect()
     }
 
-    /// Parses a list of changes.
+    /// Parses a list of changes, separated by commas.
     ///
     /// # Errors
-    /// [`Error::Setting`] with the nearest name, [`Error::Usage`] for an invalid change and a missing or invalid
-    /// number.
+    /// Returns [`Error::Setting`] with the nearest name if a name is unknown. [`Error::Usage`] is for invalid
+    /// changes, and for missing or invalid numbers.
     pub fn intervention(&self, list: &str) -> Result<Intervention, Error> {
         let mut sum = Intervention::default();
         for change in list.split(',') {

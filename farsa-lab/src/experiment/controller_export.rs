@@ -53,7 +53,7 @@ impl ControllerExport {
     }
 }
 
-/// A sensor channel.
+/// A sensor channel of a controller.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SensorExport {
     /// Name of the channel.
@@ -75,20 +75,23 @@ impl SensorExport {
 }
 
 impl MotorExport {
-    /// Creates a channel that drives a quantity, which is `ends[0]` at 0 and `ends[1]` at 1.
+    /// Creates a channel that drives a quantity.
+    ///
+    /// Its value is `ends[0]` at 0 and `ends[1]` at 1.
     pub fn quantity(name: impl Into<String>, quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
         let [zero, one] = ends;
         Self { name: name.into(), drives: MotorDrive::Quantity { quantity: quantity.into(), unit, zero, one } }
     }
 }
 
-/// The spring and damper between a pair of shapes.
+/// Spring and damper between a pair of shapes.
 ///
-/// The normal force at the end of a step is stiffness * depth - damping * the separation speed of the shapes. Negative
-/// forces are 0. A pair touches while its depth is positive and exceeds damping / stiffness times that speed.
+/// At the end of a step, the normal force is stiffness * depth - damping * the speed at which the shapes separate.
+/// Negative forces are set to 0. A pair touches while its depth is positive and exceeds damping / stiffness times
+/// this speed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurfaceExport {
-    /// Names of the two shapes.
+    /// Names of both shapes.
     pub pair: [String; 2],
     /// Stiffness \[N/m\].
     pub stiffness: f64,
@@ -96,78 +99,83 @@ pub struct SurfaceExport {
     pub damping: f64,
 }
 
-/// The reading of a sensor channel.
+/// Reading of a sensor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "reads", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SensorReading {
-    /// (q - from) / (to - from), not clamped.
+    /// Position q of a joint. This reads (q - from) / (to - from), and is not clamped.
     JointPosition {
-        /// The joint.
+        /// Name of the joint.
         joint: String,
         /// Position that reads 0 \[rad\].
         from: f32,
         /// Position that reads 1 \[rad\].
         to: f32,
     },
-    /// min(1, n / saturation), with n pairs of shapes that touch under a normal force > 0. See [`SurfaceExport`].
+    /// Number n of touching pairs of shapes, relative to a saturation. This reads min(1, n / saturation). Only pairs
+    /// with a normal force > 0 count. See [`SurfaceExport`].
     Touch {
-        /// Names of the pairs' two shapes.
+        /// Names of both shapes, for each pair.
         pairs: Vec<[String; 2]>,
-        /// Number of pairs that reads 1.
+        /// Number of pairs at which the sensor reads 1.
         saturation: f32,
     },
-    /// One component of scale * (target - from).
+    /// Component of the vector between two points. This reads scale * (target - from).
     Way {
-        /// Where it leads to.
+        /// End point of the vector.
         target: PointExport,
-        /// Where it begins.
+        /// Start point of the vector.
         from: PointExport,
-        /// Whose axes the components are of: `world`'s, or those of the `body` of `from`.
+        /// Axes for the components. They belong either to the `world` or to the `body` of `from`.
         axes: Axes,
-        /// 0, 1, 2 for x, y, z.
+        /// Index of the component, where 0, 1 and 2 are x, y and z.
         component: usize,
-        /// Units per metre.
+        /// Scale of the reading, in units per meter.
         scale: f32,
     },
-    /// A quantity by what is read at two values of it.
+    /// Any other quantity, given by its values at readings of 0 and 1.
     Quantity {
-        /// Which.
+        /// Description of the quantity.
         quantity: String,
-        /// Unit. `1` for none.
+        /// Unit of the quantity. This is `1` for pure numbers.
         unit: &'static str,
-        /// Its value that reads 0.
+        /// Quantity at a reading of 0.
         zero: f64,
-        /// Its value that reads 1.
+        /// Quantity at a reading of 1.
         one: f64,
-        /// True if readings in between are (q - zero) / (one - zero). Otherwise they follow a curve or a table.
+        /// If this is `true`, readings in between are (q - zero) / (one - zero). Otherwise they follow a curve or a
+        /// table.
         linear: bool,
     },
-    /// The sensor channel of this number, from 0, as the experiment's own program reads it.
+    /// A channel that only the experiment's own program can read.
     Channel {
-        /// Its number.
+        /// Number of the sensor channel, from 0.
         channel: usize,
     },
-    /// `amplitude` in the phase of this name, else 0. The phase is that after the previous step, and the first phase at
-    /// the start.
+    /// Indicator of a phase. It reads `amplitude` during this phase, and 0 otherwise.
+    ///
+    /// Note that this uses the phase after the previous step. In the first step, it is the first phase.
     Label {
-        /// The phase.
+        /// Name of the phase.
         phase: &'static str,
-        /// The value that names it.
+        /// Value of the sensor during this phase.
         amplitude: f32,
     },
 }
 
-/// A point of a body.
+/// A point that is fixed to a body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointExport {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// Where it is in the body's frame \[m\].
+    /// Position in the frame of the body \[m\].
     pub at: [f64; 3],
 }
 
-/// A motor channel. Its value is clamped into \[0, 1\] first unless stated otherwise.
+/// A motor channel of a controller.
+///
+/// Unless stated otherwise, its value is first clamped to \[0, 1\].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotorExport {
     /// Name of the channel.
@@ -177,45 +185,46 @@ pub struct MotorExport {
     pub drives: MotorDrive,
 }
 
-/// The effect of a motor channel.
+/// Effect of a motor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "drives", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum MotorDrive {
-    /// The activation of one of an actuator's two muscles.
+    /// Activation of one of the two muscles of an actuator.
     Muscle {
-        /// The actuator.
+        /// Name of the actuator.
         actuator: String,
-        /// 0 the agonist, which pulls towards the joint's lower limit, 1 the antagonist.
+        /// Index of the muscle. The agonist is 0, and pulls towards the lower limit of the joint. The antagonist is
+        /// 1.
         muscle: usize,
     },
-    /// A quantity, zero + (one - zero) y, without clamping y.
+    /// Any other quantity, which is set to zero + (one - zero) y. Note that y is not clamped here.
     Quantity {
-        /// Which.
+        /// Description of the quantity.
         quantity: String,
-        /// Unit. `1` for none.
+        /// Unit of the quantity. This is `1` for pure numbers.
         unit: &'static str,
-        /// Its value at 0.
+        /// Quantity at a channel value of 0.
         zero: f64,
-        /// Its value at 1.
+        /// Quantity at a channel value of 1.
         one: f64,
     },
-    /// The motor channel of this number, from 0, as the experiment's own program drives it.
+    /// A channel that only the experiment's own program can drive.
     Channel {
-        /// Its number.
+        /// Number of the motor channel, from 0.
         channel: usize,
     },
-    /// The desired positions of servos, from + (to - from) y each.
+    /// Desired positions of several servos. Each is set to from + (to - from) y.
     Servos {
-        /// The servos.
+        /// Servos that follow the channel.
         servos: Vec<ServoExport>,
     },
 }
 
-/// A servo and its positions at both ends of a motor channel.
+/// A servo, with its positions at both ends of a motor channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ServoExport {
-    /// The actuator.
+    /// Name of the actuator.
     pub actuator: String,
     /// Desired position at 0 \[rad\].
     pub from: f32,
@@ -223,43 +232,44 @@ pub struct ServoExport {
     pub to: f32,
 }
 
-/// An actuator and its law.
+/// An actuator with its joint and its law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ActuatorExport {
-    /// The actuator.
+    /// Name of the actuator.
     pub name: String,
-    /// Its joint.
+    /// Name of the joint that it moves.
     pub joint: String,
-    /// Its law.
+    /// Law that maps commands to efforts.
     pub law: Law<f64>,
 }
 
-/// The judgement of `reach-grasp-lift` trials, on which phases and success depend.
+/// Judgement of `reach-grasp-lift` trials. Phases and success of a trial depend on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgeExport {
-    /// The phases in their order.
+    /// Names of all phases, in their order.
     pub phases: Vec<&'static str>,
-    /// The body that is to be lifted.
+    /// Name of the body to lift.
     pub target: String,
-    /// The palm's centre.
+    /// Center of the palm.
     pub palm: PointExport,
-    /// The fingers' tips.
+    /// Tips of all fingers.
     pub fingertips: Vec<PointExport>,
-    /// Pairs of the target and the fingers.
+    /// Pairs of the target with each finger.
     pub on_fingers: Vec<[String; 2]>,
-    /// The pair of the target and the table.
+    /// Pair of the target with the table.
     pub on_table: [String; 2],
-    /// Height of the target's centre above the world's origin from which it counts as held \[m\].
+    /// Minimum height at which the target counts as held \[m\]. This is measured from the world's origin to the
+    /// center of the target.
     pub success_height: f64,
     /// Number of final steps during which the object must be held.
     pub success_steps: u32,
 }
 
-/// Where a trial starts, at rest: every joint, and every free body by its place.
+/// Initial state of a trial, in which everything is at rest.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StartExport {
-    /// Position of every joint \[rad or m\], by name.
+    /// Position of every joint \[rad or m\], together with its name.
     pub joints: Vec<(String, f32)>,
-    /// Position of every free body's origin \[m\], by name, without rotation.
+    /// Position of every free body \[m\], together with its name. Bodies start without any rotation.
     pub bodies: Vec<(String, [f32; 3])>,
 }

@@ -18,10 +18,11 @@ use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::Protocol;
 
-/// Sensors, a recurrent network, and motors: an episode adds the world and the reward.
+/// Controller of a robot, which consists of sensors, a recurrent network and motors. To get an episode, you only need
+/// to add the world and the reward.
 ///
-/// The network has one hidden layer, all linked to all ([`LeakyLayout`]), with leaks as filters. Its parameters are
-/// weights and biases, and leaks from 0 to 1. The loop stays the caller's:
+/// Its network has a single hidden layer, which links all nodes to all ([`LeakyLayout`]). Leaks from 0 to 1 act as
+/// filters, and are evolved together with weights and biases. The loop over the steps remains in your hands:
 ///
 /// ```
 /// use farsa_body::testing::PointWorld;
@@ -60,11 +61,12 @@ pub struct Neurocontroller<S, M> {
 }
 
 impl<S: Channels, M: Channels> Neurocontroller<S, M> {
-    /// Builds a network with `hidden` hidden neurons between sensors and motors. Weights and biases range from minus to
-    /// plus `range`.
+    /// Creates a new controller with `hidden` hidden neurons between sensors and motors.
+    ///
+    /// Weights and biases range from `-range` to `range`.
     ///
     /// # Errors
-    /// [`Error::Other`] if the range is negative or not finite, or there is nothing to sense or to drive.
+    /// Returns [`Error::Other`] if the range is negative or not finite, or if there are no sensors or motors.
     pub fn new(sensors: S, motors: M, hidden: usize, range: f64) -> Result<Self, Error> {
         let (inputs, outputs) = (sensors.channels(), motors.channels());
         if inputs == 0 || outputs == 0 {
@@ -91,18 +93,19 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         .with_schema(Schema::default()))
     }
 
-    /// The network's parameters with their ranges.
+    /// Gets all parameters of the network, together with their ranges.
     pub fn parameters(&self) -> Vec<Parameter> {
         network_parameters(&self.layout, self.range, [0.0, 1.0], "network.range").unwrap_or_default()
     }
 
-    /// The network's layout.
+    /// Gets the layout of the network.
     pub fn layout(&self) -> &LeakyLayout {
         &self.layout
     }
 
-    /// Loads the network's parameters and resets sensors, network and motors. Returns false for another number of
-    /// parameters and changes nothing.
+    /// Loads the parameters of the network. This also resets sensors, network and motors.
+    ///
+    /// If the number of parameters is wrong, this returns `false` and changes nothing.
     pub fn load(&mut self, parameters: &[f32]) -> bool {
         if self.network.controller_mut().copy_parameters(parameters).is_err() {
             return false;
@@ -111,8 +114,9 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         true
     }
 
-    /// Loads the parameters of an evaluation, with normalized observations if it has statistics. Returns false for
-    /// parameters or statistics that do not fit.
+    /// Loads the parameters of an evaluation. If the evaluation has statistics, observations are normalized.
+    ///
+    /// This returns `false` if the parameters or the statistics do not fit.
     pub fn load_evaluation(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let change = self.interventions.applied(evaluation).into_owned();
         let loaded = self.network.load(evaluation.normalisation) && self.load(&change.edited(evaluation.parameters));
@@ -120,15 +124,17 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         loaded
     }
 
-    /// Returns the protocols `lesions` and `noise`, which [`load_evaluation`](Self::load_evaluation) applies. `lesions`
-    /// cuts each group of sensors of the [`schema`](Self::schema), or each sensor without a group, and silences each
-    /// hidden neuron. `noise` adds up to 0.4 to every input.
+    /// Gets the test protocols `lesions` and `noise`, which [`load_evaluation`](Self::load_evaluation) applies.
+    ///
+    /// The protocol `lesions` cuts each group of sensors of the [`schema`](Self::schema), and silences each hidden
+    /// neuron. A sensor without a group is cut by itself. The protocol `noise` adds noise of up to 0.4 to every
+    /// input.
     pub fn protocols(&self) -> Vec<Protocol> {
         self.interventions.protocols()
     }
 
-    /// Returns the named parts that tests can change, which [`load_evaluation`](Self::load_evaluation) applies. Sensors
-    /// also have the group names of the [`schema`](Self::schema).
+    /// Gets the named parts that tests can change, which [`load_evaluation`](Self::load_evaluation) applies. Sensors
+    /// can also be changed by the group names of the [`schema`](Self::schema).
     pub fn anatomy(&self) -> Anatomy {
         let sensors = groups(&self.schema).into_iter().map(|(group, inputs)| {
             // One that is in no group has its own name.
@@ -139,20 +145,22 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         Anatomy::new(&self.schema, &Description { sensors: sensors.collect(), ..Description::default() })
     }
 
-    /// Returns the statistics since [`load_evaluation`](Self::load_evaluation), if observations are normalized, for
-    /// [`Outcome::observed`](crate::Outcome::observed).
+    /// Gets the statistics of all observations since [`load_evaluation`](Self::load_evaluation). This is `None`
+    /// unless observations are normalized. Pass the result to [`Outcome::observed`](crate::Outcome::observed).
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.network.observed()
     }
 
-    /// Resets sensors, network and motors.
+    /// Resets sensors, network and motors, for example at the start of a trial.
     pub fn reset(&mut self) {
         self.sensors.reset();
         self.network.reset();
         self.motors.reset();
     }
 
-    /// Reads the sensors, steps the network and drives the motors. The caller steps the world.
+    /// Reads the sensors, steps the network and drives the motors.
+    ///
+    /// Note that this does not step the world, so you have to do it afterwards.
     pub fn act<W>(&mut self, world: &mut W)
     where
         W: ?Sized,
@@ -164,8 +172,10 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         self.motors.drive(&self.y, world);
     }
 
-    /// Records the bodies of the schema, contacts, and the last sensor, neuron and output values. The caller ends the
-    /// tick with [`Recorder::tick`].
+    /// Records the bodies of the schema and their contacts, and also the most recent values of sensors, neurons and
+    /// outputs.
+    ///
+    /// This does not end the tick. Call [`Recorder::tick`] for this.
     pub fn record<W>(&self, world: &W, recorder: &mut dyn Recorder)
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
@@ -176,12 +186,13 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         recorder.outputs(&self.y);
     }
 
-    /// Records the network's parameters, once before the first tick.
+    /// Records the parameters of the network. You need to do this once, before the first tick.
     pub fn record_parameters(&self, recorder: &mut dyn Recorder) {
         recorder.parameters(self.network.controller().parameters());
     }
 
-    /// Replaces the schema and adds the network to it. Unnamed sensors and outputs are numbered from 1.
+    /// Replaces the schema, and adds the network to it. If sensors or outputs have no names, they are numbered from
+    /// 1.
     #[must_use]
     pub fn with_schema(self, schema: Schema) -> Self {
         let numbered = |count: usize| (1..=count).map(|number| number.to_string()).collect::<Vec<_>>();
@@ -194,12 +205,12 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         Self { schema, interventions, ..self }
     }
 
-    /// Returns the schema of the recording.
+    /// Gets the schema for recordings.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// Returns the description for `farsa info`, for trials of `steps` steps of `step_seconds` \[s\].
+    /// Builds the description that `farsa info` prints. A trial takes `steps` steps of `step_seconds` \[s\] each.
     pub fn description(&self, steps: usize, step_seconds: f64) -> Description {
         let (inputs, outputs) = (self.x.len(), self.y.len());
         Description {
@@ -212,17 +223,17 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         }
     }
 
-    /// Returns the last sensor values \[sensors\].
+    /// Gets the sensor values of the last step \[sensors\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// Returns the last outputs \[outputs\].
+    /// Gets the outputs of the last step \[outputs\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }
 
-    /// Returns the sensors, for example to set the noise of a trial.
+    /// Gets a mutable reference to the sensors. This is useful to set the noise of a trial, for example.
     pub fn sensors_mut(&mut self) -> &mut S {
         &mut self.sensors
     }

@@ -9,21 +9,21 @@ use crate::error::Error;
 use crate::escaped::shortened;
 use crate::experiment::value::Value;
 
-/// Where a default comes from.
+/// Origin of a default value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Source {
-    /// Stated by the experiment's source.
+    /// Value is stated by the source of the experiment.
     Given,
-    /// Follows from what the source states.
+    /// Value follows from other statements of the source.
     Derived,
-    /// Chosen here: the source does not state it.
+    /// Value was chosen here, since the source does not state it.
     #[default]
     Chosen,
 }
 
 impl Source {
-    /// The word for it.
+    /// Gets the name of this origin.
     pub fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -45,7 +45,7 @@ enum Allowed {
     Numbers(RangeInclusive<f64>),
 }
 
-/// One thing that can be set, with its default and where that comes from.
+/// A single setting, with its default, the origin of this default, and all values it may have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     key: String,
@@ -61,95 +61,98 @@ impl Setting {
         Self { key: key.into(), default, allowed, unit: String::new(), source: Source::default(), doc: String::new() }
     }
 
-    /// A number within limits, both included. Keys are `section.name`, lower-case with underscores or hyphens.
+    /// Creates a setting for a real number. Both limits are included.
+    ///
+    /// Keys have the form `section.name`, and are lower-case with underscores or hyphens.
     pub fn number(key: &str, default: f64, range: RangeInclusive<f64>) -> Self {
         Self::new(key, Value::Number(default), Allowed::Number(range))
     }
 
-    /// A whole number within limits, both included.
+    /// Creates a setting for a whole number. Both limits are included.
     pub fn whole(key: &str, default: i64, range: RangeInclusive<i64>) -> Self {
         Self::new(key, Value::Whole(default), Allowed::Whole(range))
     }
 
-    /// Yes or no.
+    /// Creates a setting for a flag.
     pub fn flag(key: &str, default: bool) -> Self {
         Self::new(key, Value::Flag(default), Allowed::Flag)
     }
 
-    /// One of a few words.
+    /// Creates a setting for a word out of several choices.
     pub fn word(key: &str, default: &str, choices: &[&str]) -> Self {
         let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
         Self::new(key, Value::Word(default.into()), Allowed::Word(choices))
     }
 
-    /// Any text, such as the path of a file.
+    /// Creates a setting for any text, such as the path of a file.
     pub fn text(key: &str, default: &str) -> Self {
         Self::new(key, Value::Word(default.into()), Allowed::Text)
     }
 
-    /// A list of as many numbers as the default has, each within limits, both included.
+    /// Creates a setting for a list of numbers, which always has the same length as the default. Both limits are
+    /// included.
     pub fn numbers(key: &str, default: &[f64], range: RangeInclusive<f64>) -> Self {
         Self::new(key, Value::Numbers(default.to_vec()), Allowed::Numbers(range))
     }
 
-    /// Adds the unit, in the way it is written after a number: `cm`, `rad/s`.
+    /// Sets the unit, as it is written after a number, for example `cm` or `rad/s`.
     pub fn unit(mut self, unit: &str) -> Self {
         self.unit = unit.into();
         self
     }
 
-    /// States that the default is given by the experiment's source.
+    /// Marks the default as stated by the source of the experiment.
     pub fn given(mut self) -> Self {
         self.source = Source::Given;
         self
     }
 
-    /// States that the default follows from the source.
+    /// Marks the default as derived from the source.
     pub fn derived(mut self) -> Self {
         self.source = Source::Derived;
         self
     }
 
-    /// Adds one sentence of documentation. For a chosen default it gives the reason.
+    /// Sets one sentence of documentation. If the default was chosen here, use it to give the reason.
     pub fn doc(mut self, doc: &str) -> Self {
         self.doc = doc.into();
         self
     }
 
-    /// Replaces the default, for an experiment that has its own default of a strategy's setting.
+    /// Replaces the default. This is useful if an experiment has a better default for a setting of a strategy.
     ///
     /// # Errors
-    /// Checks the limits of a value and returns the fault as text.
+    /// Returns a description of the fault if the value is outside the limits.
     pub fn with_default(&self, value: Value) -> Result<Self, String> {
         Ok(Self { default: self.check(value)?, ..self.clone() })
     }
 
-    /// The key.
+    /// Gets the key.
     pub fn key(&self) -> &str {
         &self.key
     }
 
-    /// The default.
+    /// Gets the default value.
     pub fn default_value(&self) -> &Value {
         &self.default
     }
 
-    /// Returns the unit. Empty for none.
+    /// Gets the unit. This is empty for settings without a unit.
     pub fn unit_name(&self) -> &str {
         &self.unit
     }
 
-    /// Where the default comes from.
+    /// Gets the origin of the default.
     pub fn source(&self) -> Source {
         self.source
     }
 
-    /// Returns the documentation.
+    /// Gets the documentation.
     pub fn doc_text(&self) -> &str {
         &self.doc
     }
 
-    /// The allowed values in words: `0.0 to 1.0`, `filter, two-tap or evonet`.
+    /// Describes all allowed values, for example `0.0 to 1.0` or `filter, two-tap or evonet`.
     pub fn allowed(&self) -> String {
         match &self.allowed {
             Allowed::Flag => "true or false".into(),

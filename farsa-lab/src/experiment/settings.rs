@@ -8,7 +8,7 @@ pub use crate::experiment::setting::{Setting, Source};
 pub(crate) use crate::experiment::value::Paragraph;
 pub use crate::experiment::value::Value;
 
-/// The complete configuration of a run: a checked value for every setting of the experiment's table.
+/// Complete configuration of a run. It has a valid value for every setting in the table of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     table: Vec<Setting>,
@@ -16,11 +16,11 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The defaults of a table.
+    /// Creates a configuration with the default values of a table.
     ///
     /// # Errors
-    /// [`Error::Setting`] if a key is not of the form `section.name`, appears twice, or has a default outside its
-    /// limits. These are mistakes in the experiment.
+    /// Returns [`Error::Setting`] if a key is not of the form `section.name`, appears twice, or has a default outside
+    /// its limits. Each of these is a mistake in the experiment.
     pub fn new(table: Vec<Setting>) -> Result<Self, Error> {
         let mut values = BTreeMap::new();
         for setting in &table {
@@ -36,15 +36,18 @@ impl Settings {
         Ok(Self { table, values })
     }
 
-    /// The table, in its order.
+    /// Gets the table of all settings, in the order of the experiment.
     pub fn table(&self) -> &[Setting] {
         &self.table
     }
 
-    /// Sets a value. `place` is its location for the error (`my.toml line 3`, `--set`).
+    /// Sets the value of a key.
+    ///
+    /// Errors mention `place` as the location of the value, for example `my.toml line 3` or `--set`.
     ///
     /// # Errors
-    /// As for [`find`](Self::find), and [`Error::Setting`] if the value is not allowed. Nothing changes on an error.
+    /// Returns the errors of [`find`](Self::find), and [`Error::Setting`] if the value is not allowed. Nothing
+    /// changes in case of an error.
     pub fn set(&mut self, place: &str, key: &str, value: Value) -> Result<(), Error> {
         let value = self.find(place, key)?.check(value).map_err(|why| Error::Setting {
             place: place.into(),
@@ -55,10 +58,13 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns the setting of a key. `place` is its location for the error.
+    /// Finds the setting of a key.
+    ///
+    /// Errors mention `place` as the location of the key.
     ///
     /// # Errors
-    /// [`Error::Setting`] with the nearest key, or with the right option for a choice such as the strategy.
+    /// If there is no such key, returns [`Error::Setting`] with the nearest one. Some keys, such as the strategy, are
+    /// options of the command instead. In this case the error names the option.
     pub fn find(&self, place: &str, key: &str) -> Result<&Setting, Error> {
         self.table.iter().find(|setting| setting.key() == key).ok_or_else(|| match elsewhere(key) {
             Some(why) => Error::Setting { place: place.into(), key: key.into(), why: why.into() },
@@ -66,10 +72,10 @@ impl Settings {
         })
     }
 
-    /// Checks that there is a section of this name, or one within it.
+    /// Checks that there is a section of this name, or a section within it.
     ///
     /// # Errors
-    /// [`Error::Setting`] with the nearest section.
+    /// Returns [`Error::Setting`] with the name of the nearest section.
     pub(crate) fn section(&self, place: &str, name: &str) -> Result<(), Error> {
         let sections = || self.table.iter().filter_map(|setting| Some(setting.key().rsplit_once('.')?.0));
         let within =
@@ -77,23 +83,23 @@ impl Settings {
         if sections().any(within) { Ok(()) } else { Err(Error::unknown(place, "section", name, sections())) }
     }
 
-    /// Returns whether the table has this key.
+    /// Checks if the table has this key.
     pub fn has(&self, key: &str) -> bool {
         self.values.contains_key(key)
     }
 
-    /// A value, whatever its type.
+    /// Gets a value of any type. If you need a certain type, use a method such as [`number`](Self::number) instead.
     ///
     /// # Errors
-    /// [`Error::Setting`] when the table has no such key.
+    /// Returns [`Error::Setting`] if there is no such key.
     pub fn get(&self, key: &str) -> Result<&Value, Error> {
         self.values.get(key).ok_or_else(|| Error::unknown("", "key", key, self.table.iter().map(Setting::key)))
     }
 
-    /// A number.
+    /// Gets a real number.
     ///
     /// # Errors
-    /// [`Error::Setting`] when the table has no such key, [`Error::Setting`] when it holds something else.
+    /// Returns [`Error::Setting`] if there is no such key, or if its value has another type.
     pub fn number(&self, key: &str) -> Result<f64, Error> {
         match self.get(key)? {
             &Value::Number(x) => Ok(x),
@@ -101,10 +107,10 @@ impl Settings {
         }
     }
 
-    /// A whole number.
+    /// Gets a whole number, which may be negative.
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// Returns the errors of [`number`](Self::number).
     pub fn whole(&self, key: &str) -> Result<i64, Error> {
         match self.get(key)? {
             &Value::Whole(n) => Ok(n),
@@ -112,18 +118,18 @@ impl Settings {
         }
     }
 
-    /// A whole number that counts something.
+    /// Gets a whole number as a count.
     ///
     /// # Errors
-    /// As [`number`](Self::number), and [`Error::Setting`] for a negative one.
+    /// Returns the errors of [`number`](Self::number), and [`Error::Setting`] if the number is negative.
     pub fn count(&self, key: &str) -> Result<usize, Error> {
         usize::try_from(self.whole(key)?).map_err(|_| Error::setting(key, "cannot be counted to"))
     }
 
-    /// Yes or no.
+    /// Gets a flag.
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// Returns the errors of [`number`](Self::number).
     pub fn flag(&self, key: &str) -> Result<bool, Error> {
         match self.get(key)? {
             &Value::Flag(flag) => Ok(flag),
@@ -131,10 +137,10 @@ impl Settings {
         }
     }
 
-    /// One of the setting's words.
+    /// Gets a word, which is always a valid choice of its setting.
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// Returns the errors of [`number`](Self::number).
     pub fn word(&self, key: &str) -> Result<&str, Error> {
         match self.get(key)? {
             Value::Word(word) => Ok(word),
@@ -142,10 +148,10 @@ impl Settings {
         }
     }
 
-    /// Any text.
+    /// Gets a text.
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// Returns the errors of [`number`](Self::number).
     pub fn text(&self, key: &str) -> Result<&str, Error> {
         match self.get(key)? {
             Value::Word(text) => Ok(text),
@@ -153,10 +159,10 @@ impl Settings {
         }
     }
 
-    /// A list of numbers.
+    /// Gets a list of numbers. If its length is fixed, [`array`](Self::array) is more convenient.
     ///
     /// # Errors
-    /// As [`number`](Self::number).
+    /// Returns the errors of [`number`](Self::number).
     pub fn numbers(&self, key: &str) -> Result<&[f64], Error> {
         match self.get(key)? {
             Value::Numbers(list) => Ok(list),
@@ -164,10 +170,10 @@ impl Settings {
         }
     }
 
-    /// A list of exactly N numbers.
+    /// Gets a list of exactly `N` numbers.
     ///
     /// # Errors
-    /// As [`number`](Self::number), and [`Error::Setting`] for another count.
+    /// Returns the errors of [`number`](Self::number), and [`Error::Setting`] if the list has another length.
     pub fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], Error> {
         let list = self.numbers(key)?;
         list.try_into().map_err(|_| Error::setting(key, format!("{} numbers, not {N}", list.len())))

@@ -15,17 +15,17 @@ use crate::xml::write::{
     GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, visuals_by_body,
 };
 
-/// The parts of a MuJoCo model that are not in the robot.
+/// Options of a MuJoCo model that a robot description does not contain.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct MjcfOptions {
-    /// The step that MuJoCo shall take, which its contact parameters depend on [s].
+    /// Time step of MuJoCo [s]. Parameters of contacts depend on it.
     pub time_step: f64,
-    /// Gravity [m/s2].
+    /// Vector of gravity [m/s2].
     pub gravity: [f64; 3],
-    /// The ratio of friction's stiffness to that of the normal, inversely proportional to creep.
+    /// Ratio of the stiffness of friction to that of the normal. Creep is inversely proportional to it.
     pub impedance_ratio: f64,
-    /// Postures to start from.
+    /// Named states from which a simulation can start.
     pub keyframes: Vec<Keyframe>,
 }
 
@@ -39,11 +39,11 @@ impl Default for MjcfOptions {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Keyframe {
-    /// Its name.
+    /// Name of the state.
     pub name: String,
-    /// Joint positions in the order of [`Robot::joints`]. Missing numbers are 0 [rad or m].
+    /// Position of each joint [rad or m], in the order of [`Robot::joints`]. Missing positions are 0.
     pub joints: Vec<f64>,
-    /// Where floating segments are. The others are where their joint places them.
+    /// Pose of each floating segment. All other segments follow from the positions of the joints.
     pub bodies: Vec<(BodyId, Pose<f64>)>,
 }
 
@@ -73,10 +73,10 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
     (tau, (1.0 - 1.0 / (tau * tau * kw)).clamp(SOFTEST, STIFFEST))
 }
 
-/// The robot as a model in MuJoCo's own format, MJCF.
+/// Writes a robot as a model in MJCF, the format of MuJoCo.
 ///
-/// Segments, joints, inertias and shapes are the description's to the last digit. Only the pairs of the description may
-/// touch. Replacements of parts that MuJoCo does not have:
+/// Segments, joints, inertias and shapes are exact to the last digit, and only pairs of the description may touch. Some
+/// parts are replaced, since MuJoCo does not have them:
 /// - muscle pairs and custom laws are `motor`s with the commanded effort, and the caller evaluates the law
 /// - position servos are position actuators with a force range, torque motors motors with a control range
 /// - a contact point has our stiffness at rest, but critical damping, and the mass of heavier bodies, without which
@@ -86,12 +86,12 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 /// - visuals are geoms of group 2, and the colliders behind them geoms of group 3, which MuJoCo does not show
 /// - joint stops are MuJoCo's, as stiff as the step allows.
 ///
-/// A plane on a segment that moves is written, and refused by MuJoCo. So are chains of more than 496 bodies (4.0.0). A
-/// segment called `world` gets a `_` appended.
+/// If a segment is called `world`, a `_` is appended to its name. Note that MuJoCo 4.0.0 refuses planes on segments that
+/// move, and chains of more than 496 bodies. They are written nevertheless.
 ///
 /// # Errors
-/// The errors of [`Robot::validate`]. [`RobotError::Value`] for options that are not finite, a step or ratio <= 0, or a
-/// shape of 1e9 m or more, which no reader accepts.
+/// Returns the errors of [`Robot::validate`]. You get [`RobotError::Value`] if an option is not finite, or if the step or
+/// the ratio is not positive. This also happens for a shape of 1e9 m or more, which no reader would accept.
 pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError> {
     check(options)?;
     let weights = inverse_weights(robot)?;

@@ -23,20 +23,22 @@ const MAX_SPEED: f64 = 1000.0;
 /// Half the edge length of the block that represents a plane [m].
 const PLANE: f64 = 50.0;
 
-/// The robot as a URDF file: links, inertias, joints, collision shapes.
+/// Writes a robot as a URDF file with links, inertias, joints and collision shapes.
 ///
-/// One link, `world`, is the root of everything (a segment of that name gets a `_` appended). A floating segment is on
-/// it by a joint of type `floating`, which some readers reject. A capsule is a cylinder with a sphere at either end, a
-/// plane a block of 100 m. A joint without name gets the name of its segment.
+/// All links belong to the root link `world`. If a segment already has this name, a `_` is appended to it. Floating
+/// segments use a joint of type `floating`, which some readers reject. A capsule is written as a cylinder with a
+/// sphere at either end, and a plane as a block of 100 m. If a joint has no name, it gets the name of its segment.
 ///
-/// Visuals of a link are its own. Where colliders have colors, those of links without visuals are visuals too. Friction
-/// on the ground becomes friction of each sliding joint by itself, with a comment in the file.
+/// Links keep their visuals. If colliders have colors, and a link has no visuals, they are written as visuals as
+/// well. Since URDF has no friction on the ground, it becomes friction of each sliding joint by itself. A comment in
+/// the file mentions this.
 ///
-/// Lost are armatures, pairs, surfaces, and the laws of actuators except for their largest effort (of a muscle pair:
-/// moment arm times largest active tension). A largest speed, which URDF requires, is 1000.
+/// Note that armatures, pairs and surfaces are lost. Actuators only keep their largest effort, which for a muscle pair is
+/// moment arm times largest active tension. URDF also requires a maximum speed, which is always 1000.
 ///
 /// # Errors
-/// The errors of [`Robot::validate`]. [`RobotError::Value`] for a shape of 1e9 m or more, which no reader accepts.
+/// Returns the errors of [`Robot::validate`], and [`RobotError::Value`] for a shape of 1e9 m or more. No reader would
+/// accept such a shape.
 pub fn write(robot: &Robot) -> Result<String, RobotError> {
     robot.validate()?;
     check_sizes(robot)?;

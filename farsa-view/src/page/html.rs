@@ -30,9 +30,11 @@ const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connec
 const LIVE_SCRIPT: &str =
     concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"), include_str!("viewer/move.js"));
 
-/// A page of recorded episodes for a browser: bodies in space, time series and the network on one clock.
+/// A page for the browser that shows recorded episodes. Bodies in space, time series and the network share a single
+/// clock.
 ///
-/// A page is one file without external resources. `docs/replay-format.md` of the project describes the format of its data.
+/// Since the page is a single file without external resources, you can send it to others as it is. Its data format is
+/// described in `docs/replay-format.md` of the project.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,
@@ -41,7 +43,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// A text among the first 2000 bytes of every page, by which files are recognized as pages.
+    /// Text that occurs in the first 2000 bytes of every page. You can use it to check if a file is such a page.
     pub const MARK: &'static str = "Make it again with farsa replay --html.";
 
     /// Creates a page without episodes.
@@ -49,33 +51,35 @@ impl Page {
         Self { title: title.into(), ..Self::default() }
     }
 
-    /// Returns the page with another episode.
+    /// Appends an episode, and returns the page.
     pub fn with(mut self, name: &str, recording: Recording) -> Self {
         self.add(name, Vec::new(), recording);
         self
     }
 
-    /// Adds an episode with facts about it, by name, such as its fitness.
+    /// Appends an episode with named facts about it, such as its fitness.
     pub fn add(&mut self, name: &str, facts: Vec<(String, String)>, recording: Recording) {
         self.episodes.push(EpisodeData { name: name.into(), facts, recording });
     }
 
-    /// Returns the number of episodes.
+    /// Counts the episodes of this page.
     pub fn episodes(&self) -> usize {
         self.episodes.len()
     }
 
-    /// Shows the episode of this index next to the first one when the page opens.
+    /// Selects an episode by its index, which is shown next to the first one when the page opens.
     pub fn open_beside(&mut self, episode: usize) {
         self.second = Some(episode);
     }
 
-    /// Returns the data of an episode as JSON, in the format of docs/replay-format.md.
+    /// Writes the data of an episode as JSON, in the format of docs/replay-format.md.
+    ///
+    /// If there is no such episode, this returns `None`.
     pub fn episode(&self, number: usize) -> Option<String> {
         self.episodes.get(number).map(|episode| episode.json().to_string())
     }
 
-    /// Returns the HTML of the page.
+    /// Writes the complete page as HTML.
     pub fn html(&self) -> String {
         let top = self.episodes.first().is_some_and(|episode| episode.recording.schema().view == View::Top);
         let mut data = data_head(&self.title, top);
@@ -158,7 +162,7 @@ pub(crate) fn escaped(text: &str) -> String {
     html
 }
 
-/// Formats a number for readers, with up to three decimals.
+/// Formats a number for readers. It has at most three decimals.
 pub fn readable(x: f64) -> String {
     let mut text = String::new();
     let decimals = if x.abs() >= 1000.0 {

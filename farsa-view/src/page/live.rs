@@ -11,33 +11,34 @@ use serde_json::{Value, json};
 use crate::error::Error;
 use crate::page::html::{Kind, composed, data_head};
 
-/// An interactive page that runs an agent by a WebAssembly module stored in the page.
+/// An interactive page that runs an agent in the browser. It uses a WebAssembly module, which is stored in the page.
 ///
-/// The module exports the functions `input`, `open`, `answer` and `output` of the project's `farsa-live`. The JSON of the run
-/// and of the requests is a protocol between the module and the viewer.
+/// This module must export the functions `input`, `open`, `answer` and `output`, as `farsa-live` of the project does.
+/// Runs and requests are JSON, which only the module and the viewer need to understand.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LivePage {
-    /// The title of the page.
+    /// Title of the page.
     pub title: String,
-    /// True for a camera from above.
+    /// If this is `true`, the camera looks from above.
     pub from_above: bool,
-    /// True if the page is served by a program that reports the progress of a run at `events`, by server-sent events.
+    /// Set this to `true` if a program serves the page. It must report the progress of a run at `events`, using
+    /// server-sent events.
     pub served: bool,
-    /// The module, compressed by gzip.
+    /// WebAssembly module, compressed with gzip.
     pub module: Vec<u8>,
-    /// The run that the module opens, as JSON.
+    /// Run that the module opens, as JSON.
     pub script: String,
-    /// The state from which evolution continues, as JSON, if it can.
+    /// State from which evolution continues, as JSON. Use `None` if it cannot be continued.
     pub state: Option<String>,
-    /// The description of the agent for the viewer, as JSON.
+    /// Description of the agent for the viewer, as JSON.
     pub about: String,
 }
 
 impl LivePage {
-    /// Returns the HTML of the page.
+    /// Writes the complete page as HTML.
     ///
     /// # Errors
-    /// [`Error::NotJson`] if the run, its description or its state is not JSON.
+    /// Returns [`Error::NotJson`] if the run, its description or its state is not valid JSON.
     pub fn html(&self) -> Result<String, Error> {
         let parsed =
             |text: &str| serde_json::from_str::<Value>(text).map_err(|error| Error::NotJson(error.to_string()));

@@ -1,10 +1,12 @@
-//! Cameras and the views of pictures.
+//! Cameras, and their views of pictures.
 
 use crate::error::Error;
 use crate::recording::view::View;
 use crate::shape::vector::{Vector, across, add, along, cross, dot, scale, sub, unit};
 
-/// A named direction of view. The frame is fitted to the scene.
+/// A camera that looks from a named direction. Its frame is fitted to the scene.
+///
+/// If you don't need a particular direction, use [`Camera::default`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     name: &'static str,
@@ -62,7 +64,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The names of all cameras, the default first.
+    /// Names of all cameras, starting with the default one.
     pub const NAMES: [&'static str; 5] = {
         let mut names = [""; 5];
         let mut i = 0;
@@ -73,16 +75,16 @@ impl Camera {
         names
     };
 
-    /// Returns the camera of a name.
+    /// Finds a camera by its name. See [`NAMES`](Self::NAMES) for all names.
     ///
     /// # Errors
-    /// [`Error::UnknownCamera`] for an unknown name, with the nearest valid one.
+    /// If there is no such camera, returns [`Error::UnknownCamera`] with the nearest valid name.
     pub fn named(name: &str) -> Result<Self, Error> {
         let camera = CAMERAS.into_iter().find(|camera| camera.name == name);
         camera.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
     }
 
-    /// Returns the camera that a view starts with.
+    /// Gets the initial camera of a view.
     pub fn for_view(view: View) -> Self {
         match view {
             View::Free => CAMERAS[0],
@@ -90,7 +92,7 @@ impl Camera {
         }
     }
 
-    /// Returns the name of the camera.
+    /// Gets the name of this camera.
     pub fn name(&self) -> &'static str {
         self.name
     }

@@ -22,9 +22,10 @@ const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
 const PENCIL: Color = [96, 96, 96];
 
 impl Recording {
-    /// Returns the picture of a tick, as of `farsa draw`, or `None` for an unknown tick and without bodies.
+    /// Creates the picture of a tick, in the same way as `farsa draw`.
     ///
-    /// A view from above also shows the trails of robots, colored things and points up to the tick.
+    /// If the tick does not exist, or if the schema has no bodies, this returns `None`. A view from above also shows
+    /// trails up to this tick, for robots, colored things and points.
     pub fn picture(&self, tick: usize) -> Option<Picture> {
         let schema = self.schema();
         if tick >= self.times().len() || (schema.robot.is_none() && schema.objects.is_empty()) {

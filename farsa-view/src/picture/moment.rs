@@ -1,4 +1,4 @@
-//! The content of a picture of a moment.
+//! Content of a picture of a moment.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
@@ -8,27 +8,27 @@ use crate::picture::camera::{Camera, Window};
 use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
 use crate::shape::vector::{Vector, length};
 
-/// A force on a point.
+/// A force that acts on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// The point of application, in the world [m].
+    /// Point of application, in world coordinates [m].
     pub point: Vector,
-    /// The force, in the world's axes [N].
+    /// Force in world coordinates [N].
     pub force: Vector,
 }
 
 /// A ray of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
-    /// The start, in the world [m].
+    /// Start of the ray, in world coordinates [m].
     pub from: Vector,
-    /// The end, in the world [m].
+    /// End of the ray, in world coordinates [m].
     pub to: Vector,
-    /// True if the ray hit something at its end.
+    /// This is `true` if the ray hit something at its end.
     pub hit: bool,
 }
 
-/// A moment of a simulation, ready to be drawn without a browser.
+/// A single moment of a simulation. You can draw it without a browser.
 ///
 /// ```
 /// use farsa_body::kinematics::KinematicTree;
@@ -48,19 +48,20 @@ pub struct Beam {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
-    /// The shapes.
+    /// All shapes.
     pub shapes: Vec<Instance>,
-    /// Contact forces, drawn as arrows in proportion to the largest.
+    /// Contact forces. They are drawn as arrows, whose length is relative to the largest force.
     pub contacts: Vec<Push>,
     /// Rays of sensors.
     pub rays: Vec<Beam>,
-    /// Points with their names, which SVG shows. Names may be empty.
+    /// Points with their names, which may be empty. Only SVG shows the names.
     pub points: Vec<(String, Vector)>,
-    /// Trails through the world [m] with their colors.
+    /// Trails through the world [m], together with their colors.
     pub trails: Vec<(Vec<Vector>, Color)>,
-    /// Further points of the frame, such as the corners of an arena [m], except for the camera `close`.
+    /// Additional points that the frame must contain [m], for example the corners of an arena. The camera `close`
+    /// ignores them.
     pub frame: Vec<Vector>,
-    /// A caption of one line, which SVG shows.
+    /// Caption with a single line. Only SVG shows it.
     pub caption: Option<String>,
 }
 
@@ -76,10 +77,13 @@ fn junction(robot: &Robot) -> Option<usize> {
 }
 
 impl Picture {
-    /// Adds the visuals of a robot or scene, or the colliders of segments without visuals, at the given poses.
+    /// Adds a robot or scene at the given poses.
     ///
-    /// Fixed bodies become ground, freely moving ones things, and all others robot. Shapes with a color keep it. Other things
-    /// get the next color of a list. The branches of a robot differ in color, and the camera `close` is fitted to them.
+    /// This draws the visuals of each segment. If a segment has none, its colliders are drawn instead. Fixed bodies
+    /// become ground, bodies that move freely become things, and all others belong to the robot.
+    ///
+    /// If a shape has a color, it keeps this color. Other things get the next color of a list. Branches of a robot
+    /// differ in color, and the camera `close` is fitted to them.
     pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
         let junction = junction(robot);
         let branches: Vec<usize> = (0..robot.segments.len())
@@ -118,7 +122,10 @@ impl Picture {
         }
     }
 
-    /// Returns the corners of the scene of a camera [m]. As the [`frame`](Self::frame) of other pictures they extend their view.
+    /// Computes the corners of the scene [m].
+    ///
+    /// This is useful if several pictures should have the same view. In this case, add the corners to the
+    /// [`frame`](Self::frame) of each picture.
     pub fn extent(&self) -> Vec<Vector> {
         let corners = |(centre, radius): (Vector, f64)| [-radius, radius].map(|r| centre.map(|x| x + r));
         self.interest(false).into_iter().flat_map(corners).collect()

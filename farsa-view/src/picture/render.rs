@@ -8,18 +8,20 @@ use crate::picture::png::png;
 use crate::picture::svg::svg;
 
 impl Picture {
-    /// Returns a PNG file of `size` [pixels], traced ray by ray with light and shadow.
+    /// Renders a PNG file of `size` [pixels]. It is traced ray by ray, with light and shadow.
     ///
     /// # Errors
-    /// [`Error::Size`] for an invalid size.
+    /// Returns [`Error::Size`] if the size is invalid.
     pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
         png(self, camera, size)
     }
 
-    /// Returns an animated PNG of pictures of `size` [pixels], each shown for the given time [ms], in one view.
+    /// Renders an animated PNG of `size` [pixels]. Each picture is shown for the given time [ms].
+    ///
+    /// All pictures share one view, so the camera does not move.
     ///
     /// # Errors
-    /// [`Error::Size`] for an invalid size, and for no picture or more than a thousand.
+    /// Returns [`Error::Size`] if the size is invalid, or if there are no pictures or more than a thousand.
     pub fn animated_png(
         pictures: &[Self],
         camera: Camera,
@@ -29,9 +31,9 @@ impl Picture {
         animation(pictures, camera, size, milliseconds)
     }
 
-    /// Returns an SVG document of `size` [pixels].
+    /// Draws an SVG document of `size` [pixels].
     ///
-    /// All ids start with `prefix`, so that one page can contain several pictures.
+    /// All ids start with `prefix`, so that a page can contain several pictures.
     pub fn svg(&self, camera: Camera, size: [u32; 2], prefix: &str) -> String {
         svg(self, camera, size, prefix)
     }

@@ -6,10 +6,11 @@ use farsa_body::Recorder;
 
 use crate::recording::schema::Schema;
 
-/// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the schema.
+/// A recorder that writes a table with a line for each tick. Its columns are `trial,step,time [s]` and the columns of
+/// the schema.
 ///
-/// A value of single precision is written with the digits of single precision. Bodies, contacts, points and images are not
-/// written. Record their numbers as scalars.
+/// Single-precision values are written with the digits that single precision needs. Note that this does not write
+/// bodies, contacts, points and images. If you need their numbers, record them as scalars.
 pub struct Table<W: Write> {
     out: csv::Writer<W>,
     trial: u32,
@@ -22,10 +23,10 @@ pub struct Table<W: Write> {
 }
 
 impl<W: Write> Table<W> {
-    /// Creates a table and writes its head.
+    /// Creates a table, and writes its head.
     ///
     /// # Errors
-    /// Errors of the writer.
+    /// Returns errors of the writer.
     pub fn new(out: W, schema: &Schema) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
         let head = ["trial", "step", "time [s]"].map(String::from).into_iter().chain(schema.columns());
@@ -42,7 +43,7 @@ impl<W: Write> Table<W> {
         })
     }
 
-    /// Starts a trial.
+    /// Starts a new trial with the given number.
     pub fn begin(&mut self, trial: u32) {
         (self.trial, self.step) = (trial, 0);
     }
@@ -50,7 +51,7 @@ impl<W: Write> Table<W> {
     /// Ends the table.
     ///
     /// # Errors
-    /// The first error of the writer.
+    /// Returns the first error of the writer, including those of earlier ticks.
     pub fn finish(mut self) -> io::Result<()> {
         self.written.map_err(as_io)?;
         self.out.flush()

@@ -1,11 +1,11 @@
-//! The initial camera of a page.
+//! Initial camera of a page.
 
-/// The initial camera of a page.
+/// Initial camera of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum View {
-    /// From a side, rotatable.
+    /// Looks from a side, and can be rotated.
     #[default]
     Free,
-    /// From above, for planar arenas.
+    /// Looks from above. This is useful for planar arenas.
     Top,
 }

@@ -4,19 +4,19 @@ use farsa_body::Pose;
 
 use crate::shape::geometry::Geometry;
 
-/// Red, green and blue of a screen.
+/// Color on a screen, as red, green and blue.
 pub type Color = [u8; 3];
 
-/// The role of a shape in a picture.
+/// Role of a shape in a picture. It determines the default color, and whether cameras are fitted to the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A part of a robot.
+    /// Part of a robot.
     Robot,
-    /// A thing that moves or that the robot handles.
+    /// Thing that moves, or that a robot handles.
     Object,
-    /// The ground and walls, which cameras are not fitted to.
+    /// Ground or wall. Cameras are not fitted to these.
     Ground,
-    /// A translucent mark on the ground, such as a target area.
+    /// Translucent mark on the ground, such as a target area.
     Area,
 }
 
@@ -32,23 +32,24 @@ impl Role {
     }
 }
 
-/// A placed shape.
+/// A shape with its pose in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instance {
-    /// Its geometry.
+    /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Its frame in the world.
+    /// Pose in the world.
     pub pose: Pose<f64>,
-    /// Its role.
+    /// Role of the shape.
     pub role: Role,
-    /// Its color, `None` for that of its role.
+    /// Color of the shape. If this is `None`, the color of its role is used.
     pub color: Option<Color>,
-    /// True if the camera `close` is fitted to it, as always to things.
+    /// If this is `true`, the camera `close` is fitted to this shape. Note that it is always fitted to things.
     pub focus: bool,
 }
 
-/// The colors of Okabe and Ito, distinct for any color vision: orange, sky blue, bluish green, yellow, blue, vermilion, reddish
-/// purple.
+/// Colors of Okabe and Ito, which are distinct for any color vision.
+///
+/// They are orange, sky blue, bluish green, yellow, blue, vermilion and reddish purple.
 pub const OKABE_ITO: [Color; 7] =
     [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178], [213, 94, 0], [204, 121, 167]];
 
@@ -61,24 +62,24 @@ pub(crate) fn as_screens_take_it(color: [f64; 3]) -> Color {
 }
 
 impl Instance {
-    /// Creates a shape in the color of its role.
+    /// Creates a shape, which has the color of its role.
     pub fn new(geometry: impl Into<Geometry>, pose: Pose<f64>, role: Role) -> Self {
         Self { geometry: geometry.into(), pose, role, color: None, focus: role == Role::Object }
     }
 
-    /// Returns the shape in this color.
+    /// Sets the color.
     pub fn with_color(mut self, color: Color) -> Self {
         self.color = Some(color);
         self
     }
 
-    /// Returns the shape with the camera `close` fitted to it.
+    /// Fits the camera `close` to this shape.
     pub fn with_focus(mut self) -> Self {
         self.focus = true;
         self
     }
 
-    /// Returns its color.
+    /// Gets the color of the shape, which may be that of its role.
     pub fn color(&self) -> Color {
         self.color.unwrap_or(match self.role {
             Role::Robot => ARM,

@@ -1,66 +1,66 @@
-//! The geometries of pictures, with their rays and outlines.
+//! Geometries of pictures, with their rays and outlines.
 
 use farsa_body::robot::Shape;
 use farsa_num::sin_cos;
 
 use crate::shape::vector::{Vector, across, add, along, dot, length, scale, sub, unit};
 
-/// A geometry in its own frame.
+/// Geometry of a shape in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Geometry {
-    /// A ball around the origin.
+    /// Ball around the origin.
     Sphere {
         /// Radius [m].
         radius: f64,
     },
-    /// All points within `radius` of the z axis from `-half_length` to `half_length`.
+    /// All points with a distance of at most `radius` from the z axis between `-half_length` and `half_length`.
     Capsule {
         /// Radius [m].
         radius: f64,
-        /// Half the length of the axis [m].
+        /// Half the length of its axis [m].
         half_length: f64,
     },
-    /// A solid cylinder around the z axis from `-half_length` to `half_length`.
+    /// Solid cylinder around the z axis, from `-half_length` to `half_length`.
     Cylinder {
         /// Radius [m].
         radius: f64,
         /// Half the height [m].
         half_length: f64,
     },
-    /// A box around the origin.
+    /// Box around the origin.
     Box {
-        /// Half the edge lengths along x, y, z [m].
+        /// Half the edge lengths along x, y and z [m].
         half: Vector,
     },
-    /// The half space z <= 0, of which pictures show a piece of the surface.
+    /// Half space with z <= 0. Pictures only show a piece of its surface.
     Plane,
-    /// A flat disc around the origin in the plane z = 0.
+    /// Flat disc around the origin, in the plane z = 0.
     Disc {
         /// Radius [m].
         radius: f64,
     },
-    /// A flat rectangle around the origin in the plane z = 0.
+    /// Flat rectangle around the origin, in the plane z = 0.
     Rectangle {
         /// Half the edge lengths along x and y [m].
         half: [f64; 2],
     },
 }
 
-/// The hit of a ray.
+/// Hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
-    /// The distance along the ray [m].
+    /// Distance along the ray [m].
     pub(crate) distance: f64,
-    /// The outward unit normal of the surface.
+    /// Unit normal of the surface, which points outward.
     pub(crate) normal: Vector,
 }
 
-/// The viewpoint of an outline.
+/// Viewpoint of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sight {
-    /// A point [m].
+    /// Position of the eye [m].
     Eye(Vector),
-    /// The unit direction of a parallel projection.
+    /// Unit direction of a parallel projection.
     Along(Vector),
 }
 

@@ -6,56 +6,58 @@ use farsa_body::ports::BodyId;
 use crate::shape::appearance::{Color, Instance, Role};
 use crate::shape::geometry::Geometry;
 
-/// A visible shape that no [`Robot`](farsa_body::robot::Robot) contains, such as a hull, a wall or an area on the ground.
+/// A visible shape that does not belong to a [`Robot`](farsa_body::robot::Robot). Examples are hulls, walls and areas
+/// on the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObject {
-    /// Its name.
+    /// Name of the object.
     pub name: String,
-    /// The body it moves with, `None` for a fixed shape.
+    /// Body with which the shape moves. Use `None` for a fixed shape.
     pub body: Option<BodyId>,
-    /// Its geometry.
+    /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Its frame in the body's frame, or in the world.
+    /// Pose in the frame of its body, or in the world if it is fixed.
     pub placement: Pose<f64>,
-    /// Its role.
+    /// Role of the shape.
     pub role: Role,
-    /// Its color, `None` for that of its role.
+    /// Color of the shape. If this is `None`, the color of its role is used.
     pub color: Option<Color>,
-    /// The condition of its visibility, `None` for always.
+    /// Condition under which the shape is visible. If this is `None`, it is always visible.
     pub shown: Option<ShownWhile>,
 }
 
-/// A condition of visibility: a channel has a value from `low` to `high`.
+/// Condition under which a shape is visible. The value of a channel must be between `low` and `high`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownWhile {
-    /// The channel, by its name in [`Schema::columns`](crate::Schema::columns). With an unknown name the shape is never visible.
+    /// Name of the channel in [`Schema::columns`](crate::Schema::columns). If there is no such channel, the shape is
+    /// never visible.
     pub channel: String,
-    /// The least value.
+    /// Minimum value.
     pub low: f64,
-    /// The largest value.
+    /// Maximum value.
     pub high: f64,
 }
 
 impl SceneObject {
-    /// Creates a fixed shape in the color of its role.
+    /// Creates a fixed shape, which has the color of its role.
     pub fn new(name: &str, geometry: Geometry, placement: Pose<f64>, role: Role) -> Self {
         Self { name: name.into(), body: None, geometry, placement, role, color: None, shown: None }
     }
 
-    /// Returns the shape moving with a body.
+    /// Attaches the shape to a body, so that it moves with it.
     pub fn on_body(self, body: BodyId) -> Self {
         Self { body: Some(body), ..self }
     }
 
-    /// Returns the shape in this color.
+    /// Sets the color.
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// Returns the shape with a condition of visibility: a channel of [`Schema::columns`](crate::Schema::columns) has a value from
-    /// `low` to `high`.
+    /// Shows the shape only while a channel has a value from `low` to `high`. Channels are those of
+    /// [`Schema::columns`](crate::Schema::columns).
     ///
-    /// Pages round a channel to 65535 values, so choose bounds between values that occur.
+    /// Since pages round a channel to 65535 values, choose bounds between values that actually occur.
     pub fn shown_while(self, channel: &str, low: f64, high: f64) -> Self {
         Self { shown: Some(ShownWhile { channel: channel.into(), low, high }), ..self }
     }
@@ -67,7 +69,7 @@ impl SceneObject {
     }
 }
 
-/// Converts a color of light, red, green and blue [0..1], to a screen color.
+/// Converts the color of a light to a color on a screen. Red, green and blue are from 0 to 1.
 pub fn screen_color(light: [f64; 3]) -> Color {
     light.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
