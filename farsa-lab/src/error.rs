@@ -9,7 +9,7 @@ use crate::escaped::{MAX_SHOWN, OneLine, Quoted};
 /// Maximum number of names in a message.
 const MAX_LISTED: usize = 12;
 
-/// An error of the laboratory, by what the caller can do about it.
+/// Error of the laboratory. Variants are grouped by how you can react to them.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
@@ -76,12 +76,16 @@ pub enum FileFault {
 }
 
 impl Error {
-    /// Builds an error about values that contradict each other, for [`Experiment::prepare`](crate::Experiment::prepare).
+    /// Creates an error about values that contradict each other. Use this in
+    /// [`Experiment::prepare`](crate::Experiment::prepare).
     pub fn setting(key: &str, why: impl fmt::Display) -> Self {
         Self::Setting { place: String::new(), key: key.into(), why: why.to_string() }
     }
 
-    /// Builds an error about an unknown name, with the nearest valid name, or with all of them if none is near.
+    /// Creates an error about an unknown name.
+    ///
+    /// Its text contains the nearest valid name. If no name is similar, and there are only a few of them, it lists
+    /// all of them.
     pub fn unknown<'a>(place: &str, what: &'static str, name: &str, valid: impl IntoIterator<Item = &'a str>) -> Self {
         let mut few: Vec<&str> = Vec::new();
         let listed = valid.into_iter().inspect(|name| {
@@ -113,7 +117,7 @@ impl Error {
         Self::Setting { place: place.into(), key: String::new(), why }
     }
 
-    /// Builds an error from the faults of a file. A single fault stays as it is.
+    /// Combines all faults of a file. A single fault is returned as it is.
     pub fn several(mut faults: Vec<Self>) -> Self {
         match faults.pop() {
             Some(only) if faults.is_empty() => only,
@@ -124,7 +128,7 @@ impl Error {
         }
     }
 
-    /// Returns a function for `map_err` that builds an error of the operating system.
+    /// Creates a closure for `map_err`, which converts an error of the operating system.
     pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { doing, path: path.into(), source }
     }
@@ -165,7 +169,9 @@ impl Error {
         Self::Other(format!("the strategy panicked in generation {generation}: {}", OneLine(why)))
     }
 
-    /// Returns the exit code: 2 for a wrong command line or configuration, 130 after Ctrl-C, 1 otherwise.
+    /// Gets the exit code of the command.
+    ///
+    /// It is 2 for a wrong command line or configuration, 130 after Ctrl-C, and 1 in all other cases.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Setting { .. }
@@ -238,7 +244,7 @@ fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(
     best
 }
 
-/// Returns the nearest valid name, if there is any.
+/// Finds the valid name that is nearest. If there are no valid names, this returns `None`.
 pub fn nearest_name<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     nearest(name, valid).map(|(_, valid)| valid)
 }

@@ -10,7 +10,7 @@ use crate::escaped::Quoted;
 use crate::experiment::intervention::{Intervention, input_ranges};
 use crate::experiment::outcome::Description;
 
-/// Named parts of a controller that a test can change. It defines what you can write after `farsa test --lesion`.
+/// Named parts of a controller that a test can change. Their names can be used in `farsa test --lesion`.
 ///
 /// A list such as `neuron:3,link:2-5,sensor:touch` names what is changed together:
 ///

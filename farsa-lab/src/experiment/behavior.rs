@@ -25,7 +25,7 @@ pub trait Behavior {
     fn describe(&self, trials: &[Outcome]) -> Vec<f64>;
 }
 
-/// A [`Behavior`] of means over the trials of [notes](Outcome::notes) that are numbers.
+/// A [`Behavior`] that averages [notes](Outcome::notes) over trials. These notes must be numbers.
 ///
 /// ```
 /// use farsa_lab::Outcome;
@@ -44,9 +44,9 @@ pub trait Behavior {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotedBehavior {
-    /// The notes that are objectives, with 1 where more is better and -1 where less is.
+    /// Names of all notes that are objectives. Use 1 if more is better, and -1 if less is better.
     pub objectives: &'static [(&'static str, f64)],
-    /// The notes that are measures, with their ranges, low to high.
+    /// Names of all notes that are measures, with their ranges from low to high.
     pub measures: &'static [(&'static str, [f64; 2])],
 }
 
@@ -66,7 +66,7 @@ impl Behavior for NotedBehavior {
     }
 }
 
-/// Returns the mean of a numeric note over the trials. NaN if a trial lacks it.
+/// Computes the mean of a numeric note over all trials. If any trial lacks it, the mean is NaN.
 pub fn mean_of_note(trials: &[Outcome], name: &str) -> f64 {
     let number = |outcome: &Outcome| match outcome.notes.iter().find(|(own, _)| *own == name) {
         Some((_, Note::Number(x))) => *x,

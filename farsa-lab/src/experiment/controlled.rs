@@ -19,7 +19,7 @@ use crate::experiment::network_export::NetworkExport;
 use crate::experiment::neurocontroller::Neurocontroller;
 use crate::experiment::outcome::{Note, Outcome};
 
-/// A world of wheeled robots: an arena alone, a lane of many, or one in rapier.
+/// A world with wheeled robots. This can be a single arena, a lane of a batch, or an arena in rapier.
 pub trait PlanarWorld:
     Planar
     + Rays
@@ -44,7 +44,7 @@ impl<W> PlanarWorld for W where
 {
 }
 
-/// The task of a robot in a planar world: the start of a trial, and the reward of a step.
+/// Task of a robot in a planar world. It defines how trials start, and the reward of each step.
 pub trait Objective: Clone + Send + 'static {
     /// Sets the world up for an episode with its own random numbers, and discards the previous state.
     fn start<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId);
@@ -69,21 +69,22 @@ pub trait Objective: Clone + Send + 'static {
     }
 }
 
-/// Number and length of the trials of an evaluation.
+/// Number of trials of an evaluation, and their length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trials {
-    /// Trials of an evaluation.
+    /// Number of trials of an evaluation.
     pub count: usize,
-    /// Most steps of a trial.
+    /// Maximum number of steps in a trial.
     pub steps: u32,
     /// Time between two steps \[s\].
     pub time_step: f64,
 }
 
-/// A robot with a [`Neurocontroller`] and an [`Objective`]: all of an experiment but its name and settings.
+/// A robot with a [`Neurocontroller`] and an [`Objective`]. To get a complete experiment, you only need to add its
+/// name and settings.
 ///
-/// Its fitness is the sum of the rewards of all trials. It records what the controller does, exports the network, and in
-/// [`InWorld::in_arena`] runs in lanes.
+/// Fitness is the sum of the rewards of all trials. Everything that the controller does is recorded, and the network
+/// can be exported. If you use [`InWorld::in_arena`], it also runs in lanes.
 #[derive(Clone, Debug)]
 pub struct Controlled<S, M, O> {
     control: Neurocontroller<S, M>,
@@ -95,14 +96,15 @@ pub struct Controlled<S, M, O> {
 }
 
 impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
-    /// Episodes of this controller, whose parameters are evaluated, with this objective.
+    /// Creates episodes of this controller with this objective. Evolution then changes the parameters of the
+    /// controller.
     pub fn new(control: Neurocontroller<S, M>, objective: O, trials: Trials) -> Self {
         let names: Vec<&str> = objective.values().into_iter().map(|(name, _)| name).collect();
         let schema = control.schema().clone().with_scalars(names);
         Self { control: control.with_schema(schema), objective, trials, steps: 0, sum: 0.0, robot: None }
     }
 
-    /// The same with the robot that `farsa export robot` writes, [`MobileRobot::description`] for one of ours.
+    /// Sets the robot for `farsa export robot`. For mobile robots of this project, use [`MobileRobot::description`].
     ///
     /// [`MobileRobot::description`]: farsa_body::robots::MobileRobot::description
     #[must_use]
@@ -218,10 +220,10 @@ impl<R> InWorld<World, R>
 where
     R: Rollout + Clone + for<'a> Episode<farsa_physics::arena::Lane<'a>> + 'static,
 {
-    /// Evaluates this episode in an arena, alone or in lanes.
+    /// Evaluates an episode in an arena, either alone or in lanes.
     ///
     /// # Errors
-    /// [`Error::Other`] for an arena that cannot be.
+    /// Returns [`Error::Other`] if the arena is invalid.
     pub fn in_arena(arena: &Arena, rollout: R) -> Result<Self, Error> {
         let world = World::new(arena).map_err(|error| Error::Other(error.to_string()))?;
         let arena = arena.clone();

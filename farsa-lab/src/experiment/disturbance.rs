@@ -6,31 +6,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::experiment::episode::{Episode, EpisodeId};
 
-/// A body that is put somewhere, at rest, before a step of an episode.
+/// A body that is moved before a step of an episode. It is at rest afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Displacement {
-    /// Before which step, from 0.
+    /// Step before which the body is moved, from 0.
     pub step: u32,
-    /// The body. A body on a joint is not moved.
+    /// Index of the body. A body that is attached to a joint is not moved.
     pub body: u16,
-    /// Where to \[m\].
+    /// New position \[m\].
     pub position: [f32; 3],
-    /// Orientation: a unit quaternion \[x, y, z, w\].
+    /// New orientation, as a unit quaternion \[x, y, z, w\].
     pub rotation: [f32; 4],
 }
 
-/// A force from outside on a body, over some steps of an episode.
+/// An external force that acts on a body during some steps of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Push {
-    /// The first step in which it acts, from 0, and the one after the last.
+    /// First step in which the force acts, from 0, and the step after the last.
     pub steps: [u32; 2],
-    /// Which body.
+    /// Index of the body.
     pub body: u16,
-    /// Where it acts, in the body's frame \[m\].
+    /// Point of application, in the frame of the body \[m\].
     pub point: [f32; 3],
-    /// The force in the world's axes \[N\].
+    /// Force in world coordinates \[N\].
     pub force: [f32; 3],
 }
 

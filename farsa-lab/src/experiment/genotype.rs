@@ -5,8 +5,10 @@ use farsa_num::Scalar as _;
 
 use crate::experiment::parameter::Parameter;
 
-/// One gene per parameter. An integer gene of some bits is linear: 0 is the parameter's first end, the largest gene the
-/// other. A real gene maps -1 to the first end and 1 to the other, and is reflected beyond.
+/// Encoding of parameters as genes, with one gene for each parameter.
+///
+/// Integer genes are linear. A gene of 0 is the first end of the parameter's range, and the largest gene is the other
+/// end. Real genes map -1 to the first end, and 1 to the other. They are reflected beyond these values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Genotype {
     ends: Vec<[f64; 2]>,
@@ -14,22 +16,22 @@ pub struct Genotype {
 }
 
 impl Genotype {
-    /// A gene of `bits` bits, 1 to 16, for each parameter.
+    /// Creates an encoding with `bits` bits for each gene, from 1 to 16.
     pub fn new(parameters: &[Parameter], bits: u32) -> Self {
         Self { ends: parameters.iter().map(|parameter| parameter.ends).collect(), bits: bits.clamp(1, u16::BITS) }
     }
 
-    /// Number of genes, which is that of the parameters.
+    /// Gets the number of genes, which is also the number of parameters.
     pub fn genes(&self) -> usize {
         self.ends.len()
     }
 
-    /// Bits of a gene.
+    /// Gets the number of bits of a gene.
     pub fn bits(&self) -> u32 {
         self.bits
     }
 
-    /// The largest gene.
+    /// Gets the largest integer gene.
     pub fn largest(&self) -> u16 {
         u16::MAX >> (u16::BITS - self.bits)
     }
@@ -39,8 +41,10 @@ impl Genotype {
         genomes.iter().map(|genes| self.decode(genes)).collect()
     }
 
-    /// Returns the genes nearest to parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it.
-    /// Returns `None` for another number of parameters.
+    /// Finds the integer genes that are nearest to these parameters \[[`genes`](Self::genes)\].
+    ///
+    /// If a parameter is out of its range, you get the gene at the nearest end. If the number of parameters is wrong,
+    /// this returns `None`.
     pub fn encode(&self, parameters: &[f64]) -> Option<Vec<u16>> {
         let largest = self.largest();
         let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
@@ -51,10 +55,11 @@ impl Genotype {
         (parameters.len() == self.ends.len()).then(|| parameters.iter().zip(&self.ends).map(gene).collect())
     }
 
-    /// Returns the parameters \[[`genes`](Self::genes)\] of integer genes. Returns `None` for another number of genes.
+    /// Computes the parameters of integer genes \[[`genes`](Self::genes)\]. If the number of genes is wrong, this
+    /// returns `None`.
     ///
-    /// Each is computed in f64, `first + (other - first) * gene / largest`, and rounded to f32 at the end: never outside
-    /// its range, exact at both ends.
+    /// Each parameter is computed as `first + (other - first) * gene / largest` in f64, and then rounded to f32. It
+    /// is never outside its range, and exact at both ends.
     pub fn decode(&self, genes: &[u16]) -> Option<Vec<f32>> {
         let largest = self.largest();
         let value = |(&gene, &[first, other]): (&u16, &[f64; 2])| {
@@ -66,11 +71,11 @@ impl Genotype {
         (genes.len() == self.ends.len()).then(|| genes.iter().zip(&self.ends).map(value).collect())
     }
 
-    /// Returns the parameters \[[`genes`](Self::genes)\] of real genes. Returns `None` for another number of genes, or
-    /// one that is not finite.
+    /// Computes the parameters of real genes \[[`genes`](Self::genes)\]. If the number of genes is wrong, or if a
+    /// gene is not finite, this returns `None`.
     ///
-    /// Each is computed in f64 and rounded to f32 at the end: `first + (other - first) * (gene + 1) / 2`, after
-    /// reflection into -1 to 1. It is never outside the parameter's range, and exact at both ends.
+    /// Genes are first reflected into -1 to 1. Each parameter is then computed as `first + (other - first) * (gene +
+    /// 1) / 2` in f64, and rounded to f32. It is never outside its range, and exact at both ends.
     pub fn decode_reals(&self, genes: &[f64]) -> Option<Vec<f32>> {
         let value = |(&gene, &[first, other]): (&f64, &[f64; 2])| {
             if !gene.is_finite() {
@@ -85,8 +90,10 @@ impl Genotype {
         genes.iter().zip(&self.ends).map(value).collect()
     }
 
-    /// Returns the real genes of parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it, and 0
-    /// if both ends are equal. Returns `None` for another number of parameters.
+    /// Finds the real genes of these parameters \[[`genes`](Self::genes)\].
+    ///
+    /// If a parameter is out of its range, you get the gene at the nearest end. If both ends are equal, the gene is
+    /// 0. If the number of parameters is wrong, this returns `None`.
     pub fn encode_reals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
             let share = (parameter - first) / (other - first);

@@ -4,7 +4,7 @@ use farsa_physics::{arena, articulated};
 
 use crate::experiment::episode::{Episode, EpisodeId};
 
-/// Worlds that are stepped together, one in each lane of SIMD vectors.
+/// A batch of worlds, which are stepped together using SIMD. Each lane of the vectors contains a world.
 pub trait Batch {
     /// One of the worlds.
     type Lane<'a>
@@ -44,11 +44,13 @@ macro_rules! batch {
 
 batch!(articulated, arena);
 
-/// Runs episode after episode in the lanes of a batch until there are no more.
+/// Runs episodes in the lanes of a batch until there are no more.
 ///
-/// Each of `episodes` has its own lane. `begin` prepares an episode for its next start and returns its id, or `None`
-/// after the last one. `end` takes the return. A lane is refilled as soon as its episode ends. So every episode equals
-/// the one that [`run_episode`](crate::advanced::run_episode) runs alone: lanes, batches and order change only the time.
+/// Each element of `episodes` uses its own lane. The closure `begin` prepares an episode for its next start. It
+/// returns the id of the episode, or `None` after the last one. The closure `end` receives the return of an episode.
+///
+/// Lanes are refilled as soon as their episode ends. This only affects the time, and each episode is equal to the one
+/// that [`run_episode`](crate::advanced::run_episode) runs.
 pub fn run_in_lanes<B, E>(
     episodes: &mut [E],
     batch: &mut B,

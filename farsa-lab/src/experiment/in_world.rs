@@ -13,7 +13,7 @@ use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::Outcome;
 
-/// The episode of a task: it loads parameters before its start and returns its outcome after its end.
+/// Episode of a task. It loads parameters before the start, and has an outcome after the end.
 pub trait Rollout: Task {
     /// Loads the parameters. Returns false if they do not fit the task.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool;
@@ -95,7 +95,8 @@ where
 
 type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn LaneRunner<R>>, Error> + Send>;
 
-/// Evaluates episodes in a world of type `W`, one after the other or, where the world has batches, side by side in lanes.
+/// Evaluates episodes in a world of type `W`. Episodes run one after the other, or side by side in lanes if the world
+/// has batches.
 pub struct InWorld<W, R> {
     world: W,
     rollout: R,
@@ -110,7 +111,7 @@ pub struct InWorld<W, R> {
 }
 
 impl<W, R: Rollout> InWorld<W, R> {
-    /// Evaluates this episode in this world.
+    /// Creates an evaluator for this episode and this world. By default it has no lanes.
     pub fn new(world: W, rollout: R) -> Self {
         let budget = Some(rollout.info().step_budget());
         Self { world, rollout, budget, make: None, lanes: None, place: None, apply: None }
@@ -118,7 +119,7 @@ impl<W, R: Rollout> InWorld<W, R> {
 }
 
 impl<W, R> InWorld<W, R> {
-    /// And side by side in batches that `batch` makes of the world's description.
+    /// Adds the ability to run episodes side by side. The closure `batch` must build the same worlds as a batch.
     #[must_use]
     pub fn with_lanes<B>(mut self, batch: impl Fn(Lanes) -> Result<B, Error> + Send + 'static) -> Self
     where
@@ -135,7 +136,7 @@ impl<W, R> InWorld<W, R> {
         self
     }
 
-    /// Adds the ability to move bodies during an episode.
+    /// Adds the ability to move bodies during an episode. This is useful for interactive pages.
     #[must_use]
     pub fn with_displacements(self) -> Self
     where
@@ -144,7 +145,7 @@ impl<W, R> InWorld<W, R> {
         Self { place: Some(place), ..self }
     }
 
-    /// Adds the ability to push bodies during an episode.
+    /// Adds the ability to push bodies during an episode. This is useful for interactive pages.
     #[must_use]
     pub fn with_pushes(self) -> Self
     where
@@ -153,12 +154,12 @@ impl<W, R> InWorld<W, R> {
         Self { apply: Some(apply), ..self }
     }
 
-    /// The episode.
+    /// Gets the episode.
     pub fn rollout(&self) -> &R {
         &self.rollout
     }
 
-    /// The episode and the world, to run one by hand.
+    /// Gets the episode and the world, which lets you run an episode by yourself.
     pub fn parts_mut(&mut self) -> (&mut R, &mut W) {
         self.budget = None;
         (&mut self.rollout, &mut self.world)

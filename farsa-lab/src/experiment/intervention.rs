@@ -7,20 +7,21 @@ use farsa_nn::Lesion;
 
 use crate::experiment::outcome::ChannelGroup;
 
-/// A change of a controller in a test. [`Interventions::applied`](crate::advanced::Interventions::applied) returns that of an
-/// evaluation.
+/// Change of a controller in a test. To get the change of an evaluation, use
+/// [`Interventions::applied`](crate::advanced::Interventions::applied).
 ///
-/// Two steps of [`Rollout::load`](crate::advanced::Rollout::load) obey it: [`edited`](Self::edited) for the parameters, and
-/// [`NormalizedController::intervene`](crate::advanced::NormalizedController::intervene) for all else.
+/// If you implement [`Rollout::load`](crate::advanced::Rollout::load), apply it in two steps. Use
+/// [`edited`](Self::edited) for the parameters, and
+/// [`NormalizedController::intervene`](crate::advanced::NormalizedController::intervene) for everything else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intervention {
-    /// Neurons that are held.
+    /// Neurons that are held at a fixed activation.
     pub lesions: Vec<Lesion>,
-    /// Inputs with a fixed value. With normalized observations 0 is their mean.
+    /// Inputs that are held at a fixed value. If observations are normalized, 0 is their mean.
     pub inputs: Vec<(Range<usize>, f32)>,
-    /// Each input is changed at every step by a random number between minus and plus this.
+    /// Amplitude of noise. At every step, a random number of at most this magnitude is added to each input.
     pub noise: f32,
-    /// Parameters that have this value, by their numbers in the network.
+    /// Parameters with fixed values, given by their index in the network.
     pub parameters: Vec<(usize, f32)>,
 }
 
@@ -29,27 +30,27 @@ pub(crate) static NOTHING: Intervention =
     Intervention { lesions: Vec::new(), inputs: Vec::new(), noise: 0.0, parameters: Vec::new() };
 
 impl Intervention {
-    /// One neuron is silent.
+    /// Silences a single neuron.
     pub fn lesion(neuron: usize) -> Self {
         Self { lesions: vec![Lesion::new(neuron)], ..Self::default() }
     }
 
-    /// These inputs are 0.
+    /// Cuts a range of inputs, so that they are 0.
     pub fn cut(inputs: Range<usize>) -> Self {
         Self { inputs: vec![(inputs, 0.0)], ..Self::default() }
     }
 
-    /// Noise up to `level` on every input.
+    /// Adds noise of up to `level` to every input.
     pub fn noise(level: f32) -> Self {
         Self { noise: level, ..Self::default() }
     }
 
-    /// The links of these weights, by their numbers in the network, are cut.
+    /// Cuts links, given by the index of their weight in the network.
     pub fn cut_links(weights: impl IntoIterator<Item = usize>) -> Self {
         Self { parameters: weights.into_iter().map(|weight| (weight, 0.0)).collect(), ..Self::default() }
     }
 
-    /// Both: where both hold a part or add noise, as the other does.
+    /// Combines two changes. If both of them hold the same part or add noise, `other` takes precedence.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         let mut both = self.clone();
@@ -60,7 +61,7 @@ impl Intervention {
         both
     }
 
-    /// Returns the parameters of a network with the change applied. Indices beyond the network are skipped.
+    /// Applies the change to the parameters of a network. Indices beyond the network are ignored.
     pub fn edited<'p>(&self, parameters: &'p [f32]) -> Cow<'p, [f32]> {
         if self.parameters.is_empty() {
             return Cow::Borrowed(parameters);
@@ -75,7 +76,7 @@ impl Intervention {
     }
 }
 
-/// Groups of inputs, one after the other, as ranges.
+/// Converts consecutive groups of inputs to ranges.
 pub fn input_ranges<'g>(
     groups: impl IntoIterator<Item = &'g ChannelGroup>,
 ) -> impl Iterator<Item = (String, Range<usize>)> {

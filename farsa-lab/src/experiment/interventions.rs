@@ -7,7 +7,7 @@ use crate::experiment::evaluator::Evaluation;
 use crate::experiment::intervention::{Intervention, NOTHING};
 use crate::experiment::protocol::{Case, CaseId, Protocol};
 
-/// Test protocols of an experiment with what they do to the controller in each case.
+/// Test protocols of an experiment, together with the change of the controller in each case.
 ///
 /// ```
 /// use farsa_lab::advanced::{CaseId, Intervention, Interventions};
@@ -27,19 +27,19 @@ pub struct Interventions {
 }
 
 impl Interventions {
-    /// The levels of [`with_noise`](Self::with_noise) for inputs from 0 to 1.
+    /// Default levels for [`with_noise`](Self::with_noise), which are suitable for inputs from 0 to 1.
     pub const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
 
-    /// The same with another protocol, and what is done in its cases: nothing in those for which there is no intervention.
+    /// Appends a protocol, with a change for each of its cases. Cases without a change leave the controller as it is.
     #[must_use]
     pub fn with_protocol(mut self, protocol: Protocol, interventions: Vec<Intervention>) -> Self {
         self.protocols.push((protocol, interventions));
         self
     }
 
-    /// The same with the protocol `name` of cases that have an intervention each, after one that is called `intact`.
+    /// Appends a protocol `name` with a change for each case. Its first case is `intact`, and has no change.
     ///
-    /// The protocol is omitted if the names of its cases are equal or not printable.
+    /// If the names of two cases are equal, or a name is not printable, the protocol is silently omitted.
     #[must_use]
     pub fn with_cases<R: Into<String>>(
         self,
@@ -58,7 +58,7 @@ impl Interventions {
         self.with_protocol(protocol, interventions)
     }
 
-    /// The same with the protocol `lesions`: each of these groups of inputs is cut, each of these neurons is silent.
+    /// Appends the protocol `lesions`, which cuts each group of inputs and silences each neuron, one at a time.
     #[must_use]
     pub fn with_lesions<G: AsRef<str>>(
         self,
@@ -72,7 +72,7 @@ impl Interventions {
         self.with_cases("lesions", summary, groups.chain(neurons))
     }
 
-    /// The same with the protocol `noise`: every input changes by up to one of these levels.
+    /// Appends the protocol `noise`, which adds noise to every input. There is a case for each level.
     #[must_use]
     pub fn with_noise(self, levels: &[f32]) -> Self {
         let summary = "every input changes at every step by a random number up to this";
@@ -80,24 +80,25 @@ impl Interventions {
         self.with_protocol(protocol, levels.iter().copied().map(Intervention::noise).collect())
     }
 
-    /// The protocols: what [`TaskInfo::protocols`](crate::TaskInfo::protocols) returns.
+    /// Gets all protocols. Use this for [`TaskInfo::protocols`](crate::TaskInfo::protocols).
     pub fn protocols(&self) -> Vec<Protocol> {
         self.protocols.iter().map(|(protocol, _)| protocol.clone()).collect()
     }
 
-    /// Returns the change of an evaluation: that of its case and that of the test itself.
+    /// Computes the change of an evaluation. This combines the change of its case with that of the test itself.
     pub fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
         let of_case = self.of(evaluation.case).unwrap_or(&NOTHING);
         evaluation.intervention.map_or(Cow::Borrowed(of_case), |other| Cow::Owned(of_case.and(other)))
     }
 
-    /// Returns the change of a case, or none without a case.
+    /// Gets the change of a case. If there is no case, this returns `None`.
     pub fn of(&self, case: Option<CaseId>) -> Option<&Intervention> {
         let CaseId { protocol, case } = case?;
         self.protocols.get(protocol)?.1.get(case)
     }
 
-    /// The name of a case's protocol, and its number in it: for those that are more than an intervention.
+    /// Gets the name of a protocol, and the index of the case in it. This is useful for cases that need more than a
+    /// change of the controller.
     pub fn named(&self, case: Option<CaseId>) -> Option<(&str, usize)> {
         let CaseId { protocol, case } = case?;
         self.protocols.get(protocol).map(|(protocol, _)| (protocol.name.as_str(), case))

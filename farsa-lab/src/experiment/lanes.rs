@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 
-/// A number of trials side by side in each thread, and their instructions. Every choice gives the same results.
+/// Number of trials that each thread runs side by side, and the instructions for them. Note that results do not
+/// depend on this choice.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes {
     count: usize,
@@ -14,15 +15,15 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// One trial after the other.
+    /// Runs one trial after the other.
     pub fn one() -> Self {
         Self { count: 1, instructions: Instructions::baseline() }
     }
 
-    /// Selects 1 lane or one of [`LANES`], with these instructions.
+    /// Selects the number of lanes, which is either 1 or one of [`LANES`].
     ///
     /// # Errors
-    /// [`Error::Usage`] for another number.
+    /// Returns [`Error::Usage`] for any other number.
     pub fn new(count: usize, instructions: Instructions) -> Result<Self, Error> {
         let counts = [1, LANES[0], LANES[1]];
         if !counts.contains(&count) {
@@ -32,18 +33,18 @@ impl Lanes {
         Ok(Self { count, instructions })
     }
 
-    /// The most that pays on this machine.
+    /// Selects the number of lanes and the instructions that are usually fastest on this machine.
     pub fn best() -> Self {
         let instructions = Instructions::detect();
         Self { count: usual(instructions), instructions }
     }
 
-    /// Trials side by side.
+    /// Gets the number of trials that run side by side.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The instruction set, where there is more than one trial.
+    /// Gets the instruction set. It only matters if there is more than one lane.
     pub fn instructions(&self) -> Instructions {
         self.instructions
     }

@@ -6,10 +6,10 @@ use farsa_nn::{CtrnnLayout, CtrnnParts, Leak, LeakyLayout, LeakyParts};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
 
-/// A network with its parameters, each in the order of its layout.
+/// A network with its parameters, which have the same order as in its layout.
 ///
-/// As JSON it holds all that a program needs to compute the same numbers: its shape, and its parameter tables by name.
-/// All kinds but the leaky network, the first one, have a `kind`.
+/// Written as JSON, it contains everything that another program needs to compute the same numbers. This includes the
+/// shape, and named tables of parameters. All variants have a `kind` in JSON, except for the leaky network.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NetworkExport {
@@ -18,11 +18,11 @@ pub enum NetworkExport {
     /// Its slope s is that of sigma(x) = 1 / (1 + exp(-s x)). The leak d, with y = sigma(net), has three readings.
     /// `filter` is H = d y + (1-d) H(t-1), `two-tap` is d y + (1-d) y(t-1), and `evonet` is d H(t-1) + (1-d) y.
     Leaky {
-        /// The layout.
+        /// Layout of the network.
         layout: LeakyLayout,
-        /// The reading of the leak.
+        /// Interpretation of the leak.
         leak: Leak,
-        /// The parameters.
+        /// Parameters in the order of the layout.
         parameters: Vec<f32>,
     },
     /// [`farsa_nn::Perceptron`], one layer without memory.
@@ -31,27 +31,27 @@ pub enum NetworkExport {
         inputs: usize,
         /// Number of outputs.
         outputs: usize,
-        /// The slope of the logistic function.
+        /// Slope of the logistic function.
         slope: f32,
-        /// The parameters.
+        /// Parameters in the order of the layout.
         parameters: Vec<f32>,
     },
     /// [`farsa_nn::Ctrnn`], in continuous time.
     Ctrnn {
-        /// The layout.
+        /// Layout of the network.
         layout: CtrnnLayout,
         /// Time step \[s\].
         time_step: f32,
-        /// The parameters.
+        /// Parameters in the order of the layout.
         parameters: Vec<f32>,
     },
     /// [`farsa_nn::block::BlockNetwork`], of any connections between groups of neurons.
     Blocks {
-        /// The groups and blocks.
+        /// Layout with all groups and blocks.
         layout: BlockLayoutBuf,
-        /// The reading of the leak.
+        /// Interpretation of the leak.
         leak: Leak,
-        /// The parameters.
+        /// Parameters in the order of the layout.
         parameters: Vec<f32>,
     },
 }
@@ -60,12 +60,12 @@ pub enum NetworkExport {
 pub(crate) type Table<'a> = (&'static str, Vec<usize>, &'a [f32]);
 
 impl NetworkExport {
-    /// A leaky network.
+    /// Creates the export of a leaky network.
     pub fn leaky(layout: &LeakyLayout, leak: Leak, parameters: &[f32]) -> Self {
         Self::Leaky { layout: *layout, leak, parameters: parameters.into() }
     }
 
-    /// Numbers of inputs and outputs.
+    /// Gets the number of inputs and outputs.
     pub fn shape(&self) -> [usize; 2] {
         match self {
             Self::Leaky { layout, .. } => [layout.sensors(), layout.outputs()],
@@ -75,7 +75,7 @@ impl NetworkExport {
         }
     }
 
-    /// The parameters in the order of the layout.
+    /// Gets the parameters in the order of the layout.
     pub fn parameters(&self) -> &[f32] {
         match self {
             Self::Leaky { parameters, .. }
@@ -85,10 +85,11 @@ impl NetworkExport {
         }
     }
 
-    /// The network as bytes of `farsa-nn` (docs/controller-format.md), with this hash of its channels.
+    /// Writes the network in the binary format of `farsa-nn` (docs/controller-format.md). It includes the given hash
+    /// of the channels.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] for parameters that do not fit the network.
+    /// Returns [`BytesError::Parameters`] if the parameters do not fit the network.
     pub fn bytes(&self, channels: u64) -> Result<Vec<u8>, BytesError> {
         let mut bytes;
         match self {

@@ -8,10 +8,13 @@ use crate::experiment::parameter::Parameter;
 /// A network that owns its memory.
 pub type OwnedNetwork = LeakyNetwork<Vec<f32>, Vec<f32>>;
 
-/// A network's parameters in their order: weights and biases from minus to plus `range`, leaks from `leaks[0]` to `leaks[1]`.
+/// Lists the parameters of a network in their order.
+///
+/// Weights and biases range from `-range` to `range`, and leaks from `leaks[0]` to `leaks[1]`.
 ///
 /// # Errors
-/// [`Error::Setting`] of `key` for a range that is negative or not finite in f32, in which networks compute.
+/// Returns [`Error::Setting`] with this `key` if the range is negative, or not finite in f32. Note that networks
+/// compute in f32.
 pub fn network_parameters(
     layout: &LeakyLayout,
     range: f64,
@@ -46,10 +49,10 @@ pub fn network_parameters(
     Ok(LeakyParameter::ALL.into_iter().flat_map(of_kind).collect())
 }
 
-/// A network of this layout at rest, with leaks as filters and all parameters 0.
+/// Creates a network at rest, in which leaks are filters and all parameters are 0.
 ///
 /// # Errors
-/// [`Error::Other`] for a layout that makes no network.
+/// Returns [`Error::Other`] if the layout is invalid.
 pub fn resting_network(layout: &LeakyLayout) -> Result<OwnedNetwork, Error> {
     let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
     LeakyNetwork::new(*layout, Leak::Filter, parameters, state)

@@ -10,14 +10,14 @@ use crate::experiment::intervention::Intervention;
 /// The most that a normalised observation is away from 0, in standard deviations.
 const LIMIT: f32 = 10.0;
 
-/// A controller with raw observations, or with observations normalized by the mean and the deviation of earlier ones.
+/// A controller whose observations can be normalized by the mean and the deviation of earlier ones.
 ///
-/// An evaluation with statistics also collects statistics: [`observed`](Self::observed) goes into
-/// [`Outcome::observed`](crate::Outcome::observed). An evaluation without statistics leaves every bit of the
-/// controller's output unchanged.
+/// If an evaluation has statistics, new statistics are collected as well. Pass [`observed`](Self::observed) to
+/// [`Outcome::observed`](crate::Outcome::observed) in this case. Without statistics, every bit of the controller's
+/// output is unchanged.
 ///
-/// Source: V2 of \[Mania2018\] algorithm 1. As there, nothing is changed before there are two observations. Deviations:
-/// those of [`ObservationStatistics`], and a limit of 10 standard deviations.
+/// Source: V2 of \[Mania2018\] algorithm 1. As there, nothing is changed before there are two observations.
+/// Deviations: those of [`ObservationStatistics`], and a limit of 10 standard deviations.
 ///
 /// ```
 /// use farsa_evo::ObservationStatistics;
@@ -79,14 +79,16 @@ impl<C> Changed<C> {
 }
 
 impl<C: Controller> NormalizedController<C> {
-    /// This controller, with observations as they are.
+    /// Wraps a controller. At first its observations are not normalized.
     pub fn new(controller: C) -> Self {
         let x = vec![0.0; controller.inputs()];
         Self { controller, statistics: None, x, changed: None }
     }
 
-    /// Loads statistics of earlier observations, or none, and discards the collected ones. Removes any intervention.
-    /// Returns false for statistics of another number of channels and changes nothing.
+    /// Loads statistics of earlier observations, if there are any. This discards the collected statistics, and
+    /// removes any intervention.
+    ///
+    /// If the number of channels is wrong, this returns `false` and keeps the statistics as they are.
     pub fn load(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.changed = None;
         let Some(before) = before else {
@@ -100,17 +102,18 @@ impl<C: Controller> NormalizedController<C> {
         true
     }
 
-    /// Returns the statistics of raw observations since [`load`](Self::load). None without normalization.
+    /// Gets the statistics of raw observations since [`load`](Self::load). This is `None` unless observations are
+    /// normalized.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.statistics.as_ref().map(|[_, since]| since)
     }
 
-    /// Changes inputs and neurons until the next [`load`](Self::load). The caller edits the parameters with
-    /// [`Intervention::edited`].
+    /// Changes inputs and neurons until the next [`load`](Self::load). Parameters are not changed, so you need to
+    /// apply [`Intervention::edited`] yourself.
     ///
     /// The noise is drawn from the stream of [`Domain::Network`] of the episode and the robot's number, from 0. It is
-    /// the same in every case of a protocol. Noise and held inputs are applied after normalization and are not part of
-    /// [`observed`](Self::observed).
+    /// the same in every case of a protocol. Noise and held inputs are applied after normalization, and are not part
+    /// of [`observed`](Self::observed).
     pub fn intervene(&mut self, intervention: &Intervention, id: EpisodeId, robot: u32)
     where
         C: Ablatable,
@@ -123,12 +126,12 @@ impl<C: Controller> NormalizedController<C> {
         });
     }
 
-    /// The controller.
+    /// Gets the controller.
     pub fn controller(&self) -> &C {
         &self.controller
     }
 
-    /// The controller, for other parameters.
+    /// Gets a mutable reference to the controller, which you need to load other parameters.
     pub fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
     }

@@ -5,12 +5,12 @@
 pub struct Parameter {
     /// Name of the parameter.
     pub name: String,
-    /// Range, from the end of gene 0 to the other. It may fall.
+    /// Range of the parameter, where gene 0 is the first end. The second end may be smaller than the first.
     pub ends: [f64; 2],
 }
 
 impl Parameter {
-    /// A parameter between two ends.
+    /// Creates a parameter with both ends of its range.
     pub fn new(name: impl Into<String>, ends: [f64; 2]) -> Self {
         Self { name: name.into(), ends }
     }

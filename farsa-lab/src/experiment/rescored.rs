@@ -8,9 +8,10 @@ use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLan
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Outcome, mean_of_trials};
 
-/// An evaluator with the terms of its outcomes replaced.
+/// An evaluator that replaces the terms of all outcomes.
 ///
-/// All else is the other's: parameters, populations, lanes, exports. The fitness is the mean of the terms' sums over the trials.
+/// Everything else is taken from the inner evaluator, for example parameters, populations, lanes and exports. Fitness
+/// is the sum of the terms, averaged over all trials.
 pub struct Rescored {
     inner: Box<dyn Evaluator>,
     names: Vec<String>,
@@ -21,7 +22,8 @@ pub struct Rescored {
 type Score = Box<dyn Fn(&Outcome) -> Vec<f64> + Send>;
 
 impl Rescored {
-    /// Another fitness for `inner`: the names of its terms, and the terms of an outcome.
+    /// Creates an evaluator with a different fitness. You need to pass the names of its terms, and a closure that
+    /// computes the terms of an outcome.
     pub fn new<N: Into<String>>(
         inner: Box<dyn Evaluator>,
         names: impl IntoIterator<Item = N>,

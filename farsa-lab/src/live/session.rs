@@ -32,10 +32,11 @@ const MAX_FRESH_TRIALS: usize = 10_000;
 /// Trials evaluated in parallel lanes.
 const LANES: usize = 8;
 
-/// An agent in memory that runs episodes as `farsa replay` and `farsa test` do, without files and threads.
+/// An agent that runs in memory.
 ///
-/// The agent and the requests to it are JSON, written by `farsa live` and by its page. A program with custom experiments gets
-/// such a page by exporting a session from a WebAssembly module.
+/// It runs episodes in the same way as `farsa replay` and `farsa test`, but needs neither files nor threads. Agents
+/// and requests are JSON, which is written by `farsa live` and by its page. To get such a page for your own
+/// experiments, export a session from a WebAssembly module.
 pub struct LiveSession {
     evaluator: Box<dyn Evaluator>,
     /// The name of the experiment.
@@ -72,10 +73,12 @@ impl Agent {
 }
 
 impl LiveSession {
-    /// Opens the agent of a page. Its experiment is one of the laboratory's or described in its configuration.
+    /// Opens the agent of a page. Its experiment must either belong to the laboratory, or be described in the
+    /// configuration.
     ///
     /// # Errors
-    /// [`Error::Other`] for invalid JSON and unsuitable individuals and errors of reading the configuration.
+    /// Returns [`Error::Other`] if the JSON is invalid, or if the individual does not fit. This also includes errors
+    /// of reading the configuration.
     pub fn open(laboratory: &Laboratory<'_>, script: &str) -> Result<Self, Error> {
         let run: PageRun = serde_json::from_str(script).map_err(|error| Error::Other(format!("script: {error}")))?;
         let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", &run.config)?)?;
@@ -90,7 +93,7 @@ impl LiveSession {
         Ok(Self { evaluator, name: plan.experiment.name(), seed: plan.seed, individuals, evolution })
     }
 
-    /// Answers a request. The answer to an invalid request is `{"error": ...}`.
+    /// Answers a request. If the request is invalid, the answer is `{"error": ...}`.
     pub fn answer(&mut self, request: &str) -> String {
         let answer = serde_json::from_str(request)
             .map_err(|error| Error::Other(format!("request: {error}")))

@@ -8,84 +8,88 @@ use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::truncation::Truncation;
 
-/// An experiment that the `farsa` command lists, explains, runs, tests and replays.
+/// An experiment that you can list, explain, run, test and replay using the `farsa` command.
 ///
-/// The experiment defines its settings and the evaluation of parameters. The command adds evolution, threads, files,
-/// checkpoints and replay. See the documentation of the crate for a complete example.
+/// You only need to define its settings, and how parameters are evaluated. Evolution, threads, files, checkpoints and
+/// replay are provided by the command. See the documentation of the crate for a complete example. For simple
+/// experiments, you can use [`SimpleExperiment`] instead of implementing this trait.
 pub trait Experiment: Sync {
-    /// The name on the command line and in the run directory: lower-case letters, digits and hyphens.
+    /// Name on the command line and in the run directory. It may contain lower-case letters, digits and hyphens.
     fn name(&self) -> &'static str;
 
-    /// Returns the question, in one line.
+    /// Question of the experiment, in one line.
     fn summary(&self) -> &'static str;
 
-    /// Returns the conditions to compare, the default one first. Empty for a single condition.
+    /// Conditions to compare, starting with the default one. This is empty for a single condition.
     fn conditions(&self) -> &'static [&'static str] {
         &[]
     }
 
-    /// Grows by one whenever the same configuration, seed and genes earn another fitness.
+    /// Version of the values. Increase it by one whenever the same configuration, seed and genes get a different
+    /// fitness.
     ///
-    /// A run of another version is neither resumed nor replayed: its trials would be others.
+    /// Runs of another version are neither resumed nor replayed, because their trials would differ.
     fn values_version(&self) -> u32 {
         1
     }
 
-    /// Returns the default strategy of a condition. By default the truncation algorithm.
+    /// Default strategy of a condition. If you don't override this, it is the truncation algorithm.
     fn strategy(&self, condition: &str) -> &'static dyn StrategyDefinition {
         let _ = condition;
         &Truncation
     }
 
-    /// Returns every setting of the experiment under a condition (`""` without conditions), with its default.
+    /// Builds the table of all settings of a condition, with their defaults. If there are no conditions, `condition`
+    /// is `""`.
     ///
-    /// The command adds the settings of the [`strategy`](Self::strategy) (`evolution.*`). A setting here with the same
-    /// key replaces the one there, which gives an experiment its own defaults.
+    /// The command adds the settings of the [`strategy`](Self::strategy), which are `evolution.*`. You can replace
+    /// them by settings with the same key, for example to change their defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
 
-    /// Returns the files that trials depend on, such as sensor tables named by a setting. By default none.
+    /// Lists the files on which trials depend, such as sensor tables named by a setting. By default this list is empty.
     ///
-    /// A run stores their checksums and refuses to resume, replay or test with changed files. Relative paths are
-    /// relative to the current directory.
+    /// A run stores their checksums. If such a file has changed, the run can't be resumed, replayed or tested.
+    /// Relative paths start at the current directory.
     ///
     /// # Errors
-    /// [`Error::setting`] for a value that names no file.
+    /// Returns [`Error::setting`] for a value that does not name a file.
     fn files(&self, condition: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
         let _ = (condition, settings);
         Ok(Vec::new())
     }
 
-    /// The text of the file that describes it, where one does: a run keeps it with its configuration.
+    /// Text of the file that describes the experiment, if there is one. Runs store it together with their
+    /// configuration.
     fn definition(&self) -> Option<&str> {
         None
     }
 
-    /// Bits of the genes that parameters are encoded in by strategies of bits, 1 to 16.
+    /// Number of bits of each gene, from 1 to 16. This only matters for strategies with integer genes.
     fn gene_bits(&self) -> u32 {
         16
     }
 
-    /// Builds what one thread evaluates trials by under a condition and checked settings.
+    /// Builds an evaluator for a single thread, under a condition and with valid settings.
     ///
-    /// Called once for every thread. All evaluators must be equal.
+    /// This is called once for every thread, and all evaluators must be equal.
     ///
     /// # Errors
-    /// [`Error::setting`] for values that are each allowed but do not go together.
+    /// Returns [`Error::setting`] if values are valid by themselves, but contradict each other.
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error>;
 }
 
-/// An [`Experiment`] of a name, a line, conditions, a table and a function.
+/// A simple [`Experiment`], which is given by a few constants and functions.
 #[derive(Clone, Copy)]
 pub struct SimpleExperiment {
-    /// The name on the command line: lower-case letters, digits and hyphens.
+    /// Name on the command line. It may contain lower-case letters, digits and hyphens.
     pub name: &'static str,
-    /// Returns the question, in one line.
+    /// Question of the experiment, in one line.
     pub summary: &'static str,
-    /// Returns the conditions to compare, the default one first. Empty for a single condition.
+    /// Conditions to compare, starting with the default one. Leave this empty for a single condition.
     pub conditions: &'static [&'static str],
-    /// Every setting with its default, under a condition.
+    /// Builds the table of all settings of a condition, with their defaults.
     pub settings: fn(&str) -> Vec<Setting>,
-    /// Builds what one thread evaluates trials by.
+    /// Builds an evaluator, which is used by a single thread.
     pub prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>,
 }
 

@@ -6,31 +6,31 @@ use serde::Serialize;
 
 use crate::escaped::{OneLine, Quoted};
 
-/// The result of an import.
+/// Result of an import.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedFile {
-    /// The file that describes the experiment.
+    /// Text of the file that describes the experiment.
     pub text: String,
-    /// Lines that are lost or changed.
+    /// Lines that were lost or changed.
     pub left: Vec<LeftOut>,
-    /// Lines that were skipped because they have no effect.
+    /// Lines that were skipped, since they have no effect.
     pub idle: Vec<LeftOut>,
-    /// Number of further lost lines. An importer limits the length of `left`.
+    /// Number of further lost lines. This is not zero if the importer limits the length of `left`.
     pub more_left: usize,
     /// Number of further skipped lines.
     pub more_idle: usize,
 }
 
-/// A line that is not imported as it is.
+/// A line that was not imported as it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// The number of the line, from 1. `None` for a default of the other program.
+    /// Number of the line, from 1. If this is `None`, it is a default of the other program.
     pub line: Option<usize>,
-    /// Its key with the groups around it.
+    /// Key, including the groups around it.
     pub key: String,
-    /// The value of the key.
+    /// Value of the key.
     pub value: String,
-    /// The reason, and the nearest setting.
+    /// Reason, together with the nearest setting.
     pub why: String,
 }
 

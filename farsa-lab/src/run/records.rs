@@ -1,4 +1,4 @@
-//! The checksummed files of a run: checkpoint, champions and imported genotypes.
+//! Checksummed files of a run, such as checkpoint, champions and imported genotypes.
 
 use std::path::Path;
 
@@ -16,27 +16,27 @@ use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::strategy::any_strategy::Genome;
 
-/// `checkpoint.bin`: the state from which a run continues. It does not grow.
+/// Content of `checkpoint.bin`, from which a run continues. Its size does not grow.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) identity: Identity,
     /// Number of finished generations.
     pub(crate) generation: u32,
-    /// The mark of `record.bin`.
+    /// Mark of `record.bin`.
     pub(crate) record: Mark,
-    /// The mark of `lineage.csv`, where there is one.
+    /// Mark of `lineage.csv`, if this file exists.
     pub(crate) lineage: Mark,
-    /// The mark of `failures.csv`, where there is one.
+    /// Mark of `failures.csv`, if this file exists.
     pub(crate) failures: Mark,
-    /// The state of the strategy, if it has one. Otherwise the whole record is replayed.
+    /// State of the strategy. If it has none, the complete record is replayed instead.
     pub(crate) state: Option<Vec<u8>>,
 }
 
-/// The head of `record.bin`, with the identity of the run.
+/// Head of `record.bin`, which identifies the run.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RecordHead {
     pub(crate) identity: Identity,
-    /// The name of the strategy.
+    /// Name of the strategy.
     pub(crate) strategy: String,
 }
 
@@ -48,14 +48,14 @@ pub(crate) struct Champions {
     pub(crate) generation: u32,
     /// At least one.
     pub(crate) best: Vec<Best>,
-    /// The normalization of observations in the generation, where there is one.
+    /// Normalization of observations in this generation, if there is any.
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
 /// The best individual of a population.
 #[derive(Debug, Clone)]
 pub(crate) struct Best {
-    /// Counted through all populations.
+    /// Index in the generation, counted through all populations.
     pub(crate) individual: u32,
     pub(crate) fitness: Fitness,
     pub(crate) genes: Genome,

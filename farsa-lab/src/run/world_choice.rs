@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::experiment::settings::Value;
 use crate::run::plan::Plan;
 
-/// The setting behind `--world`.
+/// Key of the setting that `--world` changes.
 pub const ENGINE: &str = "world.engine";
 
 /// Chooses the world of a plan, if one is named.

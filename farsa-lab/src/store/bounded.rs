@@ -76,13 +76,15 @@ pub(crate) fn read_regular_text(path: &Path, limit: u64) -> Result<String, Error
     to_text(path, read_regular(path, limit)?)
 }
 
-/// Reads the text of a file that a setting names, of at most `limit` bytes. It is meant for [`Experiment::prepare`](crate::Experiment::prepare).
+/// Reads the text of a file that is named by a setting, for example in
+/// [`Experiment::prepare`](crate::Experiment::prepare). It can have at most `limit` bytes.
 ///
-/// The file has to be regular, or a link to a regular file, because each thread and each command on the run reads it again.
+/// Since each thread and each command on the run reads it again, the path must refer to a regular file, or be a link
+/// to one.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::File`] above the limit, for a pipe, a device or a directory, and with the line of the first byte
-/// that is not UTF-8.
+/// Returns [`Error::Io`] if reading fails. You get [`Error::File`] if the file is too large, or if it is a pipe, a
+/// device or a directory. If it is not valid UTF-8, the error names the line of the first invalid byte.
 pub fn read_text_file(path: &Path, limit: u64) -> Result<String, Error> {
     read_regular_text(path, limit)
 }

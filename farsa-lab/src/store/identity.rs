@@ -7,9 +7,11 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, FileFault};
 use crate::experiment::settings::Value;
 
-/// The version of the values of this library. It grows whenever a change in the crates below experiments changes trials for the
-/// same configuration, seed and genes. [`Experiment::values_version`](crate::Experiment::values_version) counts the changes in an
-/// experiment.
+/// Version of the values that this library computes.
+///
+/// It is increased whenever a change in the crates below experiments leads to different trials for the same
+/// configuration, seed and genes. For changes in an experiment itself, see
+/// [`Experiment::values_version`](crate::Experiment::values_version).
 pub const VALUES_VERSION: u32 = 3;
 
 /// The start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.

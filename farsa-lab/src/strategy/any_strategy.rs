@@ -9,10 +9,11 @@ use farsa_evo::{
 
 use crate::experiment::genotype::Genotype;
 
-/// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::strategy::StrategyDefinition::start) makes it.
+/// A strategy over integer or real genes, as created by
+/// [`StrategyDefinition::start`](crate::strategy::StrategyDefinition::start).
 ///
-/// A [`Genotype`] decodes both. An integer gene is linear over the range of its parameter. A real gene maps -1 to the
-/// first end, 0 to the middle and 1 to the other end, and is reflected beyond.
+/// Both are decoded by a [`Genotype`]. Integer genes are linear over the range of their parameter. Real genes map -1
+/// to the first end, 0 to the middle and 1 to the other end, and are reflected beyond.
 #[non_exhaustive]
 pub enum AnyStrategy {
     /// Over 16-bit words.
@@ -32,32 +33,32 @@ macro_rules! each {
 }
 
 impl AnyStrategy {
-    /// A strategy over words.
+    /// Wraps a strategy over integer genes.
     pub fn from_words(strategy: impl Strategy + 'static) -> Self {
         Self::Words(Box::new(strategy))
     }
 
-    /// A strategy over reals.
+    /// Wraps a strategy over real genes.
     pub fn from_reals(strategy: impl Strategy<f64> + 'static) -> Self {
         Self::Reals(Box::new(strategy))
     }
 
-    /// The number of the generation that waits for its fitness, from 0.
+    /// Gets the number of the generation that is evaluated next, from 0.
     pub fn generation(&self) -> u32 {
         each!(self, strategy => strategy.generation())
     }
 
-    /// Number of populations.
+    /// Gets the number of populations.
     pub fn populations(&self) -> usize {
         each!(self, strategy => strategy.populations())
     }
 
-    /// Number of individuals of a generation, of all populations together.
+    /// Gets the number of individuals in a generation. This includes all populations.
     pub fn individuals(&self) -> usize {
         each!(self, strategy => strategy.ask().len())
     }
 
-    /// Number of genes of an individual.
+    /// Gets the number of genes of an individual.
     pub fn genes(&self) -> usize {
         each!(self, strategy => strategy.ask().genome_len())
     }
@@ -103,7 +104,7 @@ impl AnyStrategy {
         each!(self, strategy => Record::new(strategy.as_mut()))
     }
 
-    /// Returns the number of objectives and measures per individual.
+    /// Gets the number of objectives and measures of an individual.
     pub fn score_shape(&self) -> ScoreShape {
         each!(self, strategy => strategy.score_shape())
     }

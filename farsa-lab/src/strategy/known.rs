@@ -35,7 +35,7 @@ static KNOWN: [&dyn StrategyDefinition; 21] = [
     &GENERALIST,
 ];
 
-/// The strategies of this crate, in the order in which they are listed.
+/// Gets all strategies of this crate, in the order in which they are listed.
 pub fn strategies() -> &'static [&'static dyn StrategyDefinition] {
     &KNOWN
 }

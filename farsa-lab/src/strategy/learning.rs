@@ -10,10 +10,10 @@ use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition, StrategyStart};
 use crate::strategy::settings::GENERATIONS;
 
-/// Nothing is selected: a generation is one individual, which is trained by an iteration after it was evaluated,
-/// [`Learner::iterate`](crate::advanced::Learner::iterate).
+/// A strategy that only learns. Each generation consists of a single individual, so there is no selection. It is
+/// first evaluated, and then trained by an iteration of [`Learner::iterate`](crate::advanced::Learner::iterate).
 ///
-/// The log of such a run repeats one fitness three times. The errors are in `learning.csv`.
+/// Note that the log of such a run repeats one fitness three times. You can find the errors in `learning.csv`.
 #[derive(Debug, Clone, Copy)]
 pub struct Learning;
 

@@ -13,11 +13,11 @@ const FIRST_RATE: &str = "evolution.first_rate";
 const RATE_STEP: &str = "evolution.rate_step";
 const LAST_RATE: &str = "evolution.last_rate";
 
-/// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::words::OnePlusOne`], with the defaults of
-/// the original's discrimination experiment.
+/// A strategy with one parent, which makes one mutant in each generation. The better one survives. See
+/// [`farsa_evo::words::OnePlusOne`]. Its defaults are those of the original's discrimination experiment.
 ///
-/// The log of such a run holds the mean fitness of the parent over all its evaluations and the fitness of the mutant.
-/// The best of the two is the survivor, which is the champion.
+/// In the log of such a run, you find the mean fitness of the parent over all its evaluations, and the fitness of the
+/// mutant. The better of both is the survivor, which is also the champion.
 #[derive(Debug, Clone, Copy)]
 pub struct OnePlusOne;
 

@@ -5,7 +5,7 @@ use crate::experiment::settings::Setting;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart};
 
-/// A [`StrategyDefinition`] of a name, a line, a table and a function.
+/// A simple [`StrategyDefinition`], which is given by a few constants and functions.
 ///
 /// ```
 /// use farsa_evo::gradient::{Snes, SnesConfig};
@@ -22,15 +22,16 @@ use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart
 /// ```
 #[derive(Clone, Copy)]
 pub struct SimpleStrategy {
-    /// The name on the command line: lower-case letters, digits and hyphens.
+    /// Name on the command line. It may contain lower-case letters, digits and hyphens.
     pub name: &'static str,
-    /// Method in one line with its source.
+    /// Short description of the method with its source, in one line.
     pub summary: &'static str,
-    /// Its settings with their defaults.
+    /// Builds the table of all settings, with their defaults.
     pub settings: fn() -> Vec<Setting>,
-    /// Makes the strategy, at its first generation.
+    /// Creates the strategy at its first generation.
     pub start: fn(&StrategyStart<'_>) -> Result<AnyStrategy, Error>,
-    /// Form of its [`diagnostics`](farsa_evo::Strategy::diagnostics) in files and pictures, if there are any.
+    /// Layout of its [`diagnostics`](farsa_evo::Strategy::diagnostics) in files and pictures. Use `None` if it has
+    /// none.
     pub diagnostics: Option<Diagnostics>,
 }
 

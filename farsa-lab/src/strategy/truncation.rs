@@ -13,8 +13,11 @@ use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 const PARENTS: &str = "evolution.parents";
 pub(super) const RATE: &str = "evolution.mutation_rate";
 
-/// The best of a generation produce mutated copies, [`farsa_evo::words::TruncationGa`]. Several populations evolve each
-/// by itself, [`farsa_evo::coevolution::Populations`]. Defaults of \[Ferrauto2010\].
+/// A strategy in which the best individuals of a generation produce mutated copies. See
+/// [`farsa_evo::words::TruncationGa`].
+///
+/// If there are several populations, they evolve separately, as in [`farsa_evo::coevolution::Populations`]. Defaults
+/// are those of \[Ferrauto2010\].
 #[derive(Debug, Clone, Copy)]
 pub struct Truncation;
 
