@@ -19,10 +19,10 @@ use crate::parts::network::AnyNetwork;
 
 /// Agents in a world of some kind.
 pub(crate) trait Body: Clone + Send + 'static {
-    /// Returns the agents.
+    /// Gets the agents.
     fn agents(&self) -> &Agents;
 
-    /// Returns the agents.
+    /// Gets the agents.
     fn agents_mut(&mut self) -> &mut Agents;
 
     /// Returns the bodies of a recording.
@@ -181,7 +181,7 @@ impl<E: Body> ComposedTask<E> {
     }
 }
 
-/// Returns the export of a network.
+/// Builds the export of a network.
 fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
     let parameters = network.own_parameters().to_vec();
     let [inputs, outputs] = [network.inputs(), network.outputs()];

@@ -63,7 +63,7 @@ pub struct ComposedExperiment {
     strategy_settings: Vec<Setting>,
     gene_bits: u32,
     text: String,
-    /// The document with all its defaults. An evaluator replaces the values of settings and reads it once.
+    /// Document with all its defaults. An evaluator replaces the values of settings and reads it once.
     document: Value,
     entries: Vec<Entry>,
     source: Source,

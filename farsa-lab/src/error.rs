@@ -218,7 +218,7 @@ impl From<farsa_view::Error> for Error {
     }
 }
 
-/// Returns the valid name with the smallest edit distance, and that distance in letters.
+/// Finds the valid name with the smallest edit distance, and that distance in letters.
 ///
 /// Among equally near names, one that starts with the given text wins. Case counts least. Only the beginning of an
 /// overlong name is compared.
@@ -249,7 +249,7 @@ pub fn nearest_name<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) ->
     nearest(name, valid).map(|(_, valid)| valid)
 }
 
-/// Returns true if half of the longer name agrees, or if one name contains the other.
+/// Checks if half of the longer name agrees, or if one name contains the other.
 fn is_near(name: &str, valid: &str, letters: usize) -> bool {
     let [name, valid] = [name, valid].map(|text| text.chars().take(MAX_SHOWN).collect::<String>().to_lowercase());
     let longest = name.chars().count().max(valid.chars().count());

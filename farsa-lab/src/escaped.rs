@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-/// The most characters of a name or a value that a message repeats.
+/// Most characters of a name or a value that a message repeats.
 pub(crate) const MAX_SHOWN: usize = 200;
 
 /// End of a shortened text.
@@ -18,7 +18,7 @@ pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     with_escapes(text, acts)
 }
 
-/// Returns whether a terminal interprets the character instead of printing it.
+/// Checks whether a terminal interprets the character instead of printing it.
 fn acts(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     (c.is_control() && c != '\n' && c != '\t') || turns || matches!(c, '\u{2028}' | '\u{2029}')

@@ -203,7 +203,7 @@ impl<'l> RunReader<'l> {
         Ok(Self { plan, evaluator, genotype })
     }
 
-    /// The head of the record of a run that has no generation yet.
+    /// Builds the head of the record of a run that has no generation yet.
     ///
     /// # Errors
     /// An error of the identity.

@@ -21,7 +21,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The default limits.
+    /// Default limits.
     pub const DEFAULT: Self = Self {
         record_bytes: 1 << 32,
         state_bytes: 256 << 20,

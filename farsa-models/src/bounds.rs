@@ -5,11 +5,11 @@ use farsa_body::robot::{Robot, RobotError, Shape};
 /// A radius, half a length and half an edge are below this [m].
 pub(crate) const MAX_SIZE: f64 = 1e9;
 
-/// The bound from which a number counts as infinite [rad, m, N m, N]. It replaces infinity where a format requires a
+/// Bound from which a number counts as infinite [rad, m, N m, N]. It replaces infinity where a format requires a
 /// number.
 pub(crate) const ENDLESS: f64 = 1e9;
 
-/// Returns whether a shape has sizes that files may have. Sizes of a file may also be NaN, or too small to have a half.
+/// Checks whether a shape has sizes that files may have. Sizes of a file may also be NaN, or too small to have a half.
 pub(crate) fn has_size(shape: &Shape) -> bool {
     let positive = |size: f64| size > 0.0 && size < MAX_SIZE;
     match *shape {
@@ -34,12 +34,12 @@ pub(crate) fn check_sizes(robot: &Robot) -> Result<(), RobotError> {
     Err(RobotError::Value { part: name.into(), field: "size (in files below 1e9)", value })
 }
 
-/// The range that the ends in a file mean.
+/// Computes the range that the ends in a file mean.
 pub(crate) fn range_from_file([low, high]: [f64; 2]) -> [f64; 2] {
     [if low <= -ENDLESS { f64::NEG_INFINITY } else { low }, if high >= ENDLESS { f64::INFINITY } else { high }]
 }
 
-/// The ends that a range has in a file. A range that begins or ends out there keeps the end that it has.
+/// Computes the ends that a range has in a file. A range that begins or ends out there keeps the end that it has.
 pub(crate) fn range_in_file([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(high.min(-ENDLESS)), high.min(low.max(ENDLESS))]
 }

@@ -135,7 +135,7 @@ pub(crate) fn repeated(place: SourceLocation, what: &str, name: &str, first: usi
     ReadError::Malformed { place, why: format!("a second {what} `{name}`, the first is in line {first}") }
 }
 
-/// The name of `valid` that takes the fewest changed, added or dropped letters. The first of several.
+/// Finds the name of `valid` that takes the fewest changed, added or dropped letters. The first of several.
 pub(crate) fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(&'a str, usize)> {
     valid.into_iter().map(|candidate| (candidate, distance(name, candidate))).min_by_key(|(_, distance)| *distance)
 }

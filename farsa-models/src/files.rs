@@ -42,7 +42,7 @@ impl ModelFiles {
         })
     }
 
-    /// The text of the model itself, wherever it is. From a pipe as well, as the caller names it and not a file.
+    /// Reads the text of the model itself, wherever it is. From a pipe as well, as the caller names it and not a file.
     pub(crate) fn model(&mut self, path: &Path) -> Result<String, ReadError> {
         let place = SourceLocation { file: path.display().to_string(), line: 1 };
         let kind = path.metadata().map_err(|error| fault(path, &error))?.file_type();
@@ -52,14 +52,14 @@ impl ModelFiles {
         }
     }
 
-    /// The text of a file that the model names.
+    /// Reads the text of a file that the model names.
     pub(crate) fn text(&mut self, place: &SourceLocation, name: &str) -> Result<(PathBuf, String), ReadError> {
         let path = self.find(place, name)?;
         let read = text(&path, self.bytes(&path, place)?)?;
         Ok((path, read))
     }
 
-    /// The content of a file that the model names.
+    /// Reads the content of a file that the model names.
     pub(crate) fn content(&mut self, place: &SourceLocation, name: &str) -> Result<Vec<u8>, ReadError> {
         let path = self.find(place, name)?;
         self.bytes(&path, place)

@@ -14,7 +14,7 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The Euclidean length.
+/// Computes the Euclidean length.
 pub(crate) fn norm(v: &[f64]) -> f64 {
     Scalar::sqrt(v.iter().fold(0.0, |sum, x| sum + *x * *x))
 }

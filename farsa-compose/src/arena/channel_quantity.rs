@@ -90,7 +90,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
     }
 }
 
-/// Returns the wheel of a channel, from those named or from both.
+/// Gets the wheel of a channel, from those named or from both.
 fn joint(joints: &[String], channel: usize) -> String {
     joints.get(channel).cloned().unwrap_or_else(|| ["left-wheel", "right-wheel"][channel % 2].into()).replace('-', " ")
 }

@@ -100,7 +100,7 @@ impl ArenaEpisode {
         }
     }
 
-    /// Returns the mean of a term over its robots.
+    /// Computes the mean of a term over its robots.
     fn mean<W: PlanarWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
         if term.is_of_team() {
             return self.value(world, term, 0);
@@ -137,7 +137,7 @@ impl ArenaEpisode {
         term.value(world, &setup.members[robot].parts, (&rows, robot), &numbers[robot])
     }
 
-    /// Returns the current value of a late term.
+    /// Computes the current value of a late term.
     fn late_value<W: PlanarWorld>(&self, world: &W, number: usize) -> f64 {
         let (term, tally) = (&self.setup.terms[number], &self.agents.ledger.tallies[number]);
         if term.is_of_team() {

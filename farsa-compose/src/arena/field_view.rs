@@ -38,7 +38,7 @@ impl Field {
         (0..self.robots().len()).flat_map(of_robot).collect()
     }
 
-    /// Returns the energy and the food load of each robot.
+    /// Iterates over the energy and the food load of each robot.
     pub(crate) fn scalars(&self) -> impl Iterator<Item = f64> + '_ {
         self.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)])
     }

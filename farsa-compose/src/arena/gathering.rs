@@ -55,7 +55,7 @@ impl Gathering {
     }
 }
 
-/// Returns the distance between the centers of two robots \[m\].
+/// Computes the distance between the centers of two robots \[m\].
 pub(crate) fn distance(a: &Pose, b: &Pose) -> f32 {
     let [x, y] = [0, 1].map(|k| a.position[k] - b.position[k]);
     Scalar::sqrt(x * x + y * y)

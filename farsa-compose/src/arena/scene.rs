@@ -25,7 +25,7 @@ pub(crate) enum Thing {
 }
 
 impl Thing {
-    /// Returns the body and the hull's radius [m] of a round obstacle.
+    /// Gets the body and the hull's radius [m] of a round obstacle.
     pub(crate) fn solid(self) -> Option<(BodyId, f64)> {
         if let Self::Cylinder { body, radius } | Self::Robot { body, radius } = self {
             Some((body, radius))
@@ -39,7 +39,7 @@ impl Thing {
         matches!(self, Self::Cylinder { .. } | Self::Robot { .. } | Self::Block { .. })
     }
 
-    /// Returns the body.
+    /// Gets the body.
     pub(crate) fn body(self) -> Option<BodyId> {
         match self {
             Self::Cylinder { body, .. }
@@ -50,7 +50,7 @@ impl Thing {
         }
     }
 
-    /// Returns the least distance of the center from a wall without contact [m].
+    /// Computes the least distance of the center from a wall without contact [m].
     pub(crate) fn reach(self) -> f64 {
         match self {
             Self::Cylinder { radius, .. } | Self::Robot { radius, .. } => radius,
@@ -226,7 +226,7 @@ impl Scene {
         self.arena.parts(robot)
     }
 
-    /// Returns the cylinders and blocks with a fixed initial place.
+    /// Iterates over the cylinders and blocks with a fixed initial place.
     pub(crate) fn standing<'s>(&'s self, document: &'s Document) -> impl Iterator<Item = (BodyId, f64)> + 's {
         let is_placed = |name: &str| document.objects.iter().any(|object| object.name == name && object.at.is_some());
         let placed = self.things[..self.standing].iter().filter(move |(name, _)| is_placed(name));

@@ -53,7 +53,7 @@ enum How {
 }
 
 impl How {
-    /// Returns true if all bodies are placed at one point.
+    /// Checks if all bodies are placed at one point.
     fn is_one_point(&self) -> bool {
         match self {
             Self::Fixed { .. } => true,
@@ -87,7 +87,7 @@ struct Before {
 }
 
 impl Before {
-    /// Returns true if a body is exactly at this point.
+    /// Checks if a body is exactly at this point.
     fn is_at<W: PlanarWorld>(&self, world: &W, point: [f32; 2]) -> bool {
         let others = self.others.iter().map(|(body, _)| body).chain(self.areas.iter().map(|(body, _)| body));
         others.map(|body| world.pose(*body).position).any(|[x, y, _]| [x, y] == point)
@@ -278,7 +278,7 @@ fn point_of(document: &Document, name: &str, at: &[f64], path: &str, source: &So
     Ok(point)
 }
 
-/// Returns the number of a single robot, such as `robot-2`.
+/// Finds the number of a single robot, such as `robot-2`.
 fn numbered(name: &str) -> Option<usize> {
     name.strip_prefix(ROBOT)?.strip_prefix('-')?.parse().ok()
 }

@@ -18,7 +18,7 @@ use crate::document::Reward;
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     measure: Measure,
-    /// The thing of the measure, and its pose.
+    /// Thing of the measure, and its pose.
     thing: Option<BodyId>,
     place: Pose,
     /// Pose of the thing at the start.
@@ -68,23 +68,23 @@ impl Term {
         Ok(Self { measure, thing, place: nowhere, began: nowhere })
     }
 
-    /// Returns true if the measure depends on the previous step.
+    /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
         matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_))
     }
 
-    /// Returns true if the thing is a robot, which moves.
+    /// Checks if the thing is a robot, which moves.
     pub(crate) fn is_about_robot(&self, scene: &Scene) -> bool {
         self.thing.is_some_and(|thing| (0..scene.robots.len()).any(|robot| scene.parts(robot).body == thing))
     }
 
-    /// Returns true if the measure needs food or energy.
+    /// Checks if the measure needs food or energy.
     pub(crate) fn of_foraging(&self) -> bool {
         use Measure::{Alive, CarriedFood, Deaths, Energy, Food, LostFood};
         matches!(self.measure, Food | CarriedFood | LostFood | Deaths | Energy | Alive)
     }
 
-    /// Returns true if the measure has one value for the whole team.
+    /// Checks if the measure has one value for the whole team.
     pub(crate) fn is_of_team(&self) -> bool {
         use Measure::{CarriedFood, Clusters, Deaths, Dispersion, Food, FullestArea, LargestCluster, LostFood};
         matches!(
@@ -106,7 +106,7 @@ impl Term {
         }
     }
 
-    /// Returns the measure of a robot at `pose`, or `None` for the measures of [`value`](Self::value).
+    /// Computes the measure of a robot at `pose`, or `None` for the measures of [`value`](Self::value).
     ///
     /// Contains the measures of most experiments. The others are separate, so that a step does not prepare their
     /// inputs.
@@ -130,7 +130,7 @@ impl Term {
         })
     }
 
-    /// Returns the vector from a robot to the thing [m].
+    /// Computes the vector from a robot to the thing [m].
     fn way(&self, pose: &Pose) -> [f64; 2] {
         [0, 1].map(|k| f64::from(self.place.position[k] - pose.position[k]))
     }
@@ -146,18 +146,18 @@ impl Term {
         if gap.is_finite() { yes(met || gap <= within) } else { f64::NAN }
     }
 
-    /// Returns the distance between the hulls of a robot and the thing, whose radii have this sum [m].
+    /// Computes the distance between the hulls of a robot and the thing, whose radii have this sum [m].
     fn gap(&self, pose: &Pose, radii: f64) -> f64 {
         f64::from(distance(pose, &self.place)) - radii
     }
 
-    /// Returns the distance from a robot to the thing [m], with the difference formed in double precision.
+    /// Computes the distance from a robot to the thing [m], with the difference formed in double precision.
     fn distance(&self, pose: &Pose) -> f64 {
         // The rotation leaves the length as it is, except for rounding.
         length(turned(pose, [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(pose.position[k]))))
     }
 
-    /// Returns the measure of robot number `robot`.
+    /// Computes the measure of robot number `robot`.
     pub(crate) fn value<W: PlanarWorld>(
         &self,
         world: &W,
@@ -294,7 +294,7 @@ fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
     [ahead, left]
 }
 
-/// Returns true if the center of a robot is in an area.
+/// Checks if the center of a robot is in an area.
 fn is_in<W: PlanarWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
     let MeasuredArea { body, half, disc } = area;
     let area = world.pose(*body);

@@ -14,10 +14,10 @@ pub fn schema() -> Value {
     schema
 }
 
-/// The schema, built once because it takes a megabyte.
+/// Schema, built once because it takes a megabyte.
 pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
 
-/// The schema of a file with objects only.
+/// Schema of a file with objects only.
 pub(crate) static SCENE_SCHEMA: LazyLock<Value> = LazyLock::new(|| scene_schema(&SCHEMA));
 
 fn scene_schema(schema: &Value) -> Value {
@@ -74,7 +74,7 @@ pub(crate) enum Kind {
 }
 
 impl<'s> Part<'s> {
-    /// Returns the root of a schema.
+    /// Finds the root of a schema.
     pub(crate) fn root(root: &'s Value) -> Option<Self> {
         Some(Self { root, own: root.as_object()? })
     }
@@ -149,7 +149,7 @@ impl<'s> Part<'s> {
         ["minItems", "maxItems"].map(|name| part.word(name).and_then(Value::as_u64))
     }
 
-    /// Returns the pattern of a text, if any.
+    /// Gets the pattern of a text, if any.
     pub(crate) fn pattern(self) -> Option<&'s str> {
         self.given().word("pattern")?.as_str()
     }
@@ -160,13 +160,13 @@ impl<'s> Part<'s> {
         text.split("\n\n").next().unwrap_or_default()
     }
 
-    /// Returns the schema of a list's items.
+    /// Gets the schema of a list's items.
     pub(crate) fn items(self) -> Option<Self> {
         let part = self.given();
         part.at(part.word("items")?)
     }
 
-    /// Returns the schema of the values in a table with free keys.
+    /// Gets the schema of the values in a table with free keys.
     pub(crate) fn any_key(self) -> Option<Self> {
         let part = self.given();
         match part.word("additionalProperties")? {
@@ -175,7 +175,7 @@ impl<'s> Part<'s> {
         }
     }
 
-    /// Returns the keys of a table. `tag` returns the value of the key that selects a branch.
+    /// Finds the keys of a table. `tag` returns the value of the key that selects a branch.
     pub(crate) fn keys<'t>(self, tag: &dyn Fn(&str) -> Option<&'t str>) -> Keys<'s> {
         let mut keys = Keys::default();
         self.given().collect(tag, &mut keys);
@@ -227,7 +227,7 @@ impl<'s> Part<'s> {
 pub(crate) struct Keys<'s> {
     pub(crate) named: Vec<(&'s str, Part<'s>)>,
     pub(crate) required: Vec<&'s str>,
-    /// The key that selects a branch, and its words.
+    /// Key that selects a branch, and its words.
     pub(crate) tag: Option<(&'s str, Vec<&'s str>)>,
 }
 

@@ -63,12 +63,12 @@ impl Source {
         self.others.push((path.into(), part));
     }
 
-    /// Returns the place of a line, as messages name it.
+    /// Formats the place of a line, as messages name it.
     pub(crate) fn of_line(&self, line: usize) -> String {
         format!("{} line {line}", self.file)
     }
 
-    /// Returns the place of a value, or of the part around it.
+    /// Formats the place of a value, or of the part around it.
     pub(crate) fn of(&self, path: &str) -> String {
         let within = |part: &str| path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
         if let Some((_, other)) = self.others.iter().find(|(own, _)| within(own)) {

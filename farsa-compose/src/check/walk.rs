@@ -183,7 +183,7 @@ impl Walk<'_> {
     }
 }
 
-/// Returns true if a table has a key.
+/// Checks if a table has a key.
 fn has(table: &DeTable<'_>, name: &str) -> bool {
     table.iter().any(|(key, _)| key.get_ref() == name)
 }

@@ -36,7 +36,7 @@ pub(crate) fn has(scene: &Scene, joint: JointId, kind: fn(&Law<f64>) -> bool) ->
     own(scene, joint, kind).is_some()
 }
 
-/// Returns the torque limit of a joint's own motor, if any [N m or N].
+/// Finds the torque limit of a joint's own motor, if any [N m or N].
 pub(crate) fn limit(scene: &Scene, joint: JointId) -> Option<f64> {
     match own(scene, joint, is_torque)?.1 {
         Law::Torque(torque) => Some(torque.limit).filter(|limit| limit.is_finite()),

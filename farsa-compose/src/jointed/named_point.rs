@@ -12,7 +12,7 @@ pub(crate) enum NamedPoint {
 }
 
 impl NamedPoint {
-    /// Returns the position [m], given those of the markers.
+    /// Computes the position [m], given those of the markers.
     pub(crate) fn position<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         match self {
             Self::Body(point) => point.position(world).map(f64::from),

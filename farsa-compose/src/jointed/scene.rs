@@ -108,7 +108,7 @@ impl Scene {
         }
     }
 
-    /// Returns true if a body can move in the world.
+    /// Checks if a body can move in the world.
     fn moves(&self, body: BodyId) -> bool {
         let mut next = Some(body);
         while let Some(body) = next {
@@ -223,7 +223,7 @@ impl Scene {
         self.robot.segments.get(joint.index()).map_or("", |segment| &segment.joint.name)
     }
 
-    /// Returns the range of a joint [rad or m].
+    /// Gets the range of a joint [rad or m].
     pub(crate) fn range(&self, joint: JointId) -> [f64; 2] {
         self.robot.segments.get(joint.index()).map_or([f64::NEG_INFINITY, f64::INFINITY], |segment| segment.joint.range)
     }

@@ -95,7 +95,7 @@ impl<W: SpatialWorld> Sensor<W> for Sensing {
 }
 
 impl Sensing {
-    /// Returns the camera of an image.
+    /// Gets the camera of an image.
     pub(crate) fn camera(&self) -> Option<&farsa_body::sensors::Camera> {
         match self {
             Self::Image(image) => Some(image.camera()),

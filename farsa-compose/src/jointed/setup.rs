@@ -68,7 +68,7 @@ impl Setup {
     }
 }
 
-/// Returns the options of the world.
+/// Builds the options of the world.
 pub(crate) fn options(document: &Document) -> Options {
     let world = &document.world;
     Options {

@@ -61,7 +61,7 @@ impl Term {
         Ok(Self { measure, began: [0.0; 3], before: [0.0; 3], far: 0.0 })
     }
 
-    /// Returns true if the measure depends on the previous step.
+    /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
         matches!(self.measure, Measure::Forward(_) | Measure::Progress(..))
     }
@@ -82,7 +82,7 @@ impl Term {
         }
     }
 
-    /// Returns the position of the measured part [m].
+    /// Computes the position of the measured part [m].
     fn place<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         match &self.measure {
             Measure::Moved(point_named) => point_named.position(world, markers),
@@ -92,7 +92,7 @@ impl Term {
         }
     }
 
-    /// Returns the measure after a step.
+    /// Computes the measure after a step.
     pub(crate) fn value<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]], agents: &Agents) -> f64 {
         let distance = |point_named: &NamedPoint, point: &Point| {
             apart(point_named.position(world, markers), place_of(world, point))
@@ -146,7 +146,7 @@ impl Term {
         }
     }
 
-    /// Returns the displacement of the last step [m].
+    /// Computes the displacement of the last step [m].
     fn way<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         let now = self.place(world, markers);
         [0, 1, 2].map(|k| now[k] - self.before[k])

@@ -30,7 +30,7 @@ pub(crate) struct Agents {
     pub(crate) evolving: [usize; 2],
     /// Robots of this trial: all, or the first ones.
     pub(crate) present: usize,
-    /// The recorded robot.
+    /// Recorded robot.
     pub(crate) watched: usize,
     pub(crate) networks: Vec<NormalizedController<AnyNetwork>>,
     /// Last sensor and motor values of all robots.

@@ -12,7 +12,7 @@ use crate::parts::tally::Tally;
 pub(crate) struct TermBehaviour {
     objectives: Vec<(String, f64)>,
     descriptors: Vec<Parameter>,
-    /// The terms of objectives and then of measures, with the names of their notes.
+    /// Terms of objectives and then of measures, with the names of their notes.
     terms: Vec<(usize, String)>,
 }
 
@@ -43,7 +43,7 @@ impl TermBehaviour {
         Ok((!terms.is_empty()).then_some(Self { objectives, descriptors, terms }))
     }
 
-    /// Returns true if a term is an objective or a measure.
+    /// Checks if a term is an objective or a measure.
     pub(crate) fn looks_at(&self, number: usize) -> bool {
         self.terms.iter().any(|(term, _)| *term == number)
     }

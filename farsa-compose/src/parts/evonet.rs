@@ -98,7 +98,7 @@ impl EvonetNetwork {
         Ok(Self { network, ranges, order: order.into(), given: given.into() })
     }
 
-    /// Returns the kinds of the searched parameters. All have the range of the weights.
+    /// Iterates over the kinds of the searched parameters. All have the range of the weights.
     pub(crate) fn kinds(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.order.iter().map(|(_, kind)| match kind {
             BlockParameter::Leak => "leak",
@@ -113,7 +113,7 @@ impl EvonetNetwork {
         &self.given
     }
 
-    /// Returns the network's parameters from those of a search, or `None` for another number.
+    /// Computes the network's parameters from those of a search, or `None` for another number.
     pub(crate) fn decode(&self, parameters: &[f32]) -> Option<Vec<f32>> {
         if parameters.len() != self.order.len() {
             return None;

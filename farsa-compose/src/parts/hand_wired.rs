@@ -76,7 +76,7 @@ impl HandWired {
         &self.parameters
     }
 
-    /// Returns the equivalent perceptron's parameters if the outputs are logistic: weights input by input, then
+    /// Computes the equivalent perceptron's parameters if the outputs are logistic: weights input by input, then
     /// biases.
     pub(crate) fn as_layer(&self) -> Option<Vec<f32>> {
         if self.activation != Activation::Logistic {

@@ -116,7 +116,7 @@ impl Ledger {
         self.failed || self.steps >= self.most_steps || self.has_failed() || self.one_holds(&self.end)
     }
 
-    /// Returns true if a condition of failure holds.
+    /// Checks if a condition of failure holds.
     fn has_failed(&self) -> bool {
         self.one_holds(&self.failure)
     }
@@ -125,7 +125,7 @@ impl Ledger {
         conditions.iter().any(|wanted| wanted.is_for(self.evolving) && wanted.holds(&self.tallies))
     }
 
-    /// Returns true if all conditions of success hold.
+    /// Checks if all conditions of success hold.
     pub(crate) fn would_succeed(&self) -> bool {
         let mut wanted = self.success.iter().filter(|wanted| wanted.is_for(self.evolving)).peekable();
         // `all` is true for an empty list, but a document without conditions has no success.
@@ -138,7 +138,7 @@ impl Ledger {
         if self.failed { f64::NAN } else { self.earned() }
     }
 
-    /// Returns the reward so far.
+    /// Computes the reward so far.
     pub(crate) fn earned(&self) -> f64 {
         let terms = self.paid().map(|tally| tally.earned(self.most_steps));
         if self.product { terms.product() } else { terms.sum() }
@@ -169,7 +169,7 @@ impl Ledger {
         }
     }
 
-    /// Returns the fitness of an individual from its trials.
+    /// Computes the fitness of an individual from its trials.
     pub(crate) fn fitness(&self, trials: &[Outcome]) -> f64 {
         if !self.product && self.trials == Trials::Mean {
             return mean_of_trials(trials);

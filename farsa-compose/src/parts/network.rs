@@ -226,7 +226,7 @@ impl AnyNetwork {
         }
     }
 
-    /// Returns the network for calls that are not in the loop of a trial.
+    /// Gets the network for calls that are not in the loop of a trial.
     fn kind(&self) -> &dyn Ablatable {
         match self {
             Self::Perceptron(layer, _) => layer,

@@ -82,7 +82,7 @@ impl Tally {
         })
     }
 
-    /// Returns true if only the last step matters, as far as the aggregation is concerned.
+    /// Checks if only the last step matters, as far as the aggregation is concerned.
     pub(crate) fn may_be_late(&self) -> bool {
         self.over == Over::End && self.during.is_none()
     }
@@ -92,14 +92,14 @@ impl Tally {
         (self.sum, self.most, self.last) = (0.0, f64::NEG_INFINITY, 0.0);
     }
 
-    /// Returns the value of a robot if it is part of the mean, else 0.
+    /// Computes the value of a robot if it is part of the mean, else 0.
     #[inline]
     pub(crate) fn share(&self, robot: usize, value: f64) -> f64 {
         let [first, end] = self.range;
         if (first..end).contains(&robot) { value } else { 0.0 }
     }
 
-    /// Returns the number of robots of the mean.
+    /// Computes the number of robots of the mean.
     #[inline]
     pub(crate) fn robots(&self) -> f64 {
         self.count
@@ -127,12 +127,12 @@ impl Tally {
         }
     }
 
-    /// Returns the reward in a trial of at most the given number of steps.
+    /// Computes the reward in a trial of at most the given number of steps.
     pub(crate) fn earned(&self, steps: u32) -> f64 {
         if self.earns { self.weight * self.measured(steps) } else { 0.0 }
     }
 
-    /// Returns the total before the weight.
+    /// Computes the total before the weight.
     pub(crate) fn measured(&self, steps: u32) -> f64 {
         match self.over {
             // Divided by the greatest number of steps, so that steps after an early end count as 0.
@@ -149,7 +149,7 @@ impl Tally {
         self.label.as_ref().unwrap_or(&self.name)
     }
 
-    /// Returns the name of the note with the total before the weight.
+    /// Formats the name of the note with the total before the weight.
     pub(crate) fn note(&self) -> String {
         self.label.clone().unwrap_or_else(|| format!("measured {}", self.name))
     }

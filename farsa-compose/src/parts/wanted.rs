@@ -11,7 +11,7 @@ use crate::parts::tally::Tally;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
     pub(crate) term: usize,
-    /// The evolving robots for which the condition is, by default any.
+    /// Evolving robots for which the condition is, by default any.
     of: Option<[usize; 2]>,
     above: Option<f64>,
     below: Option<f64>,
@@ -35,12 +35,12 @@ impl Wanted {
         Ok(Self { term, of, above: *above, below: *below })
     }
 
-    /// Returns true if the condition is for trials in which these robots evolve.
+    /// Checks if the condition is for trials in which these robots evolve.
     pub(crate) fn is_for(&self, evolving: [usize; 2]) -> bool {
         self.of.is_none_or(|of| of == evolving)
     }
 
-    /// Returns true if the condition holds after the last step.
+    /// Checks if the condition holds after the last step.
     pub(crate) fn holds(&self, terms: &[Tally]) -> bool {
         let value = terms[self.term].last;
         self.above.is_none_or(|above| value > above) && self.below.is_none_or(|below| value < below)

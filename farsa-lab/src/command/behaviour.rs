@@ -10,9 +10,9 @@ use crate::experiment::parameter::Parameter;
 /// The objectives and measures of an experiment, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct BehaviourInfo {
-    /// The objectives of multi-objective strategies, the fitness first.
+    /// Objectives of multi-objective strategies, the fitness first.
     objectives: Vec<String>,
-    /// The measures of behavior.
+    /// Measures of behavior.
     #[serde(rename = "descriptors")]
     measures: Vec<MeasureInfo>,
 }

@@ -120,7 +120,7 @@ pub(crate) fn read_by(
     Cli::from_arg_matches(&command.try_get_matches_from_mut(words)?)
 }
 
-/// Returns the name of the program.
+/// Gets the name of the program.
 fn program() -> String {
     let path = std::env::args_os().next().map(PathBuf::from);
     let name = path.and_then(|path| path.file_name()?.to_str().map(str::to_owned));

@@ -42,15 +42,15 @@ struct Searched {
 struct Group {
     name: String,
     meaning: String,
-    /// The first channel and the one after the last.
+    /// First channel and the one after the last.
     channels: [usize; 2],
     names: Vec<String>,
-    /// The unit of each channel, or empty.
+    /// Unit of each channel, or empty.
     units: Vec<String>,
 }
 
 impl Group {
-    /// Returns the number of channels, and their unit if they share one.
+    /// Gets the number of channels, and their unit if they share one.
     fn count(&self) -> String {
         let [from, to] = self.channels;
         let count = format!("{} {}", to - from, if to - from == 1 { "channel" } else { "channels" });
@@ -128,7 +128,7 @@ impl Connections {
         })
     }
 
-    /// Returns the connections as text.
+    /// Formats the connections as text.
     pub(crate) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.experiment, self.summary);
         let width = self.sensors.iter().chain(&self.motors).map(|group| group.name.chars().count()).max().unwrap_or(0);
@@ -202,7 +202,7 @@ impl Connections {
     }
 }
 
-/// The width, the rows and the columns of the drawing.
+/// Width, rows and columns of the drawing.
 const WIDTH: f64 = 900.0;
 const TOP: f64 = 50.0;
 const ROW: f64 = 56.0;

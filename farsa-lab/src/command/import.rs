@@ -18,9 +18,9 @@ use crate::store::bounded;
 use crate::store::replace::create_results;
 use crate::strategy::settings::POPULATION;
 
-/// The suffixes of configuration files.
+/// Suffixes of configuration files.
 const CONFIGURATIONS: [&str; 2] = ["ini", "conf"];
-/// The most remarks that are listed.
+/// Most remarks that are listed.
 const MAX_REMARKS: usize = 1000;
 
 /// The result of importing a configuration.
@@ -31,7 +31,7 @@ struct Summary<'i> {
     left: &'i [LeftOut],
     /// Remarks without effect on results.
     without_effect: &'i [LeftOut],
-    /// The number of further remarks.
+    /// Number of further remarks.
     more_left: usize,
     more_without_effect: usize,
 }

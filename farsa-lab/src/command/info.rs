@@ -14,7 +14,7 @@ use crate::json::pretty;
 use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 
-/// The most names of a kind that are listed before the last.
+/// Most names of a kind that are listed before the last.
 const MAX_NAMES: usize = 12;
 
 /// Returns a line per experiment with its conditions.
@@ -67,15 +67,15 @@ struct Info {
     genes: usize,
     genome_bits: usize,
     trials: usize,
-    /// The most steps of a trial.
+    /// Most steps of a trial.
     steps: usize,
     step_seconds: f64,
     fitness_terms: Vec<String>,
     #[serde(flatten)]
     behaviour: BehaviourInfo,
-    /// The protocols of `farsa test --protocol`.
+    /// Protocols of `farsa test --protocol`.
     protocols: Vec<ProtocolInfo>,
-    /// The parts that `farsa test --lesion` can change, by kind.
+    /// Parts that `farsa test --lesion` can change, by kind.
     lesions: Vec<PartNames>,
     settings: Vec<SettingInfo>,
 }
@@ -85,11 +85,11 @@ struct Info {
 struct ProtocolInfo {
     name: String,
     summary: String,
-    /// The number of cases.
+    /// Number of cases.
     cases: usize,
-    /// The number of held-out cases.
+    /// Number of held-out cases.
     held_out: usize,
-    /// The default number of trials per case.
+    /// Default number of trials per case.
     trials: u32,
 }
 

@@ -11,9 +11,9 @@ use std::time::Duration;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// The exit code of a process to be restarted: `EX_TEMPFAIL` of sysexits.h.
+/// Exit code of a process to be restarted: `EX_TEMPFAIL` of sysexits.h.
 pub(crate) const START_AGAIN: u8 = 75;
-/// The exit code of [`Error::Interrupted`](crate::Error::Interrupted), which is that of a shell after Ctrl-C.
+/// Exit code of [`Error::Interrupted`](crate::Error::Interrupted), which is that of a shell after Ctrl-C.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Returns a flag that SIGINT, SIGTERM and SIGHUP set. A second signal ends the process at once.
@@ -52,14 +52,14 @@ fn signals() -> [i32; 2] {
     [SIGINT, SIGTERM]
 }
 
-/// Returns the ignored signals, signal n at bit n - 1, where the system provides them.
+/// Computes the ignored signals, signal n at bit n - 1, where the system provides them.
 fn ignored() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     line.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Returns true if a scheduler of a cluster has started this process.
+/// Checks if a scheduler of a cluster has started this process.
 pub(crate) fn under_scheduler() -> bool {
     // Slurm, PBS and Torque, LSF, Grid Engine, OAR, Flux, HTCondor.
     let names =

@@ -7,12 +7,12 @@ use crate::run::laboratory::Laboratory;
 
 /// A call of the command.
 pub(crate) struct Invocation<'e, 'a> {
-    /// The name of the program.
+    /// Name of the program.
     pub(crate) program: &'a str,
     pub(crate) laboratory: &'a Laboratory<'e>,
     pub(crate) quiet: bool,
-    /// The ranks with the same command.
+    /// Ranks with the same command.
     pub(crate) exchange: Rc<Exchange<'e>>,
-    /// The number of ranks that share the processors of this one.
+    /// Number of ranks that share the processors of this one.
     pub(crate) sharing: usize,
 }

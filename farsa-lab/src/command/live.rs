@@ -16,9 +16,9 @@ use crate::run::ENGINE;
 use crate::run::plan::Plan;
 use crate::store::bounded;
 
-/// The most bytes of a module file.
+/// Most bytes of a module file.
 const MAX_MODULE_BYTES: u64 = 100_000_000;
-/// The first bytes of a gzip file.
+/// First bytes of a gzip file.
 const GZIP: &[u8] = &[0x1f, 0x8b];
 
 /// The address of a served page.

@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// The help of the program, short enough for 24 lines together with the first tour.
+/// Help of the program, short enough for 24 lines together with the first tour.
 const TEMPLATE: &str = "{about}\n{usage-heading} {usage}; -q: no progress and no summary\n{subcommands}\n";
 
 /// Returns the arguments of the command line, with those for ranks if the program is named after MPI.
@@ -147,7 +147,7 @@ fn subcommand_examples(program: &str, experiment: &str, run: &str, other: &str) 
     ]
 }
 
-/// Returns the version, marked as that of FARSA in other programs.
+/// Formats the version, marked as that of FARSA in other programs.
 fn version(program: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     if program == "farsa" { version.into() } else { format!("(FARSA {version})") }

@@ -35,7 +35,7 @@ fn item(argument: &Arg) -> String {
     format!("- `{argument}`: {help}{values}{default}\n")
 }
 
-/// Returns the text of a subcommand: its purpose, its usage and its own options.
+/// Formats the text of a subcommand: its purpose, its usage and its own options.
 fn section(command: &mut Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let usage =

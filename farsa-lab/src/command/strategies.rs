@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::json::pretty;
 use crate::strategy::definition::StrategyDefinition;
 
-/// Returns the strategies with their settings as text.
+/// Formats the strategies with their settings as text.
 pub(super) fn as_text(strategies: &[&'static dyn StrategyDefinition]) -> String {
     let mut text = String::new();
     for strategy in strategies {

@@ -42,7 +42,7 @@ impl Format {
 /// A drawn picture.
 #[derive(Debug, Serialize)]
 pub(crate) struct DrawResult {
-    /// The whole trial, of which the picture is a moment.
+    /// Whole trial, of which the picture is a moment.
     #[serde(flatten)]
     replay: ReplaySummary,
     /// Time of the picture [s], the first of several.
@@ -60,7 +60,7 @@ pub(crate) struct DrawResult {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawRequest<'w> {
     pub(crate) which: Selection,
-    /// The moment \[s\], by default the last.
+    /// Moment \[s\], by default the last.
     pub(crate) time: Option<f64>,
     /// Number of moments from the first to the last, instead of one moment.
     pub(crate) frames: Option<u32>,
@@ -155,7 +155,7 @@ fn ticks_of(last: usize, count: usize) -> Vec<usize> {
 pub(crate) struct Portrait {
     /// An SVG.
     pub(crate) picture: String,
-    /// The time of its last step that was kept \[s\], of a trial that does not fit.
+    /// Time of its last step that was kept \[s\], of a trial that does not fit.
     pub(crate) cut: Option<f64>,
 }
 
@@ -182,7 +182,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     Ok(Some(Portrait { picture, cut: recording.is_cut().then_some(time) }))
 }
 
-/// Returns whether the recording reaches a time, even if it was cut.
+/// Checks whether the recording reaches a time, even if it was cut.
 fn has_moment(recording: &Recording, time: Option<f64>) -> bool {
     time.is_some_and(|time| recording.times().last().is_some_and(|last| time <= *last))
 }

@@ -40,7 +40,7 @@ pub(crate) struct Evaluation {
     mean_fitness: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     standard_error: Option<f64>,
-    /// The mean of every note that is a number, under its name.
+    /// Mean of every note that is a number, under its name.
     #[serde(flatten)]
     per_trial: serde_json::Map<String, serde_json::Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,7 +153,7 @@ fn mean(values: &[f64]) -> (f64, f64) {
     (mean, (squares / (count - 1.0) / count).sqrt())
 }
 
-/// The name of a note as one word: letters and digits stay, everything between them becomes an underscore.
+/// Formats the name of a note as one word: letters and digits stay, everything between them becomes an underscore.
 fn word(name: &str) -> String {
     name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
 }
@@ -183,7 +183,7 @@ pub(crate) fn evaluate(
     Ok(Evaluation::new(plan, seed, &names, &results))
 }
 
-/// The genes of each population, from lists and files.
+/// Gets the genes of each population, from lists and files.
 fn genes(asked: &GeneArguments, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Genome>, Error> {
     const OPTIONS: &str = "--genes, --genes-file";
     let populations = Populations { experiment, names };
@@ -221,7 +221,7 @@ fn genes(asked: &GeneArguments, experiment: &str, names: &[String], shape: Shape
     names.iter().zip(all).map(one).collect()
 }
 
-/// The genotype that was asked for, or the only one.
+/// Gets the genotype that was asked for, or the only one.
 fn one(mut genotypes: Vec<Genome>, wanted: Option<usize>, path: &Path) -> Result<Genome, Error> {
     let (path, count) = (path.display(), genotypes.len());
     match wanted {

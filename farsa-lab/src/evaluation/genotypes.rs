@@ -9,7 +9,7 @@ use crate::experiment::genotype::Genotype;
 use crate::store::bounded;
 use crate::strategy::any_strategy::Genome;
 
-/// The most bytes that are read of a file of genotypes.
+/// Most bytes that are read of a file of genotypes.
 const MAX_BYTES: u64 = 256_000_000;
 
 /// Number and range of the genes of a genotype.
@@ -65,7 +65,7 @@ impl fmt::Display for GenotypeError {
 }
 
 impl Shape {
-    /// The shape of the genotypes of an experiment.
+    /// Builds the shape of the genotypes of an experiment.
     pub(crate) fn from_genotype(genotype: &Genotype) -> Self {
         Self::new(genotype.genes(), genotype.bits())
     }
@@ -128,7 +128,7 @@ impl Shape {
         }
     }
 
-    /// The genotypes of a file: one of the original's, or a list of genes.
+    /// Reads the genotypes of a file: one of the original's, or a list of genes.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::File`] with the line or the position, or for a file that does not end.
@@ -136,7 +136,7 @@ impl Shape {
         self.words(path, &bounded::read_stream_text(path, MAX_BYTES)?)
     }
 
-    /// The same where genes may also be reals, as [`written_reals`] writes them.
+    /// Reads the same where genes may also be reals, as [`written_reals`] writes them.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -144,7 +144,7 @@ impl Shape {
         self.genomes(path, &bounded::read_stream_text(path, MAX_BYTES)?)
     }
 
-    /// The genomes in the text of a file.
+    /// Reads the genomes in the text of a file.
     pub(crate) fn genomes(self, path: &Path, text: &str) -> Result<Vec<Genome>, Error> {
         if are_reals(text) {
             return Ok(vec![Genome::Reals(self.reals(text).map_err(|error| Error::damaged(path, error))?)]);
@@ -152,7 +152,7 @@ impl Shape {
         Ok(self.words(path, text)?.into_iter().map(Genome::Words).collect())
     }
 
-    /// The genome in a list of genes, words or reals.
+    /// Reads the genome in a list of genes, words or reals.
     pub(crate) fn genome(self, text: &str) -> Result<Genome, GenotypeError> {
         if are_reals(text) { self.reals(text).map(Genome::Reals) } else { self.list(text).map(Genome::Words) }
     }
@@ -180,13 +180,13 @@ impl Shape {
     }
 }
 
-/// Returns whether a list holds real genes: its first gene has a point or an exponent.
+/// Checks whether a list holds real genes: its first gene has a point or an exponent.
 fn are_reals(text: &str) -> bool {
     let first = text.split([',', ' ', '\t', '\n', '\r']).find(|word| !word.is_empty()).unwrap_or_default();
     first.contains(['.', 'e']) && first.starts_with(|c: char| c == '-' || c.is_ascii_digit())
 }
 
-/// Returns whether a line before the first gene is a title: `**NET : ...`, `DYNAMICAL NN`.
+/// Checks whether a line before the first gene is a title: `**NET : ...`, `DYNAMICAL NN`.
 fn is_title(line: &str) -> bool {
     line.starts_with(|c: char| c == '*' || c.is_ascii_alphabetic())
 }

@@ -34,7 +34,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// The same in a line of words.
+    /// Formats the same in a line of words.
     pub(crate) fn text(&self) -> String {
         let Self { genotypes, genes, populations, .. } = self;
         let (directory, files) = (OneLine(&self.directory), OneLine(self.files.join(", ")));
@@ -112,7 +112,7 @@ pub(crate) fn import(
     Ok(summary)
 }
 
-/// The genotypes of each population, as many of each.
+/// Gets the genotypes of each population, as many of each.
 fn genomes(paths: &[PathBuf], experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<Vec<u16>>>, Error> {
     let populations = Populations { experiment, names };
     let given = paths.iter().map(|path| populations.file("FILE", path)).collect::<Result<_, _>>()?;

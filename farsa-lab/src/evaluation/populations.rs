@@ -34,7 +34,7 @@ impl Populations<'_> {
         self.split(option, text).map(|(population, rest)| (population, rest.into()))
     }
 
-    /// The population of this name, or the only one.
+    /// Gets the population of this name, or the only one.
     ///
     /// # Errors
     /// [`Error::Setting`] with the nearest population, [`Error::Usage`] if none of several is named.

@@ -53,7 +53,7 @@ pub(crate) struct Selection {
 /// Where an individual of a run is.
 pub(crate) struct LocatedIndividual<'p> {
     pub(crate) history: History<'p>,
-    /// The file that the history is from.
+    /// File that the history is from.
     pub(crate) path: PathBuf,
     pub(crate) generation: u32,
     /// Counted through all populations.
@@ -107,7 +107,7 @@ pub(crate) struct Replayable {
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
-    /// The trials that were asked for.
+    /// Trials that were asked for.
     pub(crate) trials: Range<u32>,
 }
 
@@ -121,7 +121,7 @@ impl Replayable {
         Self::rebuilt(plan, &LocatedIndividual::new(plan, directory, which)?, which.trial)
     }
 
-    /// The champions of a run, one of each population.
+    /// Gets the champions of a run, one of each population.
     ///
     /// # Errors
     /// As for [`find`](Self::find).
@@ -232,7 +232,7 @@ impl Replayable {
         catch_printed_panic(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
     }
 
-    /// The fitness of the replayed trials.
+    /// Computes the fitness of the replayed trials.
     pub(crate) fn fitness(&self, outcomes: &[Outcome]) -> f64 {
         fitness(self.evaluator.as_ref(), outcomes)
     }
@@ -274,7 +274,7 @@ impl Replayable {
     }
 }
 
-/// The parts of the controller of a plan's experiment that can be changed.
+/// Gets the parts of the controller of a plan's experiment that can be changed.
 ///
 /// # Errors
 /// [`Error::Usage`] if none can be.
@@ -466,7 +466,7 @@ fn add(page: &mut Page, films: Vec<FilmedTrial>) {
     }
 }
 
-/// Returns whether the reader closed the output, as in `| head`.
+/// Checks whether the reader closed the output, as in `| head`.
 pub(crate) fn reader_left(error: &Error) -> bool {
     matches!(error, Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
 }

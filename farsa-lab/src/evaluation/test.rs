@@ -61,7 +61,7 @@ pub(crate) struct TestRun {
     directory: String,
     generation: u32,
     individual: u32,
-    /// The champions of all populations, if there are several.
+    /// Champions of all populations, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     individuals: Vec<u32>,
     seed: u64,
@@ -77,7 +77,7 @@ pub(crate) struct TestRun {
 }
 
 impl TestRun {
-    /// Returns the table and its summary as text.
+    /// Formats the table and its summary as text.
     pub(crate) fn text(&self) -> String {
         let Self { generation, individual, seed, .. } = self;
         let mut text = self.table.aligned();

@@ -29,13 +29,13 @@ pub(crate) struct TrialResult {
 /// A trial of the test of a champion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestTrial {
-    /// The number of the trial in the experiment.
+    /// Number of the trial in the experiment.
     pub trial: u32,
     /// Number of steps.
     pub steps: u32,
     /// Success of the trial.
     pub success: bool,
-    /// The fitness of the trial, NaN after a failure.
+    /// Fitness of the trial, NaN after a failure.
     pub fitness: f64,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// The table of some trials, with columns for all populations but the first, of these names.
+    /// Builds the table of some trials, with columns for all populations but the first, of these names.
     pub(crate) fn new(terms: &[String], others: &[String], trials: &[TrialResult]) -> Self {
         let mut head: Vec<String> = HEAD.map(str::to_owned).into();
         let terms = own_columns(terms);
@@ -139,7 +139,7 @@ impl Table {
         lines.chunks(trials.max(1)).map(part).collect()
     }
 
-    /// The trials, without terms and notes.
+    /// Gets the trials, without terms and notes.
     pub(crate) fn trials(&self) -> Vec<TestTrial> {
         let trial = |line: &Vec<String>| {
             let [_, trial, steps, success, fitness] = [0, 1, 2, 3, 4].map(|column| line[column].as_str());
@@ -154,7 +154,7 @@ impl Table {
         &self.lines
     }
 
-    /// The content of the file, which is to be written to `path`.
+    /// Writes the content of the file for `path`.
     pub(crate) fn csv(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         self.lines
@@ -164,7 +164,7 @@ impl Table {
         writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))
     }
 
-    /// Returns the table with aligned columns. Numbers have four significant digits.
+    /// Formats the table with aligned columns. Numbers have four significant digits.
     pub(crate) fn aligned(&self) -> String {
         let short = |field: &String| match field.parse::<f64>() {
             Ok(x) if field.contains('.') => significant(x),
@@ -254,7 +254,7 @@ impl Finding {
 }
 
 impl Findings {
-    /// The share of successes, the mean fitness, and the notes' counts and means, a line each.
+    /// Formats the share of successes, the mean fitness, and the notes' counts and means, a line each.
     pub(crate) fn text(&self) -> String {
         let share = |n: usize| format!("{n} of {} ({:.1} %)", self.trials, 100.0 * self.part(n));
         // Writing into a string cannot fail.

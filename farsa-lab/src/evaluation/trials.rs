@@ -16,7 +16,7 @@ pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
     EpisodeId { seed: seed | !MAX_SEED, generation, individual: 0, trial }
 }
 
-/// Returns the fitness of trials. That of a failed trial is the worst.
+/// Computes the fitness of trials. That of a failed trial is the worst.
 pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
     let finite = outcomes.iter().all(Outcome::is_finite);
     let fitness = if finite { Fitness::nan_as_failed(evaluator.fitness(outcomes)) } else { Fitness::WORST };

@@ -47,9 +47,9 @@ pub struct Anatomy {
     outputs: Vec<String>,
     links: Vec<Links>,
     node_parameters: Vec<NodeParameters>,
-    /// The numbers of the first neuron and of the first output among those that can be held.
+    /// Numbers of the first neuron and of the first output among those that can be held.
     first: [usize; 2],
-    /// The number that each parameter of the schema has in the network, where that is not the same.
+    /// Number that each parameter of the schema has in the network, where that is not the same.
     order: Option<Vec<usize>>,
 }
 
@@ -181,7 +181,7 @@ impl Anatomy {
         self.order.as_ref().map_or(parameter, |order| order.get(parameter).copied().unwrap_or(usize::MAX))
     }
 
-    /// The inputs of a group or a single one.
+    /// Gets the inputs of a group or a single one.
     fn inputs(&self, name: &str) -> Result<Range<usize>, Error> {
         let group = self.groups.iter().find(|(group, _)| group == name).map(|(_, inputs)| inputs.clone());
         let single = || place("sensor", name, &self.sensors).map(|sensor| sensor..sensor + 1);
@@ -191,7 +191,7 @@ impl Anatomy {
         })
     }
 
-    /// The nodes of a name, numbered through sensors, neurons and outputs: a neuron before others of its name.
+    /// Finds the nodes of a name, numbered through sensors, neurons and outputs: a neuron before others of its name.
     fn nodes(&self, name: &str) -> Option<Range<usize>> {
         let [sensors, neurons] = [self.sensors.len(), self.neurons.len()];
         let span = |node: usize| node..node + 1;
@@ -200,7 +200,7 @@ impl Anatomy {
         neuron().or_else(|| self.inputs(name).ok()).or_else(output)
     }
 
-    /// The weights of the links that `FROM-TO` means.
+    /// Gets the weights of the links that `FROM-TO` means.
     fn links_between(&self, name: &str) -> Result<Vec<usize>, Error> {
         let hyphens = name.match_indices('-').map(|(at, _)| (name[..at].trim(), name[at + 1..].trim()));
         // Names may have hyphens themselves.
@@ -220,7 +220,7 @@ impl Anatomy {
         Ok(weights)
     }
 
-    /// The parameter of this kind of a node.
+    /// Gets the parameter of this kind of a node.
     fn node_parameter(&self, kind: &str, name: &str) -> Result<usize, Error> {
         let kinds = ["neuron", "output", "sensor", "link", "noise"].into_iter();
         let names = self.node_parameters.iter().map(|parameters| parameters.name.as_str());
@@ -243,7 +243,7 @@ impl Anatomy {
     }
 }
 
-/// The weights of some links that lead from these nodes to those.
+/// Gets the weights of some links that lead from these nodes to those.
 fn weights(links: &Links, from: &Range<usize>, to: &Range<usize>) -> Vec<usize> {
     let Links { from: [first_source, last_source], to: [first_target, last_target], first } = *links;
     let within = |nodes: &Range<usize>, first: usize, last: usize| nodes.start.max(first)..nodes.end.min(last);

@@ -49,15 +49,15 @@ pub trait Objective: Clone + Send + 'static {
     /// Sets the world up for an episode with its own random numbers, and discards the previous state.
     fn start<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId);
 
-    /// Returns the reward of the last step. NaN for a trial that failed.
+    /// Computes the reward of the last step. NaN for a trial that failed.
     fn reward<W: PlanarWorld>(&mut self, world: &W) -> f64;
 
-    /// Returns whether the trial ends early.
+    /// Checks whether the trial ends early.
     fn is_over(&self) -> bool {
         false
     }
 
-    /// Returns whether the trial succeeded, at its end.
+    /// Checks whether the trial succeeded, at its end.
     fn success(&self) -> bool {
         false
     }
@@ -191,7 +191,7 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Exports for Controlle
         self.robot.clone()
     }
 
-    /// The network, with the numbers of the channels that it reads and writes.
+    /// Exports the network, with the numbers of the channels that it reads and writes.
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let schema = self.control.schema();
         let sensors = schema.sensors.iter().enumerate().map(|(channel, sensor)| SensorExport {

@@ -62,7 +62,7 @@ pub(crate) struct Disturbances<'d, W> {
 }
 
 impl<W> Disturbances<'_, W> {
-    /// Returns whether there is any disturbance.
+    /// Checks whether there is any disturbance.
     pub(crate) fn any(&self) -> bool {
         let placed = self.place.is_some() && !self.displacements.is_empty();
         placed || self.apply.is_some() && !self.pushes.is_empty()
@@ -89,7 +89,7 @@ pub(crate) struct Disturbed<'d, W, E> {
 }
 
 impl<'d, W, E> Disturbed<'d, W, E> {
-    /// The episode with these.
+    /// Builds the episode with these.
     pub(crate) fn new(episode: E, disturbances: Disturbances<'d, W>) -> Self {
         Self { episode, disturbances, step: 0 }
     }

@@ -188,7 +188,7 @@ pub trait Bodies {
 pub struct Evaluation<'p> {
     /// Number of this trial among all that are evaluated together.
     pub number: usize,
-    /// The parameters \[[`TaskInfo::parameters`]\].
+    /// Parameters \[[`TaskInfo::parameters`]\].
     pub parameters: &'p [f32],
     /// Parameters of the opponents, one of each other population in order. Empty for a single population.
     ///

@@ -14,7 +14,7 @@ pub trait Batch {
     /// Number of worlds.
     fn lanes(&self) -> usize;
 
-    /// The world in a lane.
+    /// Gets the world in a lane.
     fn lane(&mut self, index: usize) -> Self::Lane<'_>;
 
     /// Steps all worlds.

@@ -65,7 +65,7 @@ pub(crate) struct LanesInfo {
 }
 
 impl Default for LanesInfo {
-    /// The value of sessions older than lanes.
+    /// Creates the value for sessions older than lanes.
     fn default() -> Self {
         Lanes::one().info()
     }
@@ -76,11 +76,11 @@ impl Default for LanesInfo {
 pub(crate) struct LaneRequest {
     /// As many as the machine's instructions or the experiment make sensible, if there is no number.
     pub(crate) count: Option<usize>,
-    /// The best of the machine, if there is no name.
+    /// Best of the machine, if there is no name.
     pub(crate) simd: Option<&'static str>,
 }
 
-/// The names of the instruction sets that there are steps for, on some machine.
+/// Names of the instruction sets that there are steps for, on some machine.
 pub(crate) const SIMD: [&str; 3] = ["baseline", "avx2", "avx512"];
 
 /// The name of an instruction set.

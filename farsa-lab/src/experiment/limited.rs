@@ -19,7 +19,7 @@ impl<E> Limited<E> {
         Self { episode, budget, left: budget, stopped: false }
     }
 
-    /// Returns the outcome if the episode was stopped.
+    /// Gets the outcome if the episode was stopped.
     pub(crate) fn stopped(&self) -> Option<Outcome> {
         let steps = u32::try_from(self.budget).unwrap_or(u32::MAX);
         let outcome = || Outcome { steps, failure: Some(Failure::Endless(self.budget)), ..Outcome::failed() };

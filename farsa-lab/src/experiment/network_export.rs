@@ -114,7 +114,7 @@ impl NetworkExport {
         Ok(bytes)
     }
 
-    /// The parameters as tables, which lie one after the other in them.
+    /// Gets the parameters as tables, which lie one after the other in them.
     pub(crate) fn tables(&self) -> Vec<Table<'_>> {
         match self {
             Self::Leaky { layout, parameters, .. } => {

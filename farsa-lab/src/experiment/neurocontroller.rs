@@ -56,7 +56,7 @@ pub struct Neurocontroller<S, M> {
     x: Vec<f32>,
     y: Vec<f32>,
     schema: Schema,
-    /// The test protocols of any network.
+    /// Test protocols of any network.
     interventions: Interventions,
 }
 
@@ -239,7 +239,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     }
 }
 
-/// The sensors by their groups, those without one alone.
+/// Gets the sensors by their groups, those without one alone.
 fn groups(schema: &Schema) -> Vec<(String, Range<usize>)> {
     let mut groups: Vec<(String, Range<usize>)> = Vec::new();
     for (number, sensor) in schema.sensors.iter().enumerate() {

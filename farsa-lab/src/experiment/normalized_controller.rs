@@ -7,7 +7,7 @@ use farsa_num::{Domain, Stream};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::intervention::Intervention;
 
-/// The most that a normalised observation is away from 0, in standard deviations.
+/// Most that a normalized observation is away from 0, in standard deviations.
 const LIMIT: f32 = 10.0;
 
 /// A controller whose observations can be normalized by the mean and the deviation of earlier ones.

@@ -61,7 +61,7 @@ impl Outcome {
         self.failure.is_none() && self.terms.iter().all(|term| term.is_finite())
     }
 
-    /// Returns the reason of a failure as text. `names` holds the names of the terms.
+    /// Finds the reason of a failure as text. `names` holds the names of the terms.
     pub(crate) fn why_failed(&self, names: &[String]) -> Option<String> {
         if let Some(failure) = &self.failure {
             return Some(failure.to_string());

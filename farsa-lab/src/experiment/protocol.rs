@@ -153,7 +153,7 @@ impl Protocol {
         self
     }
 
-    /// The number of the protocol of this name among those of an experiment, all of which are looked at.
+    /// Gets the number of the protocol of this name among those of an experiment, all of which are looked at.
     ///
     /// # Errors
     /// [`Error::Setting`] with the nearest name that there is, [`Error::Usage`] where there is no protocol at all, and
@@ -170,7 +170,7 @@ impl Protocol {
         number.ok_or_else(|| Error::unknown(&place, "test protocol", name, names()))
     }
 
-    /// The number of the case of this name, or of this number from 0 if none has the name.
+    /// Gets the number of the case of this name, or of this number from 0 if none has the name.
     ///
     /// # Errors
     /// [`Error::Setting`] with the nearest name that there is.

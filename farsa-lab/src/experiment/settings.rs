@@ -184,13 +184,13 @@ impl Settings {
     }
 }
 
-/// Returns whether a key is valid in a TOML table without quotes.
+/// Checks whether a key is valid in a TOML table without quotes.
 fn is_key(key: &str) -> bool {
     let bare = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     key.contains('.') && key.split('.').all(|part| !part.is_empty() && part.chars().all(bare))
 }
 
-/// Returns the message for a key that is an option and not a setting, by its last part.
+/// Finds the message for a key that is an option and not a setting, by its last part.
 fn elsewhere(key: &str) -> Option<&'static str> {
     match key.rsplit('.').next()? {
         "strategy" | "algorithm" => {

@@ -127,14 +127,14 @@ fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
 /// The origin of a controller.
 #[derive(Serialize)]
 struct Whose<'a> {
-    /// The version of the meaning of fields.
+    /// Version of the meaning of fields.
     format: u32,
     experiment: &'a str,
     condition: &'a str,
     seed: u64,
     generation: u32,
     individual: u32,
-    /// The population, where there are several.
+    /// Population, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     population: Option<&'a str>,
     #[serde(flatten)]
@@ -159,7 +159,7 @@ struct Trials<'a> {
     format: u32,
     experiment: &'a str,
     condition: &'a str,
-    /// The seed of the test, not of the run.
+    /// Seed of the test, not of the run.
     seed: u64,
     starts: Vec<StartExport>,
 }

@@ -6,13 +6,13 @@ use crate::figures::svg::{
     GRID, INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width,
 };
 
-/// The height of the line of a bar, the top of the first and the room below the last.
+/// Height of the line of a bar, the top of the first and the room below the last.
 const LINE: f64 = 28.0;
 const TOP: f64 = 48.0;
 const FOOT: f64 = 34.0;
-/// The room for the numbers at the right.
+/// Room for the numbers at the right.
 const NUMBERS: f64 = 66.0;
-/// The color of bars, a middle gray in print.
+/// Color of bars, a middle gray in print.
 const BAR: &str = "#56B4E9";
 
 /// A list of shares.
@@ -28,7 +28,7 @@ pub(crate) struct Bar<'a> {
     pub(crate) label: &'a str,
     /// A share from 0 to 1, or NaN.
     pub(crate) share: f64,
-    /// The ends of the interval.
+    /// Ends of the interval.
     pub(crate) interval: [f64; 2],
     /// True for a held-out case.
     pub(crate) outlined: bool,

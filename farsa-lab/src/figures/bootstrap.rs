@@ -4,12 +4,12 @@ use farsa_num::Stream;
 
 use crate::figures::statistics::Quartiles;
 
-/// The number of resamples, enough for ends with an error of about a hundredth of the interval.
+/// Number of resamples, enough for ends with an error of about a hundredth of the interval.
 pub(crate) const RESAMPLES: usize = 10_000;
 /// A fixed seed, so that equal values have equal intervals on every page.
 const SEED: u64 = 1979;
 
-/// Returns the 95 % interval of the median by the percentile method of [Efron1979].
+/// Computes the 95 % interval of the median by the percentile method of [Efron1979].
 ///
 /// Returns `None` for fewer than two values and for NaN.
 ///

@@ -6,14 +6,14 @@ use crate::figures::plane::{FOOT, LABELS, Limits, Plane};
 use crate::figures::series::{Series, thinned};
 use crate::figures::svg::{COLORS, WIDTH, at, figure, legend, title};
 
-/// The height of the plane.
+/// Height of the plane.
 const HEIGHT: f64 = 290.0;
 
 /// Curves that share a pair of axes.
 #[derive(Debug, Default)]
 pub(crate) struct Chart {
     pub(crate) title: String,
-    /// The name of the vertical axis.
+    /// Name of the vertical axis.
     pub(crate) axis: &'static str,
     pub(crate) across: Across,
     pub(crate) curves: Vec<Curve>,
@@ -31,11 +31,11 @@ pub(crate) enum Across {
 /// A value per generation, from generation 0. Values that are not finite leave a gap.
 #[derive(Debug, Default)]
 pub(crate) struct Curve {
-    /// The name in the legend. Curves without a name are thin and pale, below the others.
+    /// Name in the legend. Curves without a name are thin and pale, below the others.
     pub(crate) name: Option<String>,
     pub(crate) color: usize,
     pub(crate) values: Series,
-    /// The lower and upper end of a band per generation, or nothing.
+    /// Lower and upper end of a band per generation, or nothing.
     pub(crate) band: Vec<[f64; 2]>,
 }
 

@@ -4,13 +4,13 @@ use maud::{Markup, html};
 
 use crate::figures::svg::{INK, MARGIN, MAX_CASES, OUTLINE, WIDTH, at, figure, note, percent, shown, title, width};
 
-/// The least and the largest width of a column.
+/// Least and largest width of a column.
 const COLUMN: [f64; 2] = [54.0, 130.0];
-/// The heights of a row, of the title and of the scale below the map.
+/// Heights of a row, of the title and of the scale below the map.
 const ROW: f64 = 46.0;
 const TOP: f64 = 44.0;
 const SCALE: f64 = 58.0;
-/// The colors of the shares 0 and 1, which differ in lightness, too, for print.
+/// Colors of the shares 0 and 1, which differ in lightness, too, for print.
 const PALE: [f64; 3] = [236.0, 244.0, 250.0];
 const DARK: [f64; 3] = [0.0, 46.0, 98.0];
 /// Text on pale and on dark cells, which a dark page does not replace.
@@ -20,7 +20,7 @@ const LETTERS: [&str; 2] = ["#101418", "#FEFEFE"];
 #[derive(Debug, Default)]
 pub(crate) struct HeatMap<'a> {
     pub(crate) title: &'a str,
-    /// The names of rows and columns, may be empty.
+    /// Names of rows and columns, may be empty.
     pub(crate) axes: [&'a str; 2],
     pub(crate) rows: &'a [&'a str],
     pub(crate) columns: &'a [&'a str],
@@ -30,17 +30,17 @@ pub(crate) struct HeatMap<'a> {
 /// A cell of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HeatCell {
-    /// The indices of the row and the column.
+    /// Indices of the row and the column.
     pub(crate) place: [usize; 2],
     /// A share from 0 to 1, or NaN.
     pub(crate) share: f64,
-    /// The text below the share.
+    /// Text below the share.
     pub(crate) below: String,
     /// True for a held-out case.
     pub(crate) outlined: bool,
 }
 
-/// Returns the color of a share.
+/// Formats the color of a share.
 fn shade(share: f64) -> String {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let [red, green, blue] = [0, 1, 2].map(|i| (PALE[i] + share * (DARK[i] - PALE[i])).round() as u8);

@@ -2,7 +2,7 @@
 
 use crate::figures::normal::upper_tail;
 
-/// The most values of both groups for the exact test, which takes too long beyond that.
+/// Most values of both groups for the exact test, which takes too long beyond that.
 const MAX_EXACT: usize = 200;
 
 /// The comparison of two groups of values.
@@ -12,7 +12,7 @@ pub(crate) struct Comparison {
     pub(crate) u: f64,
     /// U divided by the number of pairs, the probability that a value of the first group is the larger one.
     pub(crate) larger: f64,
-    /// The two-sided probability of a U at least as far from its mean in random groups.
+    /// Two-sided probability of a U at least as far from its mean in random groups.
     pub(crate) p: f64,
     /// True for an exact `p`, false for the normal approximation.
     pub(crate) exact: bool,
@@ -43,7 +43,7 @@ pub(crate) fn compare(first: &[f64], second: &[f64]) -> Option<Comparison> {
     Some(Comparison { u, larger: u / (n * m) as f64, p, exact })
 }
 
-/// Returns the share of the choices of `n` ranks whose sum is at least as far from the mean as this one.
+/// Computes the share of the choices of `n` ranks whose sum is at least as far from the mean as this one.
 fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
     let count = ranks.len();
     // ways[k][s] is the number of choices of k values whose ranks add up to s.
@@ -66,7 +66,7 @@ fn counted(ranks: &[usize], n: usize, sum: usize) -> f64 {
     far / total
 }
 
-/// Returns the normal approximation of that share.
+/// Computes the normal approximation of that share.
 fn approximated(sorted: &[(f64, bool)], n: usize, u: f64) -> f64 {
     let [n, all] = [n, sorted.len()].map(|count| count as f64);
     let m = all - n;

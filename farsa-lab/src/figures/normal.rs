@@ -4,12 +4,12 @@ use farsa_num::exp;
 
 /// 1 / sqrt(2 pi).
 const DENSITY_AT_0: f64 = 0.398_942_280_401_432_7;
-/// The value from which the continued fraction converges faster than the series.
+/// Value from which the continued fraction converges faster than the series.
 const FAR: f64 = 2.5;
-/// The number of terms of the fraction, enough for all digits.
+/// Number of terms of the fraction, enough for all digits.
 const TERMS: u32 = 200;
 
-/// Returns the probability of a value above `z`, or NaN for NaN.
+/// Computes the probability of a value above `z`, or NaN for NaN.
 ///
 /// Source: [Abramowitz1964] 26.2.11 (series) and 26.2.14 (continued fraction, evaluated from its end). Relative error below
 /// 1e-13 up to z = 30.

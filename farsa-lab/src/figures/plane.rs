@@ -9,9 +9,9 @@ use crate::figures::svg::{GRID, INK, MARGIN, WIDTH, at, note};
 /// Values above are drawn as `PART` of themselves, so that the range of an axis cannot overflow. A power of two changes no digit.
 const LARGE: f64 = 1e300;
 const PART: f64 = 1.0 / 65536.0;
-/// The approximate number of labels of a vertical axis.
+/// Approximate number of labels of a vertical axis.
 pub(crate) const LABELS: usize = 7;
-/// The height of the labels and the name of the lower axis.
+/// Height of the labels and the name of the lower axis.
 pub(crate) const FOOT: f64 = 60.0;
 
 /// The range of an axis, in a part of the values.
@@ -43,7 +43,7 @@ impl Limits {
         Self { low, high, part: 1.0 }
     }
 
-    /// Returns the position of a value, from 0 at the lower to 1 at the upper end.
+    /// Computes the position of a value, from 0 at the lower to 1 at the upper end.
     pub(crate) fn position(&self, value: f64) -> f64 {
         (value * self.part - self.low) / (self.high - self.low)
     }
@@ -94,7 +94,7 @@ impl Plane {
         Self { left, top, right: WIDTH - MARGIN, bottom: top + height, across, up }
     }
 
-    /// Returns the place of a point in the figure.
+    /// Computes the place of a point in the figure.
     pub(crate) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (width, height) = (self.right - self.left, self.bottom - self.top);
         [self.left + width * self.across.position(x), self.top + height * (1.0 - self.up.position(y))]

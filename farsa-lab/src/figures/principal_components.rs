@@ -12,7 +12,7 @@ pub(crate) struct PrincipalComponents {
 }
 
 impl PrincipalComponents {
-    /// Returns the components of points of equal dimension, or `None` for equal points and values that are not finite.
+    /// Computes the components of points of equal dimension, or `None` for equal points and values that are not finite.
     ///
     /// The largest coordinate of each component is positive, so that equal points have equal figures.
     pub(crate) fn of<'p>(points: impl Iterator<Item = &'p [f32]> + Clone) -> Option<Self> {
@@ -43,7 +43,7 @@ impl PrincipalComponents {
         Some(Self { mean, axes: [first, second], shares: [one, other] })
     }
 
-    /// Returns the coordinates of a point along the two components.
+    /// Computes the coordinates of a point along the two components.
     pub(crate) fn place(&self, point: &[f32]) -> [f64; 2] {
         self.axes.each_ref().map(|axis| {
             let coordinates = point.iter().zip(self.mean.iter()).zip(axis.iter());

@@ -11,7 +11,7 @@ pub(crate) struct Proportion {
 }
 
 impl Proportion {
-    /// Returns the 95 % interval of [Wilson1927], or 0 to 1 without trials.
+    /// Computes the 95 % interval of [Wilson1927], or 0 to 1 without trials.
     pub(crate) fn interval(self) -> [f64; 2] {
         if self.of == 0 {
             return [0.0, 1.0];
@@ -86,7 +86,7 @@ mod tests {
         }
     }
 
-    /// Returns the number of choices of k of n, exact up to 2^64.
+    /// Computes the number of choices of k of n, exact up to 2^64.
     fn choose(n: u64, k: u64) -> u64 {
         (0..k).fold(1, |ways, i| ways * (n - i) / (i + 1))
     }

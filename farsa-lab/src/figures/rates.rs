@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use crate::figures::plane::{FOOT, Limits, Plane};
 use crate::figures::svg::{COLORS, HEAD, WIDTH, at, figure, legend, percent, title};
 
-/// The height of the plane.
+/// Height of the plane.
 const HEIGHT: f64 = 260.0;
-/// The least number of values, and the largest number of curves that remain distinct.
+/// Least number of values, and the largest number of curves that remain distinct.
 const MIN_VALUES: usize = 3;
 const MAX_CURVES: usize = 4;
 
@@ -15,9 +15,9 @@ const MAX_CURVES: usize = 4;
 #[derive(Debug, Default)]
 pub(crate) struct Rates<'a> {
     pub(crate) title: &'a str,
-    /// The name of the number.
+    /// Name of the number.
     pub(crate) axis: &'a str,
-    /// The labels of the values, each a number with the same unit.
+    /// Labels of the values, each a number with the same unit.
     pub(crate) labels: &'a [&'a str],
     pub(crate) curves: &'a [RateCurve<'a>],
 }
@@ -31,7 +31,7 @@ pub(crate) struct RateCurve<'a> {
 }
 
 impl RateCurve<'_> {
-    /// Returns the value at which the share first falls to half of its first value, by linear interpolation.
+    /// Computes the value at which the share first falls to half of its first value, by linear interpolation.
     pub(crate) fn half(&self, values: &[f64]) -> Option<f64> {
         let half = 0.5 * self.shares.first()?.0;
         let points: Vec<[f64; 2]> = values.iter().zip(&self.shares).map(|(x, (share, _))| [*x, *share]).collect();
@@ -41,7 +41,7 @@ impl RateCurve<'_> {
     }
 }
 
-/// Returns the rising numbers at the start of labels and their common unit.
+/// Finds the rising numbers at the start of labels and their common unit.
 pub(crate) fn values<'l>(labels: &[&'l str]) -> Option<(Vec<f64>, &'l str)> {
     let split = |label: &'l str| -> Option<(f64, &'l str)> {
         let (number, unit) = label.split_once(' ').unwrap_or((label, ""));

@@ -5,12 +5,12 @@ use maud::html;
 use crate::figures::plane::{FOOT, LABELS, Limits, Plane, label};
 use crate::figures::svg::{INK, MARGIN, WIDTH, at, figure, title};
 
-/// The number of points above which only every k-th is drawn.
+/// Number of points above which only every k-th is drawn.
 const MAX_POINTS: usize = 5000;
-/// The top and the height of the plane.
+/// Top and height of the plane.
 const TOP: f64 = 66.0;
 const HEIGHT: f64 = 520.0;
-/// The colors of the least and of the largest value, which differ in lightness, too.
+/// Colors of the least and of the largest value, which differ in lightness, too.
 const PALE: [f64; 3] = [176.0, 216.0, 240.0];
 const DARK: [f64; 3] = [0.0, 38.0, 84.0];
 
@@ -18,13 +18,13 @@ const DARK: [f64; 3] = [0.0, 38.0, 84.0];
 #[derive(Debug, Default)]
 pub(crate) struct Scatter<'a> {
     pub(crate) title: &'a str,
-    /// The names of the lower and the vertical axis.
+    /// Names of the lower and the vertical axis.
     pub(crate) axes: [&'a str; 2],
     /// Ranges that the axes include.
     pub(crate) ranges: [Option<[f64; 2]>; 2],
-    /// The name of the third value.
+    /// Name of the third value.
     pub(crate) shade: &'a str,
-    /// The place and the third value of each point.
+    /// Place and third value of each point.
     pub(crate) points: &'a [([f64; 2], f64)],
 }
 

@@ -1,6 +1,6 @@
 //! The values of a curve, thinned while they are added.
 
-/// The number of points above which only every k-th is drawn, with k a power of two.
+/// Number of points above which only every k-th is drawn, with k a power of two.
 pub(crate) const MAX_POINTS: usize = 1500;
 
 /// A number per generation, from generation 0. Only the numbers that are drawn are stored: every k-th and the last.
@@ -11,7 +11,7 @@ pub(crate) struct Series {
     stride: usize,
     len: usize,
     last: f64,
-    /// The least and the largest finite number.
+    /// Least and largest finite number.
     ends: [f64; 2],
 }
 
@@ -44,14 +44,14 @@ impl Series {
         self.len
     }
 
-    /// Returns the drawn generations with their values.
+    /// Iterates over the drawn generations with their values.
     pub(crate) fn points(&self) -> impl Iterator<Item = (usize, f64)> {
         let values = self.values.iter().enumerate().map(|(index, value)| (index * self.stride, *value));
         let last = self.len.checked_sub(1).filter(|last| !last.is_multiple_of(self.stride));
         values.chain(last.map(|last| (last, self.last)))
     }
 
-    /// Returns the least and the largest finite number of all generations, infinite without any.
+    /// Computes the least and the largest finite number of all generations, infinite without any.
     pub(crate) fn ends(&self) -> [f64; 2] {
         self.ends
     }

@@ -36,7 +36,7 @@ fn interpolated(sorted: &[f64], share: f64) -> Option<f64> {
     Some(if below == above { below } else { (1.0 - weight) * below + weight * above })
 }
 
-/// Returns the median of values in any order.
+/// Computes the median of values in any order.
 pub(crate) fn median(values: &[f64]) -> Option<f64> {
     Quartiles::from_values(values).map(|quartiles| quartiles.median)
 }

@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-/// The width of a figure, small enough for its text to be readable on a phone.
+/// Width of a figure, small enough for its text to be readable on a phone.
 pub(crate) const WIDTH: f64 = 640.0;
 pub(crate) const MARGIN: f64 = 18.0;
-/// The height of a title.
+/// Height of a title.
 pub(crate) const HEAD: f64 = 40.0;
 pub(crate) const FONT: &str = "sans-serif";
 /// Cases in the largest figure that remains readable.
@@ -15,19 +15,19 @@ pub(crate) const MAX_CASES: usize = 100;
 pub(crate) const PAPER: &str = "#FFFFFF";
 pub(crate) const INK: &str = "#222222";
 pub(crate) const GRID: &str = "#E4E4E4";
-/// The outline of held-out cases.
+/// Outline of held-out cases.
 pub(crate) const OUTLINE: &str = "#D55E00";
 /// Colors of Okabe and Ito, distinct for color-blind readers. Their yellow is too pale.
 pub(crate) const COLORS: [&str; 6] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 
-/// The approximate width of a letter.
+/// Approximate width of a letter.
 const LETTER: f64 = 8.6;
 /// Visible letters of a label. Its tooltip has all of them.
 const LABEL_LETTERS: usize = 28;
-/// The height of a line of the legend.
+/// Height of a line of the legend.
 const LEGEND_LINE: f64 = 26.0;
 
-/// Returns the SVG file of a figure. Text remains text, so that no font is needed.
+/// Writes the SVG file of a figure. Text remains text, so that no font is needed.
 pub(crate) fn figure([width, height]: [f64; 2], content: &Markup) -> String {
     let picture = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", at(width), at(height)))
@@ -67,7 +67,7 @@ pub(crate) fn shown(label: &str) -> String {
     }
 }
 
-/// Returns the approximate width of a shortened label.
+/// Computes the approximate width of a shortened label.
 pub(crate) fn width(label: &str) -> f64 {
     LETTER * shown(label).chars().count() as f64
 }

@@ -8,11 +8,11 @@ use crate::figures::svg::{
     COLORS, GRID, HEAD, INK, MARGIN, MAX_CASES, OUTLINE, PAPER, WIDTH, at, figure, note, shown, title,
 };
 
-/// The heights of a panel's label and of the text below, and the gap between panels.
+/// Heights of a panel's label and of the text below, and the gap between panels.
 const LABEL: f64 = 24.0;
 const FOOT: f64 = 40.0;
 const GAP: f64 = 10.0;
-/// The largest side of a panel and the largest number of columns.
+/// Largest side of a panel and largest number of columns.
 const MAX_SIDE: f64 = 300.0;
 const MAX_COLUMNS: usize = 6;
 /// Points of a curve, of which longer curves keep every k-th.
@@ -22,9 +22,9 @@ const MAX_POINTS: usize = 100;
 #[derive(Debug, Default)]
 pub(crate) struct Trajectories<'a> {
     pub(crate) title: &'a str,
-    /// The names of the lower and the vertical axis.
+    /// Names of the lower and the vertical axis.
     pub(crate) axes: [String; 2],
-    /// The number of panels in a row.
+    /// Number of panels in a row.
     pub(crate) columns: usize,
     pub(crate) panels: &'a [Panel],
 }
@@ -38,7 +38,7 @@ pub(crate) struct Panel {
     pub(crate) outlined: bool,
 }
 
-/// Returns the points of a curve in a plane, thinned from its end.
+/// Draws the points of a curve in a plane, thinned from its end.
 fn line(plane: &Plane, curve: &[[f64; 2]]) -> String {
     let stride = curve.len().div_ceil(MAX_POINTS).max(1);
     plane.points(curve.iter().rev().step_by(stride).rev().copied())

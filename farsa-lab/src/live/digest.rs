@@ -11,7 +11,7 @@ pub(crate) struct Digest<R> {
     /// Receives the same calls.
     inner: R,
     state: u64,
-    /// The hash after each tick.
+    /// Hash after each tick.
     ticks: Vec<u32>,
 }
 

@@ -8,7 +8,7 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::{Displacement, Push};
 use crate::live::request::EpisodeRequest;
 
-/// The largest force [N], above which the simulated contacts lose their meaning.
+/// Largest force [N], above which the simulated contacts lose their meaning.
 const MAX_FORCE: f32 = 1e5;
 
 /// Returns the moves and pushes of a request, with body numbers of the world instead of those of the page.

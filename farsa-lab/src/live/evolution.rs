@@ -23,7 +23,7 @@ use crate::strategy::opponents::HallOfFame;
 pub(crate) struct EvolvedGeneration {
     generation: u32,
     line: Line,
-    /// The best of each population, over all generations here for a strategy that keeps its champion.
+    /// Best of each population, over all generations here for a strategy that keeps its champion.
     champions: Vec<PageIndividual>,
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Evolution {
     search: SearchState,
     info: TaskInfo,
     genotype: Genotype,
-    /// The fitness of the first champion, and the champions so far.
+    /// Fitness of the first champion, and the champions so far.
     champions: Option<(Fitness, Vec<PageIndividual>)>,
 }
 

@@ -27,26 +27,26 @@ use crate::store::replace::write_page;
 const DIGESTS_PER_TRIAL: usize = 100;
 /// Points of the fitness curve of a page.
 const CURVE_POINTS: usize = 400;
-/// The most bytes of a run's state in a page.
+/// Most bytes of a run's state in a page.
 const MAX_STATE_BYTES: usize = 400_000;
 
 /// The description of an agent for the viewer.
 #[derive(Debug, Serialize)]
 struct About {
-    /// The number of kinds of trials.
+    /// Number of kinds of trials.
     trials: usize,
     /// True if bodies can be moved.
     displaces: bool,
     /// True if bodies can be pushed.
     pushes: bool,
-    /// The names of the robots that can be recorded.
+    /// Names of the robots that can be recorded.
     robots: Vec<String>,
-    /// The names of the populations, none of a single one.
+    /// Names of the populations, none of a single one.
     populations: Vec<String>,
     individuals: Vec<AboutIndividual>,
-    /// The best and mean fitness of generations of the run.
+    /// Best and mean fitness of generations of the run.
     history: Vec<Row>,
-    /// The reason why evolution cannot continue in the page, if it cannot.
+    /// Reason why evolution cannot continue in the page, if it cannot.
     standstill: Option<String>,
 }
 
@@ -63,7 +63,7 @@ struct AboutTrial {
     steps: u32,
     fitness: f64,
     success: bool,
-    /// The number of steps from one digest to the next.
+    /// Number of steps from one digest to the next.
     stride: usize,
     digests: Vec<u32>,
 }
@@ -75,7 +75,7 @@ pub(crate) struct LiveSummary {
     file: String,
     generations: Vec<u32>,
     bytes: usize,
-    /// The summary as one line of text.
+    /// Summary as one line of text.
     pub(crate) summary: String,
 }
 

@@ -7,11 +7,11 @@ use crate::live::run_state::RunState;
 /// A run's configuration and some of its individuals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PageRun {
-    /// The content of `config.toml`.
+    /// Content of `config.toml`.
     pub(crate) config: String,
     /// At least one individual.
     pub(crate) individuals: Vec<PageIndividual>,
-    /// The state from which evolution continues, where it can.
+    /// State from which evolution continues, where it can.
     #[serde(default, rename = "standing")]
     pub(crate) state: Option<RunState>,
 }
@@ -22,7 +22,7 @@ pub(crate) struct PageIndividual {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
     pub(crate) parameters: Vec<f32>,
-    /// The opponents of each trial, one of each other population.
+    /// Opponents of each trial, one of each other population.
     pub(crate) opponents: Vec<Vec<Vec<f32>>>,
     /// Saved [`ObservationStatistics`](farsa_evo::ObservationStatistics), where observations were normalized.
     pub(crate) normalisation: Option<Vec<u8>>,

@@ -45,7 +45,7 @@ pub(crate) struct EpisodeRequest {
     pub(crate) moves: Vec<Displacement>,
     #[serde(default)]
     pub(crate) pushes: Vec<Push>,
-    /// The recorded robot, where there are several.
+    /// Recorded robot, where there are several.
     #[serde(default)]
     pub(crate) watched: Option<u32>,
 }
@@ -74,7 +74,7 @@ pub(crate) struct EpisodeAnswer {
     /// An entry of `episodes` of a page.
     #[serde(rename = "film")]
     pub(crate) episode: Box<RawValue>,
-    /// The hash of the episode after each step.
+    /// Hash of the episode after each step.
     pub(crate) digests: Vec<u32>,
     pub(crate) steps: u32,
     /// NaN if the episode failed.
@@ -99,6 +99,6 @@ pub(crate) struct SharedOutcomes {
 pub(crate) struct FreshResults {
     pub(crate) trials: usize,
     pub(crate) successes: usize,
-    /// The fitness of each trial, NaN for a failed one.
+    /// Fitness of each trial, NaN for a failed one.
     pub(crate) fitness: Vec<f64>,
 }

@@ -11,16 +11,16 @@ use crate::run::search_state::SearchState;
 pub(crate) struct RunState {
     /// Finished generations.
     pub(crate) generation: u32,
-    /// The saved state of the strategy.
+    /// Saved state of the strategy.
     pub(super) state: Bytes,
-    /// The parameters of the champions of all generations, population after population, where they are still opponents.
+    /// Parameters of the champions of all generations, population after population, where they are still opponents.
     pub(super) hall: Bytes,
-    /// The statistics of all observations, where observations are normalized.
+    /// Statistics of all observations, where observations are normalized.
     pub(super) observed: Option<Bytes>,
 }
 
 impl RunState {
-    /// Returns the state of a search, or `None` if the strategy cannot save its state.
+    /// Finds the state of a search, or `None` if the strategy cannot save its state.
     pub(crate) fn of(search: &mut SearchState) -> Option<Self> {
         let state = Bytes(search.search.snapshot()?.save());
         let hall = Bytes::from_floats(search.hall().champions().iter().flatten().flatten());

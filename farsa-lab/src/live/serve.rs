@@ -17,11 +17,11 @@ use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// The interval at which the files of a run are checked.
+/// Interval at which the files of a run are checked.
 const INTERVAL: Duration = Duration::from_millis(500);
 /// Intervals without an event after which a comment is sent, which detects closed connections.
 const KEEP_ALIVE: u32 = 20;
-/// The most concurrent requests. Each open page is one.
+/// Most concurrent requests. Each open page is one.
 const MAX_CONCURRENT: usize = 64;
 
 /// A run and the module for its page.
@@ -146,7 +146,7 @@ fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Ser
     to.flush()
 }
 
-/// Returns true if a request names this address and comes from its own page or from no page.
+/// Checks if a request names this address and comes from its own page or from no page.
 ///
 /// Images of external pages are requested without an origin, but with `Sec-Fetch-Site`. External pages may link to the page,
 /// but not to the events, which would stay open as long as the window.
@@ -167,7 +167,7 @@ fn is_same_origin(request: &Request, path: &str, address: SocketAddr) -> bool {
     hosts.any(|name| name == host) && header("Origin").is_none_or(from_here) && is_allowed
 }
 
-/// Returns the number of generations that a listener has received, from its last event or from the address.
+/// Finds the number of generations that a listener has received, from its last event or from the address.
 fn after(request: &Request, url: &str) -> Option<usize> {
     let last = request.headers().iter().find(|header| header.field.equiv("Last-Event-ID"));
     match last {

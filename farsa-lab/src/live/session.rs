@@ -27,7 +27,7 @@ use crate::run::evaluation_backend::round;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 
-/// The most fresh trials of a request, so that a page stays responsive.
+/// Most fresh trials of a request, so that a page stays responsive.
 const MAX_FRESH_TRIALS: usize = 10_000;
 /// Trials evaluated in parallel lanes.
 const LANES: usize = 8;
@@ -39,7 +39,7 @@ const LANES: usize = 8;
 /// experiments, export a session from a WebAssembly module.
 pub struct LiveSession {
     evaluator: Box<dyn Evaluator>,
-    /// The name of the experiment.
+    /// Name of the experiment.
     name: &'static str,
     seed: u64,
     individuals: Vec<Agent>,
@@ -140,12 +140,12 @@ impl LiveSession {
         self.evaluator.info().trials
     }
 
-    /// Returns true if bodies can be moved.
+    /// Checks if bodies can be moved.
     pub(crate) fn displaces(&self) -> bool {
         self.evaluator.displaces()
     }
 
-    /// Returns true if bodies can be pushed.
+    /// Checks if bodies can be pushed.
     pub(crate) fn pushes(&self) -> bool {
         self.evaluator.pushes()
     }

@@ -13,7 +13,7 @@ use crate::store::bounded::read_regular_text;
 use crate::store::directory::Directory;
 use crate::store::log;
 
-/// The most bytes of a log.
+/// Most bytes of a log.
 const MAX_LOG_BYTES: u64 = 1 << 28;
 
 /// The best and mean fitness of a generation, `None` where every evaluation failed.
@@ -37,7 +37,7 @@ pub(crate) struct SeenState {
     log: u64,
     /// Size and time of the last checkpoint that was read.
     checkpoint: Option<(u64, SystemTime)>,
-    /// The generation of the last champions.
+    /// Generation of the last champions.
     champions: Option<u32>,
 }
 

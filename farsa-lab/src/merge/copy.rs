@@ -11,7 +11,7 @@ use crate::run::laboratory::Laboratory;
 use crate::store::directory::{Directory, vacant};
 use crate::store::replace::sync_directory;
 
-/// The largest depth of folders in a run.
+/// Largest depth of folders in a run.
 const DEEPEST: usize = 8;
 
 /// The destination of a run.
@@ -68,7 +68,7 @@ fn changed(path: &Path) -> Error {
     Error::Other(format!("{}: was changed while it was copied", path.display()))
 }
 
-/// Returns whether the destination has the run. The result is `false` for a vacant destination.
+/// Checks whether the destination has the run. The result is `false` for a vacant destination.
 fn is_there(run: &Gathered<'_>, to: &Path, laboratory: &Laboratory<'_>) -> Result<bool, Error> {
     let Ok(directory) = Directory::open(to) else { return vacant(to).map(|()| false) };
     let there = Gathered::read(laboratory, directory, run.name.clone())?;

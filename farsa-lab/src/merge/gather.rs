@@ -14,7 +14,7 @@ use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Line;
 
-/// The largest depth of runs below a named directory.
+/// Largest depth of runs below a named directory.
 const DEEPEST: usize = 8;
 
 /// A run below the directories.
@@ -24,16 +24,16 @@ pub(crate) struct Gathered<'e> {
     pub(crate) name: PathBuf,
     pub(crate) plan: Plan<'e>,
     pub(crate) identity: Identity,
-    /// The lines of the finished generations.
+    /// Lines of the finished generations.
     pub(crate) lines: Vec<Line>,
-    /// The number of generations in its configuration.
+    /// Number of generations in its configuration.
     pub(crate) asked: usize,
 }
 
 /// The distinct runs, in the order in which they were found, and the duplicates.
 pub(crate) struct Gathering<'e> {
     pub(crate) runs: Vec<Gathered<'e>>,
-    /// The skipped directory, and that of the same run with at least as many generations.
+    /// Skipped directory, and that of the same run with at least as many generations.
     pub(crate) twins: Vec<[PathBuf; 2]>,
 }
 
@@ -54,7 +54,7 @@ impl<'e> Gathered<'e> {
         self.lines.len() >= self.asked
     }
 
-    /// Returns the first generation in which two runs of one configuration and seed differ. They never should.
+    /// Finds the first generation in which two runs of one configuration and seed differ. They never should.
     fn differs_from(&self, other: &Self) -> Option<usize> {
         self.lines.iter().zip(&other.lines).position(|(a, b)| a != b)
     }

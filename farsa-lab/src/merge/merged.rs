@@ -18,7 +18,7 @@ use crate::store::replace::create_results;
 pub(crate) struct Merge<'a> {
     /// Runs, or directories with runs.
     pub(crate) directories: &'a [PathBuf],
-    /// The destination of the finished runs.
+    /// Destination of the finished runs.
     pub(crate) out: Option<&'a Path>,
     /// A new file for the table.
     pub(crate) csv: Option<&'a Path>,
@@ -31,9 +31,9 @@ pub(crate) struct Merged {
     /// Duplicate directories.
     twice: Vec<[String; 2]>,
     unfinished: Vec<Unfinished>,
-    /// The created directories.
+    /// Created directories.
     copied: Vec<String>,
-    /// The directories that existed.
+    /// Directories that existed.
     there: Vec<String>,
     #[serde(skip)]
     pub(crate) table: Vec<u8>,

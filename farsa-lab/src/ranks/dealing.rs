@@ -10,12 +10,12 @@ use crate::ranks::port::Ranks;
 /// A request for a block, with the number of evaluations that the rank runs at once. The answer is the first number of the block
 /// and the number after its last. An empty block is the last.
 const WANTED: u64 = 1;
-/// The end of a rank's requests in this generation, after a stop or an error. There is no answer.
+/// End of a rank's requests in this generation, after a stop or an error. There is no answer.
 const ENOUGH: u64 = 2;
 
-/// The shortest and the longest pause between two checks for messages.
+/// Shortest and longest pause between two checks for messages.
 const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(4)];
-/// The interval at which a rank with blocks checks whether its round has to end.
+/// Interval at which a rank with blocks checks whether its round has to end.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Returns a pause that grows with the time waited. Quick answers arrive soon, and long waits cost little.

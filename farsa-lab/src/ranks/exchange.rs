@@ -59,13 +59,13 @@ impl Status {
 pub(crate) enum WorkerCommand {
     /// Continues a run from its checkpoint.
     Run {
-        /// The run's directory, for messages.
+        /// Run's directory, for messages.
         directory: String,
-        /// The content of `config.toml`.
+        /// Content of `config.toml`.
         config: String,
-        /// The content of `checkpoint.bin`.
+        /// Content of `checkpoint.bin`.
         checkpoint: Vec<u8>,
-        /// The content of `record.bin`, up to the checkpoint.
+        /// Content of `record.bin`, up to the checkpoint.
         record: Vec<u8>,
     },
     /// Ends with this exit code.
@@ -99,12 +99,12 @@ impl<'r> Exchange<'r> {
         self.ranks
     }
 
-    /// Returns whether there is only one rank.
+    /// Checks whether there is only one rank.
     pub(crate) fn is_alone(&self) -> bool {
         self.ranks.size() == 1
     }
 
-    /// Returns whether this rank is a worker.
+    /// Checks whether this rank is a worker.
     pub(crate) fn is_follower(&self) -> bool {
         self.ranks.rank() > 0
     }

@@ -8,10 +8,10 @@ use crate::error::Error;
 /// messages between the same ranks arrive in order, and none is in transit when a collective call begins. All calls come from one
 /// thread.
 pub trait Ranks {
-    /// Returns the number of this process, from 0.
+    /// Gets the number of this process, from 0.
     fn rank(&self) -> usize;
 
-    /// Returns the number of processes, at least one.
+    /// Gets the number of processes, at least one.
     fn size(&self) -> usize;
 
     /// Sends the bytes of every rank to all ranks, in the order of their numbers. The call waits for the slowest rank without

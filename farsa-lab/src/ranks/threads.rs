@@ -15,9 +15,9 @@ type Message = (usize, [u64; 2]);
 
 #[derive(Default)]
 struct State {
-    /// The messages of the current collective call, by rank.
+    /// Messages of the current collective call, by rank.
     said: BTreeMap<usize, Vec<u8>>,
-    /// The results of the last collective call, and the number of calls.
+    /// Results of the last collective call, and the number of calls.
     heard: Arc<Vec<Vec<u8>>>,
     calls: usize,
     messages: Vec<VecDeque<Message>>,

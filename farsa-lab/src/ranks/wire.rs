@@ -34,7 +34,7 @@ struct WireOutcome {
     steps: u32,
     success: bool,
     notes: Vec<(u16, WireNote)>,
-    /// The state of the observation statistics.
+    /// State of the observation statistics.
     observed: Option<Vec<u8>>,
     failure: Option<WireFailure>,
 }

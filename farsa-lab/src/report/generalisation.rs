@@ -5,15 +5,15 @@ use crate::report::outcome::probability;
 use crate::report::page::{Block, Table};
 use crate::report::run::percent;
 
-/// The least share of successful trials of a held-out case for a run to generalize to it.
+/// Least share of successful trials of a held-out case for a run to generalize to it.
 const GENERALISES: f64 = 0.75;
 
 /// The results of a group's runs in held-out cases.
 pub(crate) struct HeldOut<'r> {
     pub(crate) label: &'r str,
-    /// The names of the cases.
+    /// Names of the cases.
     pub(crate) cases: Vec<String>,
-    /// The shares of success of each run \[runs\] \[cases\].
+    /// Shares of success of each run \[runs\] \[cases\].
     pub(crate) runs: Vec<Vec<f64>>,
 }
 

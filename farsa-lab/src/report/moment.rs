@@ -3,7 +3,7 @@
 use crate::figures::chart::Across;
 use crate::report::run::{Group, Run};
 
-/// The number of points of a curve over evaluations.
+/// Number of points of a curve over evaluations.
 const POINTS: u64 = 500;
 
 /// The last moment that some runs have in common.
@@ -31,7 +31,7 @@ impl Moment {
         Self::Evaluations(runs.map(|run| evaluations(run).last().copied().unwrap_or(0)).min().unwrap_or(0))
     }
 
-    /// Returns the last finished generation of a run at this moment, if any.
+    /// Finds the last finished generation of a run at this moment, if any.
     pub(crate) fn generation(self, run: &Run<'_>) -> Option<usize> {
         match self {
             Self::Generation(generation) => Some(generation),
@@ -70,7 +70,7 @@ pub(crate) fn length(run: &Run<'_>, across: Across) -> usize {
     }
 }
 
-/// Returns the last finished generation of a run at a position on an axis.
+/// Finds the last finished generation of a run at a position on an axis.
 pub(crate) fn generation_at(run: &Run<'_>, across: Across, place: usize) -> Option<usize> {
     match across {
         Across::Generations => Some(place),

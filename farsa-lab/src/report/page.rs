@@ -38,7 +38,7 @@ pub(crate) struct Table {
 /// A picture as HTML: an `svg` element, or an `img` that holds its data.
 #[derive(Debug)]
 pub(crate) struct Figure {
-    /// The kind of the figure, for the name of its file.
+    /// Kind of the figure, for the name of its file.
     pub(crate) kind: &'static str,
     pub(crate) picture: String,
     pub(crate) caption: String,
@@ -62,7 +62,7 @@ impl Table {
 }
 
 impl Page {
-    /// Returns the page as one HTML document without external files.
+    /// Writes the page as one HTML document without external files.
     pub(crate) fn html(&self) -> String {
         let style = include_str!("report.css").replace("PAPER", PAPER).replace("INK", INK).replace("GRID", GRID);
         let page = html! {

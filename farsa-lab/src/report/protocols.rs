@@ -108,7 +108,7 @@ fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
 }
 
 impl Alike<'_> {
-    /// Returns the name of the run or group.
+    /// Gets the name of the run or group.
     fn whose(&self) -> String {
         match self.runs.as_slice() {
             [(run, _)] => run.name(),

@@ -24,22 +24,22 @@ pub(crate) struct Run<'e> {
     pub(crate) directory: Directory,
     pub(crate) plan: Plan<'e>,
     pub(crate) manifest: Manifest,
-    /// The names of the populations, none of a single one.
+    /// Names of the populations, none of a single one.
     pub(crate) populations: Vec<String>,
-    /// The finished generations, at least one.
+    /// Finished generations, at least one.
     pub(crate) lines: Vec<Line>,
-    /// The generation of the champion.
+    /// Generation of the champion.
     champion: u32,
-    /// The values of the strategy in each generation, if it reports any.
+    /// Values of the strategy in each generation, if it reports any.
     pub(crate) diagnostics: Vec<Vec<f64>>,
-    /// The figure of the strategy's archive or front, if it has one.
+    /// Figure of the strategy's archive or front, if it has one.
     pub(crate) kept: Option<String>,
-    /// The best fitness up to each generation, empty unless the champion is the best of all.
+    /// Best fitness up to each generation, empty unless the champion is the best of all.
     best: Vec<f64>,
     pub(crate) test: Option<Tested>,
-    /// The tested protocols, in the experiment's order.
+    /// Tested protocols, in the experiment's order.
     pub(crate) protocols: Vec<TestedProtocol>,
-    /// The other protocols, in the same order.
+    /// Other protocols, in the same order.
     pub(crate) other_protocols: Vec<Protocol>,
 }
 
@@ -98,12 +98,12 @@ impl<'e> Run<'e> {
         })
     }
 
-    /// Returns the directory as the user named it.
+    /// Formats the directory as the user named it.
     pub(crate) fn name(&self) -> String {
         self.directory.path().display().to_string()
     }
 
-    /// Returns the best (0), mean (1) or worst (2) fitness of a generation, of one population or of all.
+    /// Gets the best (0), mean (1) or worst (2) fitness of a generation, of one population or of all.
     ///
     /// The best is the best so far where the champion is the best of all generations.
     pub(crate) fn fitness(&self, population: Option<usize>, generation: usize, which: usize) -> f64 {
@@ -139,17 +139,17 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// Returns the share of successful trials of the test.
+    /// Gets the share of successful trials of the test.
     pub(crate) fn success(&self) -> Option<f64> {
         self.test.as_ref().map(|Tested { findings, .. }| findings.part(findings.successes))
     }
 
-    /// Returns the time of all sessions [s].
+    /// Computes the time of all sessions [s].
     pub(crate) fn seconds(&self) -> f64 {
         self.manifest.sessions.iter().map(|session| session.seconds).sum()
     }
 
-    /// Returns the value of a setting, `None` if this condition has no such setting.
+    /// Finds the value of a setting, `None` if this condition has no such setting.
     pub(crate) fn value(&self, key: &str) -> Option<&Value> {
         self.plan.settings.get(key).ok()
     }
@@ -164,7 +164,7 @@ impl<'e> Run<'e> {
 /// Runs that differ only in seed and length.
 #[derive(Clone)]
 pub(crate) struct Group<'r> {
-    /// The condition, with the settings that distinguish it from other groups of the same condition.
+    /// Condition, with the settings that distinguish it from other groups of the same condition.
     pub(crate) label: String,
     pub(crate) runs: Vec<&'r Run<'r>>,
 }
@@ -196,7 +196,7 @@ impl<'r> Group<'r> {
         groups
     }
 
-    /// Returns the condition, with the settings that distinguish this group from others of the condition.
+    /// Formats the condition, with the settings that distinguish this group from others of the condition.
     fn name(&self, groups: &[Self]) -> String {
         let Some(run) = self.runs.first() else { return String::new() };
         let plan = &run.plan;
@@ -245,7 +245,7 @@ impl<'r> Group<'r> {
     }
 }
 
-/// Returns the name of a column about a population.
+/// Formats the name of a column about a population.
 pub(crate) fn whose(what: &str, name: &str) -> String {
     if name.is_empty() { what.into() } else { format!("{what}, {name}") }
 }

@@ -6,7 +6,7 @@ use crate::report::page::Table;
 use crate::report::run::{Group, Run};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 
-/// Returns the settings in which groups differ, a column per group, or `None` without differences.
+/// Finds the settings in which groups differ, a column per group, or `None` without differences.
 pub(crate) fn differences(groups: &[Group<'_>]) -> Option<Table> {
     let mut table = Table::new(&["setting"]);
     table.head.extend(groups.iter().map(|group| group.label.clone()));

@@ -14,7 +14,7 @@ pub(crate) struct TestedProtocol {
     pub(crate) found: Vec<CaseSummary>,
     /// `None` if a process was killed before writing it.
     pub(crate) record: Option<ProtocolRecord>,
-    /// The recorded states of the same test, if any.
+    /// Recorded states of the same test, if any.
     pub(crate) states: Option<States>,
 }
 

@@ -16,14 +16,14 @@ use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::{create_results, refuse_existing};
 
-/// The default criterion of a successful run.
+/// Default criterion of a successful run.
 const HALF: Success = Success::Share(0.5);
 
 /// The summary of a written report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     runs: Vec<RunSummary>,
-    /// The written files.
+    /// Written files.
     files: Vec<String>,
 }
 
@@ -36,12 +36,12 @@ struct RunSummary {
     generations: usize,
     best: f64,
     mean: f64,
-    /// The share of successful trials, `None` without a test.
+    /// Share of successful trials, `None` without a test.
     success: Option<f64>,
 }
 
 impl Summary {
-    /// Returns the summary as a line of text.
+    /// Formats the summary as a line of text.
     pub(crate) fn text(&self) -> String {
         let runs = if self.runs.len() == 1 { "run" } else { "runs" };
         format!("{} {runs}: {}\n", self.runs.len(), OneLine(self.files.join(", ")))

@@ -27,15 +27,15 @@ const MANY: usize = 64;
 
 /// The evaluated genomes.
 pub(crate) struct Sample {
-    /// The parameters of each individual.
+    /// Parameters of each individual.
     parameters: Vec<Vec<f32>>,
-    /// The parameters of their opponents, in the order of the evaluations.
+    /// Parameters of their opponents, in the order of the evaluations.
     opponents: Vec<Vec<f32>>,
     populations: usize,
     /// Seed and generation of their trials. Later rounds increase the generation.
     seed: u64,
     generation: u32,
-    /// The run of the genomes, if they are not random.
+    /// Run of the genomes, if they are not random.
     run: Option<String>,
 }
 
@@ -99,9 +99,9 @@ impl Sample {
 pub(crate) struct Bench {
     experiment: String,
     condition: String,
-    /// The run of the genomes, `None` for random ones.
+    /// Run of the genomes, `None` for random ones.
     run: Option<String>,
-    /// The generation of the genomes.
+    /// Generation of the genomes.
     generation: u32,
     genomes: usize,
     /// Finished generations.
@@ -114,14 +114,14 @@ pub(crate) struct Bench {
     lanes: LanesInfo,
     machine: Machine,
     cores: usize,
-    /// The share of time in which the threads had a core and work, where the system reports it.
+    /// Share of time in which the threads had a core and work, where the system reports it.
     busy: Option<f64>,
     steps_per_second: f64,
-    /// The rate for each core that the threads can have had.
+    /// Rate for each core that the threads can have had.
     steps_per_second_and_core: f64,
     trials_per_second_and_core: f64,
     study: Study,
-    /// The estimate with as many cores as in the measurement.
+    /// Estimate with as many cores as in the measurement.
     generations_per_hour: f64,
     predictions: Vec<Prediction>,
 }
@@ -133,7 +133,7 @@ struct Study {
     generations: u64,
     population: u64,
     trials: u64,
-    /// The largest number of steps of a trial, or the measured mean if the experiment has none.
+    /// Largest number of steps of a trial, or the measured mean if the experiment has none.
     steps: f64,
     control_steps: f64,
 }
@@ -312,7 +312,7 @@ fn readable(seconds: f64) -> String {
     format!("{} {unit}", significant(seconds / size))
 }
 
-/// Returns the processor time of the process \[s\], with ended threads, on Linux.
+/// Gets the processor time of the process \[s\], with ended threads, on Linux.
 fn processor_seconds() -> Option<f64> {
     // The kernel's interface counts in hundredths of a second.
     ticks(&fs::read_to_string("/proc/self/stat").ok()?).map(|ticks| ticks as f64 / 100.0)

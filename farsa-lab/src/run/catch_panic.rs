@@ -12,7 +12,7 @@ const MAX_MESSAGE_CHARS: usize = 300;
 thread_local! {
     /// True if panics of this thread are caught and not printed.
     static WATCHED: Cell<bool> = const { Cell::new(false) };
-    /// The message of the last panic.
+    /// Message of the last panic.
     static SAID: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn catch_printed_panic<T>(work: impl FnOnce() -> T) -> Result<T, ()> 
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(drop_quietly)
 }
 
-/// Returns the message of a panic on one line, with its place.
+/// Formats the message of a panic on one line, with its place.
 fn message(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));

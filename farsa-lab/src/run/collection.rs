@@ -13,7 +13,7 @@ use crate::strategy::any_strategy::AnyStrategy;
 
 /// The names of the scores.
 pub(crate) struct CollectionTable {
-    /// The objectives, the fitness first.
+    /// Objectives, the fitness first.
     objectives: Vec<String>,
     measures: Vec<Parameter>,
 }

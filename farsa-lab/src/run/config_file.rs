@@ -16,9 +16,9 @@ use crate::strategy::settings::STRATEGY;
 pub(crate) const MAX_BYTES: u64 = 4_000_000;
 /// A number of keys above that of the settings of any experiment.
 const MAX_KEYS: usize = 10_000;
-/// The largest number of values of a list that a [`FileKey`] returns.
+/// Largest number of values of a list that a [`FileKey`] returns.
 const MAX_LISTED: usize = 10_000;
-/// The keys that are not settings.
+/// Keys that are not settings.
 const RESERVED: [&str; 4] = ["experiment", "definition", "condition", "seed"];
 
 /// A value with its place in a file.
@@ -33,15 +33,15 @@ pub(crate) struct Entry<T> {
 pub(crate) struct ConfigFile {
     pub(crate) name: String,
     pub(crate) experiment: Option<Entry<String>>,
-    /// The text that describes the experiment, if it comes from a file.
+    /// Text that describes the experiment, if it comes from a file.
     pub(crate) definition: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
-    /// The value of `name` in the section `strategy`.
+    /// Value of `name` in the section `strategy`.
     pub(crate) strategy: Option<Entry<String>>,
     pub(crate) seed: Option<Entry<u64>>,
     /// Keys and values in their order. An empty section is a key without a value.
     pub(crate) entries: Vec<(String, Entry<Option<Value>>)>,
-    /// The place of the first key above the limit.
+    /// Place of the first key above the limit.
     pub(crate) beyond: Option<String>,
 }
 
@@ -153,7 +153,7 @@ impl ConfigFile {
 
 /// A key of a file, for readers of more keys than those of a configuration.
 pub(crate) struct FileKey<'t> {
-    /// The key with the names of its tables.
+    /// Key with the names of its tables.
     pub(crate) key: &'t str,
     pub(crate) place: &'t str,
     /// `None` for an empty table.
@@ -196,7 +196,7 @@ impl FileKey<'_> {
     }
 }
 
-/// Returns the start of the line with a key of too many parts. The error of toml has no position for it.
+/// Finds the start of the line with a key of too many parts. The error of toml has no position for it.
 fn deepest(text: &str) -> Option<usize> {
     // The limit of toml.
     let many = |line: &str| line.matches('.').count() >= 79;
@@ -226,7 +226,7 @@ impl Lines {
 /// A key with its value, or an empty table.
 struct Key<'t> {
     offset: usize,
-    /// The number of its table, `None` for the root table.
+    /// Number of its table, `None` for the root table.
     table: Option<usize>,
     name: &'t str,
     value: Option<&'t Spanned<DeValue<'t>>>,
@@ -235,7 +235,7 @@ struct Key<'t> {
 /// The keys of a file. Their names are joined late, because a long name of a table would be repeated in each key.
 #[derive(Default)]
 struct Keys<'t> {
-    /// The name and the parent of each table.
+    /// Name and parent of each table.
     tables: Vec<(Option<usize>, &'t str)>,
     found: Vec<Key<'t>>,
 }
@@ -257,7 +257,7 @@ impl<'t> Keys<'t> {
         }
     }
 
-    /// Returns the full key, shortened if it is longer than that of any setting.
+    /// Formats the full key, shortened if it is longer than that of any setting.
     fn path(&self, key: &Key<'t>) -> String {
         let (mut names, mut table) = (vec![key.name], key.table);
         while let Some(&(above, name)) = table.and_then(|number| self.tables.get(number)) {

@@ -12,13 +12,13 @@ pub(crate) type Heard<'t> = dyn Fn(usize, Option<&Outcome>) + Sync + 't;
 
 /// A backend that runs the evaluations of a generation.
 pub(crate) trait EvaluationBackend {
-    /// Returns the experiment.
+    /// Gets the experiment.
     fn evaluator(&self) -> &dyn Evaluator;
 
-    /// Returns the data of the task.
+    /// Gets the data of the task.
     fn info(&self) -> &TaskInfo;
 
-    /// Returns the genotype of the experiment's parameters.
+    /// Gets the genotype of the experiment's parameters.
     fn genotype(&self) -> &Genotype;
 
     /// Runs `count` evaluations and returns the outcomes in order.

@@ -30,7 +30,7 @@ use crate::store::log::Line;
 use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
 
-/// The time between two checkpoints. After every short generation a checkpoint would cost more than the generation.
+/// Time between two checkpoints. After every short generation a checkpoint would cost more than the generation.
 const UNSAVED: Duration = Duration::from_secs(1);
 
 /// Evolves the run in a directory up to its last generation and returns a summary.
@@ -97,7 +97,7 @@ pub(crate) fn continue_locked(
 /// A run in progress.
 struct Run<'d> {
     directory: &'d Directory,
-    /// The name of this program.
+    /// Name of this program.
     program: &'d str,
     title: String,
     /// Names of the populations.
@@ -106,14 +106,14 @@ struct Run<'d> {
     search_state: SearchState,
     record: RecordWriter,
     files: RunFiles,
-    /// The curves of `fitness.svg`.
+    /// Curves of `fitness.svg`.
     curves: LogCurves,
     /// Number of evaluations that failed in this process, and the first of them.
     failed: (u64, Option<FailedEvaluation>),
     /// `None` for a strategy without an archive or front.
     collection: Option<CollectionTable>,
     manifest: Manifest,
-    /// The champions, from the first generation of this process. If they are the best of all generations, from the start.
+    /// Champions, from the first generation of this process. If they are the best of all generations, from the start.
     champions: Option<Champions>,
     started: Instant,
 }

@@ -25,10 +25,10 @@ pub(crate) struct Opponents<'g> {
 /// A generation to evaluate.
 #[derive(Clone, Copy)]
 pub(crate) struct Generation<'g> {
-    /// The parameters of every individual.
+    /// Parameters of every individual.
     pub(crate) parameters: &'g [Vec<f32>],
     pub(crate) opponents: Opponents<'g>,
-    /// The observation statistics of the previous generations, where observations are normalized.
+    /// Observation statistics of the previous generations, where observations are normalized.
     pub(crate) normalisation: Option<&'g ObservationStatistics>,
     /// Seed, generation, and the number of the first individual. The other numbers and the trial are set for each evaluation.
     pub(crate) id: EpisodeId,

@@ -77,7 +77,7 @@ pub struct Template {
     pub text: &'static str,
 }
 
-/// The extension of files that describe experiments.
+/// Extension of files that describe experiments.
 pub(crate) const FILE: &str = ".toml";
 /// Bytes of the largest experiment file.
 pub(crate) const MAX_BYTES: u64 = 1_000_000;
@@ -113,7 +113,7 @@ impl<'e> Laboratory<'e> {
         Self { module: Some((module, lacking)), ..self }
     }
 
-    /// Returns the module of live pages and the worlds that it lacks.
+    /// Gets the module of live pages and the worlds that it lacks.
     pub(crate) fn live_module(&self) -> Option<(&'static [u8], &'static [&'static str])> {
         self.module
     }

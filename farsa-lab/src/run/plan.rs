@@ -21,7 +21,7 @@ use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
 use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
-/// The largest seed of a run. Bit 63 marks the trials of a test.
+/// Largest seed of a run. Bit 63 marks the trials of a test.
 pub(crate) const MAX_SEED: u64 = i64::MAX as u64;
 
 /// Bytes of the largest file that an experiment names.
@@ -32,11 +32,11 @@ const MAX_BYTES: u64 = 1_000_000_000;
 pub(crate) struct Plan<'e> {
     pub(crate) experiment: &'e dyn Experiment,
     pub(crate) condition: String,
-    /// The requested strategy, if it is not the default of the experiment.
+    /// Requested strategy, if it is not the default of the experiment.
     chosen: Option<&'static dyn StrategyDefinition>,
     pub(crate) seed: u64,
     pub(crate) settings: Settings,
-    /// The settings with another world, for trials outside the world of the run. They are not part of the identity.
+    /// Settings with another world, for trials outside the world of the run. They are not part of the identity.
     pub(crate) elsewhere: Option<Settings>,
     pub(crate) limits: Limits,
 }
@@ -113,7 +113,7 @@ impl<'e> Plan<'e> {
         self.chosen.unwrap_or_else(|| self.experiment.strategy(&self.condition))
     }
 
-    /// Returns the name of the strategy, if it is not the default of the experiment.
+    /// Gets the name of the strategy, if it is not the default of the experiment.
     pub(crate) fn chosen_strategy(&self) -> Option<&'static str> {
         self.chosen.map(StrategyDefinition::name)
     }
@@ -244,7 +244,7 @@ impl<'e> Plan<'e> {
         u32::try_from(self.settings.whole(GENERATIONS)?).map_err(|_| Error::setting(GENERATIONS, "is too large"))
     }
 
-    /// Returns the name of the run's directory below `runs/`.
+    /// Formats the name of the run's directory below `runs/`.
     pub(crate) fn name(&self) -> String {
         let seed = self.seed.to_string();
         let parts = [self.experiment.name(), &self.condition, self.chosen_strategy().unwrap_or_default(), &seed];

@@ -27,7 +27,7 @@ pub(crate) struct Pool<'e> {
     info: TaskInfo,
     genotype: Genotype,
     maker: Maker<'e>,
-    /// The ranks that share the evaluations.
+    /// Ranks that share the evaluations.
     exchange: Rc<Exchange<'e>>,
 }
 
@@ -207,7 +207,7 @@ pub(crate) struct Stoppable<'p, 'e> {
     stop: &'p AtomicBool,
 }
 
-/// The interval, in generations, at which ranks compare their evaluations.
+/// Interval, in generations, at which ranks compare their evaluations.
 const COMPARED: u32 = 10;
 
 impl EvaluationBackend for Stoppable<'_, '_> {

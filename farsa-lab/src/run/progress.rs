@@ -72,7 +72,7 @@ impl Progress {
     }
 }
 
-/// The best, the mean and, if it fits, the worst of each population, and the number of failures.
+/// Formats the best, the mean and, if it fits, the worst of each population, and the number of failures.
 fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
     let format_population = |(name, statistics): &(&str, &Statistics)| {
         let Statistics { best, mean, worst, failed, .. } = statistics;

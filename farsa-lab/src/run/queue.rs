@@ -18,9 +18,9 @@ use crate::store::lock::Lock;
 /// One of the runs.
 pub(crate) struct Member<'e> {
     pub(crate) plan: Plan<'e>,
-    /// The directory of the run.
+    /// Directory of the run.
     pub(crate) path: PathBuf,
-    /// The name of the run in messages.
+    /// Name of the run in messages.
     pub(crate) name: String,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Queue<'q, 'e> {
     /// Returns the run of a number below `count`.
     pub(crate) member: &'q dyn Fn(usize) -> Result<Member<'e>, Error>,
     pub(crate) pool: &'q dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
-    /// The name of this program.
+    /// Name of this program.
     pub(crate) program: &'q str,
     pub(crate) quiet: bool,
 }
@@ -142,7 +142,7 @@ impl State {
         matches!(self, Self::Elsewhere(_))
     }
 
-    /// Returns the champion's fitness of a finished run.
+    /// Gets the champion's fitness of a finished run.
     pub(crate) fn fitness(&self) -> Option<f64> {
         match self {
             Self::Finished { summary, .. } => summary.champion.as_ref().map(|champion| champion.fitness),
@@ -207,7 +207,7 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
     }))
 }
 
-/// Returns the command line of this process, quoted for a shell.
+/// Formats the command line of this process, quoted for a shell.
 fn again(program: &str) -> String {
     let arguments = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     std::iter::once(quoted(program)).chain(arguments).collect::<Vec<_>>().join(" ")

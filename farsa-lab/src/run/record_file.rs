@@ -28,9 +28,9 @@ struct Entry<'e> {
     /// [`RecordEntry::state`].
     #[serde(borrow)]
     state: Option<&'e [u8]>,
-    /// The line of the log.
+    /// Line of the log.
     line: Line,
-    /// The diagnostics of the strategy.
+    /// Diagnostics of the strategy.
     diagnostics: Vec<f64>,
 }
 
@@ -42,13 +42,13 @@ pub(crate) struct RunRecord {
     pub(crate) lines: Vec<Line>,
     /// True if the champion is the best of all generations instead of the last one's.
     pub(crate) keeps_champion: bool,
-    /// The observation statistics after each generation, where observations are normalized.
+    /// Observation statistics after each generation, where observations are normalized.
     pub(crate) observed: Vec<ObservationStatistics>,
-    /// The diagnostics of each generation, for a strategy that has some.
+    /// Diagnostics of each generation, for a strategy that has some.
     pub(crate) diagnostics: Vec<Vec<f64>>,
     /// Bytes of the longest entry.
     longest: usize,
-    /// The valid content of the file.
+    /// Valid content of the file.
     content: Vec<u8>,
 }
 

@@ -121,7 +121,7 @@ struct ChampionsNormalised {
     generation: u32,
     words: Vec<BestOf<u16>>,
     reals: Vec<BestOf<f64>>,
-    /// The state of [`ObservationStatistics`].
+    /// State of [`ObservationStatistics`].
     normalisation: Vec<u8>,
 }
 
@@ -241,7 +241,7 @@ pub(crate) fn write_imported(
 }
 
 impl Champions {
-    /// Returns the fitness of the first population's champion.
+    /// Gets the fitness of the first population's champion.
     pub(crate) fn fitness(&self) -> Option<Fitness> {
         self.best.first().map(|best| best.fitness)
     }

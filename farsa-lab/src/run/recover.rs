@@ -27,7 +27,7 @@ use crate::strategy::history::History;
 pub(crate) struct RunFiles {
     pub(crate) record: RunRecordWriter,
     pub(crate) log: Log,
-    /// The new name of a log that another program had changed.
+    /// New name of a log that another program had changed.
     pub(crate) changed_log: Option<PathBuf>,
     /// `None` for a strategy whose individuals have no parents.
     pub(crate) lineage: Option<Lineage>,

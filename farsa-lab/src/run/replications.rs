@@ -19,9 +19,9 @@ use crate::run::text_table::text_table;
 /// The selected replications of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Selection {
-    /// The number of replications, at least one. The first has the seed of the plan, and each next one the next seed.
+    /// Number of replications, at least one. The first has the seed of the plan, and each next one the next seed.
     pub(crate) count: u32,
-    /// The number of a single selected replication, from 1.
+    /// Number of a single selected replication, from 1.
     pub(crate) only: Option<u32>,
 }
 
@@ -30,9 +30,9 @@ pub(crate) struct Selection {
 pub(crate) struct Replications {
     #[serde(rename = "replications")]
     runs: Vec<Replication>,
-    /// The median fitness of the champions.
+    /// Median fitness of the champions.
     median: Option<f64>,
-    /// The directories claimed by other processes.
+    /// Directories claimed by other processes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     elsewhere: Vec<String>,
 }

@@ -14,26 +14,26 @@ use crate::strategy::opponents::{HallOfFame, Pairing, chosen};
 /// The state of a search.
 pub(crate) struct SearchState {
     pub(crate) search: AnyStrategy,
-    /// The opponents from previous generations, for several populations.
+    /// Opponents from previous generations, for several populations.
     hall: HallOfFame,
-    /// The observation statistics of all generations so far, where observations are normalized.
+    /// Observation statistics of all generations so far, where observations are normalized.
     pub(crate) observed: Option<ObservationStatistics>,
     seed: u64,
 }
 
 /// The result of a generation.
 pub(crate) struct GenerationResult {
-    /// The reported fitness of every individual.
+    /// Reported fitness of every individual.
     pub(crate) fitness: Vec<Fitness>,
     pub(crate) failed: Vec<FailedEvaluation>,
-    /// The statistics of all individuals, and of each population where there are several.
+    /// Statistics of all individuals, and of each population where there are several.
     pub(crate) statistics: Statistics,
     pub(crate) each: Vec<Statistics>,
-    /// The best of each population.
+    /// Best of each population.
     pub(crate) best: Vec<Best>,
-    /// The parameters of the opponents of each of these in each trial.
+    /// Parameters of the opponents of each of these in each trial.
     pub(crate) met: Vec<Vec<Vec<Vec<f32>>>>,
-    /// The normalization of its observations, where there is one.
+    /// Normalization of its observations, where there is one.
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 

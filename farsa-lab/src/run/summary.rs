@@ -17,16 +17,16 @@ pub(crate) struct Summary {
     /// Evaluations by this process, without those of earlier sessions.
     pub(crate) evaluations: u64,
     pub(crate) seconds: f64,
-    /// The champion of the first population. `None` if no generation was left.
+    /// Champion of the first population. `None` if no generation was left.
     pub(crate) champion: Option<Winner>,
-    /// The champions of all populations, if there are several.
+    /// Champions of all populations, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) champions: Vec<Winner>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Winner {
-    /// The population, if there are several.
+    /// Population, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) population: Option<String>,
     pub(crate) generation: u32,

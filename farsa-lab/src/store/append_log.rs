@@ -24,12 +24,12 @@ impl Mark {
         Self { bytes: content.len() as u64, crc: Crc32::new().with(content).finish() }
     }
 
-    /// Returns whether the file was empty or missing.
+    /// Checks whether the file was empty or missing.
     pub(crate) fn is_empty(self) -> bool {
         self.bytes == 0
     }
 
-    /// Returns the content up to this mark, or `None` if it was changed.
+    /// Finds the content up to this mark, or `None` if it was changed.
     pub(crate) fn within(self, content: &[u8]) -> Option<&[u8]> {
         let prefix = content.get(..usize::try_from(self.bytes).ok()?)?;
         (Self::of(prefix) == self).then_some(prefix)

@@ -15,16 +15,16 @@ use crate::error::Error;
 use crate::store::bounded::read_regular;
 use crate::store::replace::replace;
 
-/// The version of the layout and of all contents.
+/// Version of the layout and of all contents.
 const FORMAT: u32 = 1;
 const HEAD: usize = 8 + 4 + 8;
 const CHECKSUM: usize = 4;
 
 /// The content of a checksummed file.
 pub(crate) trait Checksummed: Serialize + DeserializeOwned {
-    /// The first bytes of the file.
+    /// First bytes of the file.
     const MAGIC: [u8; 8];
-    /// The name of the kind in errors.
+    /// Name of the kind in errors.
     const KIND: &'static str;
     /// Bytes of the largest file.
     const MAX_BYTES: u64;

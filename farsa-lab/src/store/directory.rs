@@ -13,7 +13,7 @@ use crate::store::temporary_file;
 #[derive(Debug, Clone)]
 pub(crate) struct Directory {
     path: PathBuf,
-    /// The end of the names of a test's files: empty, or a hyphen and another world than the run's.
+    /// End of the names of a test's files: empty, or a hyphen and another world than the run's.
     tests: String,
 }
 

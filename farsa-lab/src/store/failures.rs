@@ -14,9 +14,9 @@ const MAX_BYTES: u64 = 1 << 32;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FailedEvaluation {
     pub(crate) generation: u32,
-    /// The number of the individual, counted through all populations.
+    /// Number of the individual, counted through all populations.
     pub(crate) individual: u32,
-    /// The first failed trial. `None` when only the fitness failed.
+    /// First failed trial. `None` when only the fitness failed.
     pub(crate) trial: Option<u32>,
     pub(crate) why: String,
 }

@@ -14,7 +14,7 @@ use crate::experiment::settings::Value;
 /// [`Experiment::values_version`](crate::Experiment::values_version).
 pub const VALUES_VERSION: u32 = 3;
 
-/// The start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.
+/// Start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.
 pub(crate) const FILE: &str = "CRC-32 of ";
 
 /// Everything that the results of a run depend on. It is part of every file that is only valid for one run.
@@ -60,7 +60,7 @@ impl Identity {
         }
     }
 
-    /// Returns the files that the results depend on, with the checksums of their content.
+    /// Iterates over the files that the results depend on, with the checksums of their content.
     pub(crate) fn files(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.settings.iter().filter_map(|(key, value)| Some((key.strip_prefix(FILE)?, value)))
     }

@@ -17,7 +17,7 @@ const MAX_BYTES: u64 = 1 << 32;
 /// The lineage of a run in progress.
 pub(crate) struct Lineage(AppendLog);
 
-/// Returns the lines of the current generation, which are empty for individuals without parents.
+/// Formats the lines of the current generation, which are empty for individuals without parents.
 pub(crate) fn rows(strategy: &AnyStrategy) -> String {
     let mut text = String::new();
     let Some(genealogy) = strategy.genealogy() else { return text };

@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use crate::error::Error;
 
-/// The file that a process locks while it continues a run.
+/// File that a process locks while it continues a run.
 pub(crate) const RUN_LOCK: &str = ".run.lock";
-/// The file that a process locks while it writes the files of a test.
+/// File that a process locks while it writes the files of a test.
 const TEST_LOCK: &str = ".test.lock";
-/// The number of tries for the lock of a test, and the pause between them. Two small files are written under it.
+/// Number of tries for the lock of a test, and the pause between them. Two small files are written under it.
 const ATTEMPTS: usize = 200;
 const PAUSE: Duration = Duration::from_millis(50);
 

@@ -11,12 +11,12 @@ use crate::error::Error;
 use crate::store::append_log::AppendLog;
 use crate::store::bounded::read_regular_if_present;
 
-/// The first line for one population.
+/// First line for one population.
 const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
 /// Bytes of the largest log that is compared with the record.
 const MAX_BYTES: u64 = 1 << 32;
 
-/// Returns the first line, with three more columns for each of several populations.
+/// Formats the first line, with three more columns for each of several populations.
 pub(crate) fn header(populations: usize) -> String {
     let mut text = HEADER.trim_end().to_owned();
     for population in (0..populations).filter(|_| populations > 1) {
@@ -33,7 +33,7 @@ pub(crate) type Row = [f64; 3];
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Line {
     pub(crate) row: Row,
-    /// The row of each population, where there are several.
+    /// Row of each population, where there are several.
     pub(crate) each: Vec<Row>,
     pub(crate) evaluations: u64,
     pub(crate) failed: u64,

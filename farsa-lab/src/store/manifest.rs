@@ -15,7 +15,7 @@ use crate::store::bounded::read_regular_text;
 use crate::store::identity::Identity;
 use crate::store::replace::replace;
 
-/// The version of the format.
+/// Version of the format.
 const FORMAT: u32 = 1;
 /// Bytes of the largest manifest. A session takes about five hundred.
 const MAX_BYTES: u64 = 64 << 20;
@@ -23,7 +23,7 @@ const MAX_BYTES: u64 = 64 << 20;
 /// The manifest of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Manifest {
-    /// The version of the format.
+    /// Version of the format.
     pub(crate) format: u32,
     pub(crate) experiment: String,
     pub(crate) condition: String,
@@ -32,10 +32,10 @@ pub(crate) struct Manifest {
     pub(crate) values_version: u32,
     /// [`crate::Experiment::values_version`].
     pub(crate) experiment_version: u32,
-    /// The files that trials depend on, with the CRC-32 of their content.
+    /// Files that trials depend on, with the CRC-32 of their content.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) files: BTreeMap<String, String>,
-    /// The files of imported genotypes.
+    /// Files of imported genotypes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) imported: Vec<String>,
     /// One session for the start and one for each resumption.
@@ -48,7 +48,7 @@ pub(crate) struct Session {
     pub(crate) farsa: String,
     pub(crate) machine: Machine,
     pub(crate) threads: usize,
-    /// The number of lanes in each thread, and their instructions.
+    /// Number of lanes in each thread, and their instructions.
     #[serde(flatten)]
     pub(crate) lanes: LanesInfo,
     /// Start time in seconds since 1970, UTC.

@@ -112,7 +112,7 @@ pub(crate) fn write_page(path: &Path, html: &str) -> Result<(), Error> {
     replace(path, html.as_bytes())
 }
 
-/// Returns whether a file is a page of FARSA.
+/// Checks whether a file is a page of FARSA.
 fn is_page(path: &Path) -> bool {
     if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
         return false;

@@ -13,7 +13,7 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 
 use crate::store::lock::{self, RUN_LOCK};
 
-/// The end of all temporary names.
+/// End of all temporary names.
 const SUFFIX: &str = ".new";
 /// Number of random letters and digits in a temporary name.
 const RANDOM: usize = 12;
@@ -30,7 +30,7 @@ pub(crate) fn parent(path: &Path) -> &Path {
     }
 }
 
-/// Returns the start of the temporary names of a file or directory.
+/// Formats the start of the temporary names of a file or directory.
 fn prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let end = (0..=name.len().min(MAX_NAME_BYTES)).rev().find(|end| name.is_char_boundary(*end)).unwrap_or(0);
@@ -124,7 +124,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = (PathBuf, String)> {
     entries.filter_map(|entry| Some((entry.path(), entry.file_name().into_string().ok()?)))
 }
 
-/// Returns whether a name has the form that [`create`] gives: the prefix, the rest of a final name, and random letters.
+/// Checks whether a name has the form that [`create`] gives: the prefix, the rest of a final name, and random letters.
 fn is_temporary(name: &str, prefix: &str) -> bool {
     let Some((start, random)) = name.strip_suffix(SUFFIX).and_then(|rest| rest.rsplit_once('.')) else { return false };
     let complete = start.len() + 1 >= prefix.len() && name.starts_with(prefix) && start.len() > 1;

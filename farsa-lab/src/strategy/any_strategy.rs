@@ -71,7 +71,7 @@ impl AnyStrategy {
         }
     }
 
-    /// The genome of an individual of the current generation.
+    /// Finds the genome of an individual of the current generation.
     pub(crate) fn genome(&self, individual: usize) -> Option<Genome> {
         match self {
             Self::Words(strategy) => strategy.ask().get(individual).map(|genes| Genome::Words(genes.to_vec())),
@@ -109,12 +109,12 @@ impl AnyStrategy {
         each!(self, strategy => strategy.score_shape())
     }
 
-    /// Returns the number of opponents per individual, if the strategy chooses them.
+    /// Gets the number of opponents per individual, if the strategy chooses them.
     pub(crate) fn opponents(&self) -> Option<usize> {
         each!(self, strategy => strategy.opponents().map(Opponents::count))
     }
 
-    /// Returns the genomes of the opponents that the strategy chose for a trial, one of each other population.
+    /// Finds the genomes of the opponents that the strategy chose for a trial, one of each other population.
     pub(crate) fn opponents_of(&self, individual: usize, trial: u32) -> Option<Vec<Genome>> {
         let number = |count: usize| trial as usize % count.max(1);
         Some(match self {
@@ -131,12 +131,12 @@ impl AnyStrategy {
         })
     }
 
-    /// Returns the archive or front, if there is one.
+    /// Gets the archive or front, if there is one.
     pub(crate) fn collection(&self) -> Option<&dyn Collection> {
         each!(self, strategy => strategy.collection())
     }
 
-    /// Returns whether the champion is the best of all generations instead of the last.
+    /// Checks whether the champion is the best of all generations instead of the last.
     pub(crate) fn champion_is_best_ever(&self) -> bool {
         each!(self, strategy => strategy.champion_is_best_ever())
     }
@@ -149,7 +149,7 @@ impl AnyStrategy {
         })
     }
 
-    /// The same without a record.
+    /// Does the same without a record.
     pub(crate) fn tell_unrecorded(&mut self, judgements: &Scores) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {
             ScoreShape::FITNESS => strategy.tell(&judgements.fitness()),
@@ -162,7 +162,7 @@ impl AnyStrategy {
         each!(self, strategy => record.rebuild(strategy.as_mut(), generation))
     }
 
-    /// The genomes of a generation of a record.
+    /// Rebuilds the genomes of a generation of a record.
     pub(crate) fn genomes(&mut self, record: &Record, generation: u32) -> Result<Genomes, EvoError> {
         Ok(match self {
             Self::Words(strategy) => Genomes::Words(record.genomes(strategy.as_mut(), generation)?),
@@ -210,7 +210,7 @@ pub(crate) enum Genomes {
 }
 
 impl Genomes {
-    /// The genome of an individual.
+    /// Finds the genome of an individual.
     pub(crate) fn get(&self, individual: usize) -> Option<Genome> {
         match self {
             Self::Words(all) => all.get(individual).map(|genes| Genome::Words(genes.to_vec())),

@@ -17,7 +17,7 @@ pub(crate) struct History<'h> {
     past: Past<'h>,
     /// Statistics of the observations before each generation, if observations are normalized.
     observations: Vec<ObservationStatistics>,
-    /// The generation whose best is the run's champion, where that is not the last one's.
+    /// Generation whose best is the run's champion, where that is not the last one's.
     champion: Option<u32>,
 }
 
@@ -35,12 +35,12 @@ impl<'h> History<'h> {
         Self { path, past: Past::RunRecord { record, fresh }, observations: Vec::new(), champion: None }
     }
 
-    /// The same with what was observed before each generation.
+    /// Sets the observations before each generation.
     pub(crate) fn with_observations(self, observations: Vec<ObservationStatistics>) -> Self {
         Self { observations, ..self }
     }
 
-    /// The same, with the generation whose best is the run's champion.
+    /// Sets the generation whose best is the run's champion.
     pub(crate) fn with_champion(self, champion: Option<u32>) -> Self {
         Self { champion, ..self }
     }
@@ -85,7 +85,7 @@ impl<'h> History<'h> {
         }
     }
 
-    /// The best individual of a population in a finished generation, counted through all populations.
+    /// Finds the best individual of a population in a finished generation, counted through all populations.
     pub(crate) fn champion(&self, population: usize, generation: u32) -> Option<usize> {
         match &self.past {
             Past::RunRecord { record, .. } => record.champion(population, generation),
@@ -134,7 +134,7 @@ impl<'h> History<'h> {
         Ok(())
     }
 
-    /// The genomes of individuals of finished generations, in the order asked for.
+    /// Rebuilds the genomes of individuals of finished generations, in the order asked for.
     ///
     /// # Errors
     /// As [`visit`](Self::visit), and for an individual that does not exist.

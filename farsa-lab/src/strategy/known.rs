@@ -40,7 +40,7 @@ pub fn strategies() -> &'static [&'static dyn StrategyDefinition] {
     &KNOWN
 }
 
-/// The strategy of a name.
+/// Gets the strategy of a name.
 ///
 /// # Errors
 /// [`Error::Setting`] with the nearest name.

@@ -82,11 +82,11 @@ struct Trainee {
     latest: Option<Iteration>,
     /// State that iterations change.
     state: Vec<f64>,
-    /// The individual alone.
+    /// Individual alone.
     population: Population,
 }
 
-/// The individual of what has been learned.
+/// Builds the individual of what has been learned.
 fn individual(genotype: &Genotype, learned: &[f64]) -> Result<Population, EvoError> {
     let expected = genotype.genes();
     let lengths = || EvoError::lengths(learned.len(), expected, expected);

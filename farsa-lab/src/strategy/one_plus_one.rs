@@ -58,7 +58,7 @@ impl StrategyDefinition for OnePlusOne {
     }
 }
 
-/// The configuration for the genomes of an experiment.
+/// Builds the configuration for the genomes of an experiment.
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together, [`Error::Other`] for genomes that cannot be.

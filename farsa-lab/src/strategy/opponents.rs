@@ -28,7 +28,7 @@ pub(crate) struct Pairing {
 }
 
 impl Pairing {
-    /// Returns the generation whose champions are the opponents in a trial. In the first half of the trials, trial t
+    /// Finds the generation whose champions are the opponents in a trial. In the first half of the trials, trial t
     /// uses generation g - 1 - t. In the other half the trials use the middles of equal parts of all earlier
     /// generations.
     ///
@@ -46,7 +46,7 @@ impl Pairing {
         }
     }
 
-    /// Returns the opponents of an individual in a trial, one of each other population: champions, or without a
+    /// Iterates over the opponents of an individual in a trial, one of each other population: champions, or without a
     /// champion the individual of the trial's number.
     pub(crate) fn opponents(self, individual: usize, trial: u32) -> impl Iterator<Item = Opponent> {
         let Self { populations, size, .. } = self;
@@ -59,7 +59,7 @@ impl Pairing {
     }
 }
 
-/// The genomes that an individual met in each of some trials, rebuilt.
+/// Rebuilds the genomes that an individual met in each of some trials, rebuilt.
 pub(crate) fn opponents_of(
     history: &History<'_>,
     generation: u32,
@@ -86,7 +86,7 @@ pub(crate) fn opponents_of(
     Ok(history.genomes(&places)?.chunks(others).map(<[_]>::to_vec).collect())
 }
 
-/// Returns the parameters of the opponents that a strategy chose, trial after trial, individual after individual.
+/// Finds the parameters of the opponents that a strategy chose, trial after trial, individual after individual.
 /// Returns none if it chooses none, or for genomes of another experiment.
 pub(crate) fn chosen(search: &AnyStrategy, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
     let mut parameters = Vec::new();
@@ -108,7 +108,7 @@ pub(crate) struct HallOfFame {
 }
 
 impl HallOfFame {
-    /// The champions of all finished generations.
+    /// Gets the champions of all finished generations.
     pub(crate) fn before(history: &History<'_>, genotype: &Genotype) -> Result<Self, Error> {
         let populations = history.populations();
         let mut hall = Self::default();
@@ -142,7 +142,7 @@ impl HallOfFame {
         }
     }
 
-    /// Returns the parameters of all opponents, trial after trial, individual after individual. Returns none if an
+    /// Finds the parameters of all opponents, trial after trial, individual after individual. Returns none if an
     /// opponent is missing.
     pub(crate) fn opponents<'g>(&'g self, meeting: Pairing, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
         let mut parameters = Vec::new();

@@ -11,7 +11,7 @@ pub(crate) const GENERATIONS: &str = "evolution.generations";
 pub(crate) const POPULATION: &str = "evolution.population";
 /// Setting of normalized observations.
 pub(crate) const NORMALISE: &str = "strategy.normalise_observations";
-/// The name of a strategy that is not the experiment's own.
+/// Name of a strategy that is not the experiment's own.
 pub(crate) const STRATEGY: &str = "strategy.name";
 /// Effect of mutation on a bit.
 pub(crate) const MUTATION: &str = "evolution.mutation";
@@ -41,7 +41,7 @@ pub(crate) fn chosen(own: Vec<Setting>, name: &str, strategy: Vec<Setting>) -> V
     table
 }
 
-/// The mutation that [`MUTATION`] names.
+/// Gets the mutation that [`MUTATION`] names.
 pub(crate) fn mutation(settings: &Settings) -> Result<Mutation, Error> {
     Ok(if settings.word(MUTATION)? == "flip" { Mutation::Flip } else { Mutation::Resample })
 }

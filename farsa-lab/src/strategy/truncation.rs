@@ -61,7 +61,7 @@ impl StrategyDefinition for Truncation {
     }
 }
 
-/// The truncation algorithm's configuration for the genomes of an experiment.
+/// Builds the truncation algorithm's configuration for the genomes of an experiment.
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together.

@@ -12,7 +12,7 @@ use crate::run::plan::Plan;
 use crate::strategy::settings::STRATEGY;
 use crate::sweep::sweep_file::{Axis, SweepFile};
 
-/// The largest numbers of points, and of runs of all points.
+/// Largest numbers of points, and of runs of all points.
 const MAX_POINTS: usize = 10_000;
 const MAX_RUNS: usize = 100_000;
 /// Bytes of the longest name that is not cut. File systems allow 255, and temporary names are longer.
@@ -93,7 +93,7 @@ impl<'f, 'e> Points<'f, 'e> {
         }
     }
 
-    /// Returns the keys that vary with their values at a point. The last key varies first.
+    /// Iterates over the keys that vary with their values at a point. The last key varies first.
     fn values(&self, point: usize) -> impl Iterator<Item = (&'f Entry<String>, &'f Entry<Value>)> {
         let mut rest = point;
         let mut rows: Vec<(&Axis, usize)> = Vec::new();

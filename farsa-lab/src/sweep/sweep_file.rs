@@ -9,17 +9,17 @@ use crate::run::plan::MAX_SEED;
 use crate::store::bounded;
 use crate::strategy::settings::STRATEGY;
 
-/// The largest number of replications of a point, and of values in a list.
+/// Largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
 
 /// A configuration in which some settings have several values.
 #[derive(Debug)]
 pub(crate) struct SweepFile {
-    /// The settings common to all points.
+    /// Settings common to all points.
     pub(crate) base: ConfigFile,
-    /// The settings that vary. Each row of one axis is combined with each row of the others.
+    /// Settings that vary. Each row of one axis is combined with each row of the others.
     pub(crate) axes: Vec<Axis>,
-    /// The distinct seeds of every point, at least one.
+    /// Distinct seeds of every point, at least one.
     pub(crate) seeds: Vec<u64>,
 }
 

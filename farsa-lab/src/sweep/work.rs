@@ -23,7 +23,7 @@ pub(crate) struct Sweep<'s, 'e> {
     points: Points<'s, 'e>,
     seeds: &'s [u64],
     root: &'s Path,
-    /// The last requested point. Its runs follow each other.
+    /// Last requested point. Its runs follow each other.
     latest: RefCell<Option<(usize, Plan<'e>)>>,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Found {
 
 #[derive(Debug, Serialize)]
 struct Point {
-    /// The number of the point, from 1, as in `--point`.
+    /// Number of the point, from 1, as in `--point`.
     #[serde(rename = "point")]
     number: usize,
     directory: String,
@@ -50,9 +50,9 @@ struct Point {
     replications: usize,
     /// Number of finished runs.
     runs: Vec<Summary>,
-    /// The median fitness of the champions.
+    /// Median fitness of the champions.
     median: Option<f64>,
-    /// The directories claimed by other processes.
+    /// Directories claimed by other processes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     elsewhere: Vec<String>,
 }

@@ -47,7 +47,7 @@ pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [
     ([m[0][0], m[1][1], m[2][2]], rotation_of_axes(axes))
 }
 
-/// The rotation [x, y, z, w] that takes x, y and z to these perpendicular unit vectors.
+/// Computes the rotation [x, y, z, w] that takes x, y and z to these perpendicular unit vectors.
 pub(crate) fn rotation_of_axes([x, y, z]: [[f64; 3]; 3]) -> [f64; 4] {
     let trace = x[0] + y[1] + z[2];
     // The largest of the four components is computed first, the others follow from it.

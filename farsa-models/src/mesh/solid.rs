@@ -9,10 +9,10 @@ use crate::mesh::triangles::{Mesh, z_to_axis};
 /// The shape that replaces a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeshFit {
-    /// The shape that holds all points, and its place.
+    /// Shape that holds all points, and its place.
     shape: Shape,
     place: Pose<f64>,
-    /// The solid of density 1 within the triangles, if they make one.
+    /// Solid of density 1 within the triangles, if they make one.
     solid: Option<MassProperties>,
 }
 
@@ -104,7 +104,7 @@ impl Solid {
         }
     }
 
-    /// Returns the name for messages.
+    /// Formats the name for messages.
     pub(crate) fn label(&self) -> String {
         let name = match self {
             Self::Native(Shape::Sphere { .. }) => "sphere",

@@ -112,7 +112,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Returns the mesh with every point changed.
+    /// Changes every point of the mesh.
     pub(crate) fn map(mut self, change: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         for point in &mut self.points {
             *point = change(*point);
@@ -193,7 +193,7 @@ impl Mesh {
         best
     }
 
-    /// The mass properties of a solid of this `density` [kg/m3]. `None` unless the triangles make a volume.
+    /// Computes the mass properties of a solid of this `density` [kg/m3]. `None` unless the triangles make a volume.
     ///
     /// MuJoCo's default: a sum over tetrahedra, none of them negative, from an apex within to each triangle. The apex
     /// is first the middle of the surface, then the center of mass found with it. The sum is exact for a solid that is
@@ -235,12 +235,12 @@ impl Mesh {
     }
 }
 
-/// The rotation that takes z to an axis, and the axes after z to those after it.
+/// Computes the rotation that takes z to an axis, and the axes after z to those after it.
 pub(crate) fn z_to_axis(axis: usize) -> [f64; 4] {
     [[0.5, 0.5, 0.5, 0.5], [-0.5, -0.5, -0.5, 0.5], [0.0, 0.0, 0.0, 1.0]][axis]
 }
 
-/// The products of a vector's parts [xx, yy, zz, xy, xz, yz].
+/// Computes the products of a vector's parts [xx, yy, zz, xy, xz, yz].
 fn squares([x, y, z]: [f64; 3]) -> [f64; 6] {
     [x * x, y * y, z * z, x * y, x * z, y * z]
 }

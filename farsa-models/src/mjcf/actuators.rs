@@ -191,7 +191,7 @@ fn law(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) 
     Ok(Some(Law::Servo(Servo { stiffness, damping, limit })))
 }
 
-/// The larger end of a range if it holds.
+/// Gets the larger end of a range if it holds.
 fn largest(
     classed: &Classed<'_, '_>,
     limited: &'static str,

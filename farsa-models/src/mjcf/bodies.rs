@@ -24,7 +24,7 @@ use crate::xml::tree::Element;
 pub(crate) struct Body {
     pub(crate) segment: Option<BodyId>,
     pub(crate) parent: usize,
-    /// The body whose motion it shares: itself, or the first above that moves, or the world.
+    /// Body whose motion it shares: itself, or the first above that moves, or the world.
     pub(crate) carrier: usize,
 }
 
@@ -58,7 +58,7 @@ struct Waiting<'t> {
     element: Element<'t>,
     parent: usize,
     class: usize,
-    /// The enclosing frame, in the parent's.
+    /// Enclosing frame, in the parent's.
     within: Pose<f64>,
 }
 
@@ -66,9 +66,9 @@ struct Waiting<'t> {
 struct Piece<'n, 't> {
     element: Element<'t>,
     name: &'n str,
-    /// The segment that it hangs on.
+    /// Segment that it hangs on.
     carrying: Option<BodyId>,
-    /// The frame in that segment's frame.
+    /// Frame in that segment's frame.
     placement: Pose<f64>,
     mass: MassProperties,
 }
@@ -155,7 +155,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         Ok(())
     }
 
-    /// The bodies among the items, the first last.
+    /// Gets the bodies among the items, the first last.
     fn waiting(parent: usize, items: &[Item<'t>]) -> Vec<Waiting<'t>> {
         let bodies = items.iter().rev().filter(|(element, ..)| element.tag() == "body");
         bodies.map(|&(element, within, class)| Waiting { element, parent, class, within }).collect()
@@ -261,7 +261,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         }
     }
 
-    /// The joints of a body, each with its placement from where the last left the frame, and its anchor.
+    /// Gets the joints of a body, each with its placement from where the last left the frame, and its anchor.
     fn joints_of(
         &mut self,
         body: Element<'t>,

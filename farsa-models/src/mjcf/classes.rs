@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use crate::error::ReadError;
 use crate::xml::tree::Element;
 
-/// The elements in which a class may give defaults, apart from actuators.
+/// Elements in which a class may give defaults, apart from actuators.
 const DEFAULTS: [&str; 12] = [
     "mesh", "material", "joint", "geom", "site", "camera", "light", "pair", "equality", "tendon", "texture", "default",
 ];
 
-/// The actuators of MJCF, which share one set of defaults.
+/// Actuators of MJCF, which share one set of defaults.
 pub(crate) const ACTUATORS: [&str; 12] = [
     "general",
     "motor",
@@ -31,7 +31,7 @@ pub(crate) const ACTUATORS: [&str; 12] = [
 pub(crate) struct Classes<'t> {
     names: BTreeMap<String, usize>,
     parents: Vec<Option<usize>>,
-    /// The elements of each.
+    /// Elements of each.
     elements: Vec<Vec<Element<'t>>>,
     /// Cached answers. Without them, a model with many elements and many defaults would take long.
     answers: RefCell<BTreeMap<Question<'t>, Option<Answer<'t>>>>,
@@ -52,7 +52,7 @@ pub(crate) struct Classed<'t, 'c> {
 }
 
 impl<'t> Classes<'t> {
-    /// The classes in the `default` elements of the model.
+    /// Reads the classes in the `default` elements of the model.
     ///
     /// There may be no more than `most` elements in them: each question is asked of them one after the other, once.
     pub(crate) fn from_model(model: Element<'t>, most: usize) -> Result<Self, ReadError> {
@@ -113,7 +113,7 @@ impl<'t> Classes<'t> {
         known.ok_or_else(|| element.unknown("class", name, self.names.keys().map(String::as_str)))
     }
 
-    /// Returns the default with an attribute for a kind of element. It is that of the nearest class, and in this class
+    /// Finds the default with an attribute for a kind of element. It is that of the nearest class, and in this class
     /// the last one, which overrides earlier ones.
     fn answer(&self, class: usize, tag: &'t str, attribute: &'static str) -> Option<Answer<'t>> {
         let kind = kind(tag);
@@ -152,12 +152,12 @@ fn kind(tag: &str) -> &str {
 }
 
 impl<'t> Classed<'t, '_> {
-    /// Returns the element or default with the attribute: the element itself, else the nearest class.
+    /// Finds the element or default with the attribute: the element itself, else the nearest class.
     pub(crate) fn source(&self, attribute: &'static str) -> Option<Element<'t>> {
         self.source_of(&[attribute])
     }
 
-    /// Returns the nearest one with any of the attributes.
+    /// Finds the nearest one with any of the attributes.
     pub(crate) fn source_of(&self, attributes: &[&'static str]) -> Option<Element<'t>> {
         if attributes.iter().any(|name| self.element.attribute(name).is_some()) {
             return Some(self.element);
@@ -206,7 +206,7 @@ impl<'t> Classed<'t, '_> {
         self.source(attribute).map_or(Ok(None), |element| element.word(attribute, valid))
     }
 
-    /// Returns whether a range applies: by the attribute `limited`, else if there is a range and ranges apply by
+    /// Checks whether a range applies: by the attribute `limited`, else if there is a range and ranges apply by
     /// default.
     pub(crate) fn limited(
         &self,

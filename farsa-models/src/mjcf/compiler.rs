@@ -10,11 +10,11 @@ use crate::options::Repair;
 use crate::vector::{cross, norm};
 use crate::xml::tree::Element;
 
-/// The reasons why attributes are ignored, for each element. The attributes are those of MuJoCo's schema.
+/// Reasons why attributes are ignored, for each element. The attributes are those of MuJoCo's schema.
 pub(crate) const SHOW: &str = "only for show";
 pub(crate) const MUJOCO: &str = "how MuJoCo computes";
 
-/// The attributes for a rotation.
+/// Attributes for a rotation.
 pub(crate) const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// The settings in `compiler` elements.

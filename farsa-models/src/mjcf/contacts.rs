@@ -28,7 +28,7 @@ struct Touching<'b, 't, 'c> {
 #[derive(Default)]
 struct Declared {
     pairs: Vec<PairContact>,
-    /// The line of each `pair`, by its colliders in ascending order. Pairs that cannot be described are included.
+    /// Line of each `pair`, by its colliders in ascending order. Pairs that cannot be described are included.
     lines: BTreeMap<[usize; 2], usize>,
     /// Bodies whose geoms do not touch, in ascending order.
     excluded: BTreeSet<[usize; 2]>,
@@ -134,7 +134,7 @@ fn ascending([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The geom that an end of a `pair` names, or `None` if it was left out, which has been warned about already.
+/// Gets the geom that an end of a `pair` names, or `None` if it was left out, which has been warned about already.
 fn named_geom<'b, 't, 'c>(
     pair: Element<'t>,
     end: &str,
@@ -230,13 +230,13 @@ fn check_pair(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadE
     element.check(&read, &ignored, warnings)
 }
 
-/// Returns whether two colliders can be a pair of a description.
+/// Checks whether two colliders can be a pair of a description.
 fn possible(robot: &Robot, [a, b]: [usize; 2]) -> bool {
     let (a, b) = (&robot.colliders[a], &robot.colliders[b]);
     a.body != b.body && (a.shape != Shape::Plane || b.shape != Shape::Plane)
 }
 
-/// Returns whether MuJoCo lets the geoms of two bodies touch: not if they move as one, nor if one carries the other.
+/// Checks whether MuJoCo lets the geoms of two bodies touch: not if they move as one, nor if one carries the other.
 ///
 /// Bodies without joints count as part of their carrier ("welded" in MuJoCo's documentation). Parent and child are kept
 /// apart because their geoms overlap at the joint by design. The world as a parent is the exception, or nothing could

@@ -63,7 +63,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
         Ok(Self { all })
     }
 
-    /// The mesh that a geom names, in the frame of its file.
+    /// Reads the mesh that a geom names, in the frame of its file.
     fn fit(
         &self,
         geom: Element<'t>,
@@ -166,7 +166,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
     element.check(&read, &ignored, warnings)
 }
 
-/// The solid of a geom and its place in the body, or `None` if it is left out.
+/// Gets the solid of a geom and its place in the body, or `None` if it is left out.
 pub(crate) fn geom<'t>(
     classed: &Classed<'t, '_>,
     within: &Pose<f64>,

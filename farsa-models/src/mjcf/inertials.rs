@@ -12,7 +12,7 @@ use crate::mjcf::geoms::{MeshAssets, geom};
 use crate::mjcf::items::Item;
 use crate::xml::tree::Element;
 
-/// The mass of a body in its frame.
+/// Gets the mass of a body in its frame.
 pub(crate) fn body_mass<'t>(
     body: Element<'t>,
     items: &[Item<'t>],
@@ -57,7 +57,7 @@ pub(crate) fn body_mass<'t>(
     }
 }
 
-/// The mass that an `inertial` gives, in the body's frame.
+/// Reads the mass that an `inertial` gives, in the body's frame.
 fn given_mass(
     element: Element<'_>,
     within: &Pose<f64>,

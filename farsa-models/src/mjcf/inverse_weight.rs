@@ -16,11 +16,11 @@ type Matrix = [Spatial; 6];
 
 /// One degree of freedom of a segment with all that hangs on it.
 struct Freedom {
-    /// The motion at unit speed.
+    /// Motion at unit speed.
     axis: Spatial,
-    /// The force that accelerates the segment so, while what hangs on it is free.
+    /// Force that accelerates the segment so, while what hangs on it is free.
     force: Spatial,
-    /// The effort that this takes. With the armature.
+    /// Effort that this takes. With the armature.
     effort: f64,
 }
 
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// The definition: tr(J M^-1 J') / 3 with J of the center of mass, and M = L L' the full mass matrix.
+    /// Computes the definition: tr(J M^-1 J') / 3 with J of the center of mass, and M = L L' the full mass matrix.
     fn dense(robot: &Robot) -> Vec<f64> {
         let tree = KinematicTree::new(robot).expect("a valid robot");
         let poses = tree.poses(&vec![0.0; tree.joints().len()]);
@@ -299,7 +299,7 @@ mod tests {
         robot
     }
 
-    /// The largest difference from the definition, relative to the weight itself.
+    /// Computes the largest difference from the definition, relative to the weight itself.
     fn difference(robot: &Robot) -> f64 {
         let weights = inverse_weights(robot).expect("a valid robot");
         let pairs = weights.iter().zip(dense(robot));

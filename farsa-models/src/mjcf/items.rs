@@ -11,7 +11,7 @@ use crate::xml::tree::Element;
 /// An element of a body, with the frame and class that the `frame`s around it give.
 pub(crate) type Item<'t> = (Element<'t>, Pose<f64>, usize);
 
-/// The elements of a body, those in frames in the frames' places.
+/// Gets the elements of a body, those in frames in the frames' places.
 pub(crate) fn items<'t>(
     body: Element<'t>,
     class: usize,

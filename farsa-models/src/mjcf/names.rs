@@ -33,7 +33,7 @@ impl Names {
         name
     }
 
-    /// Returns whether something of the kind has the name.
+    /// Checks whether something of the kind has the name.
     pub(crate) fn has(&self, kind: &'static str, name: &str) -> bool {
         self.taken.contains_key(&(kind, name.to_owned()))
     }

@@ -14,7 +14,7 @@ pub(crate) struct Contact {
     /// `condim`.
     pub(crate) dimensions: f64,
     solref: [f64; 2],
-    /// The impedance of a deep contact.
+    /// Impedance of a deep contact.
     impedance: f64,
     priority: f64,
     mix: f64,

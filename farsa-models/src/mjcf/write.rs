@@ -47,15 +47,15 @@ pub struct Keyframe {
     pub bodies: Vec<(BodyId, Pose<f64>)>,
 }
 
-/// The least and the largest impedance that MuJoCo allows.
+/// Least and largest impedance that MuJoCo allows.
 const SOFTEST: f64 = 0.0001;
 const STIFFEST: f64 = 0.9999;
 
-/// The groups of visuals, and of the colliders that are not drawn because of them.
+/// Groups of visuals, and of the colliders that are not drawn because of them.
 const VISUAL: &str = " group=\"2\"";
 const HIDDEN: &str = " group=\"3\"";
 
-/// The time constants whose squares are numbers [s].
+/// Time constants whose squares are numbers [s].
 const TIME_CONSTANTS: [f64; 2] = [1e-150, 1e150];
 
 /// Time constant [s] and impedance of a contact that yields by force / `stiffness` at rest, for a step of `h` [s].
@@ -235,7 +235,7 @@ fn state(robot: &Robot, nested: &[(usize, usize)], keyframe: &Keyframe) -> Vec<f
     state
 }
 
-/// The segments with how deep they are nested, in depth-first order, in which MuJoCo counts bodies.
+/// Gets the segments with how deep they are nested, in depth-first order, in which MuJoCo counts bodies.
 fn nested(robot: &Robot) -> Vec<(usize, usize)> {
     // The children of the world and of each segment in reverse, because the top of the stack comes next.
     let mut children = vec![Vec::new(); robot.segments.len() + 1];
@@ -265,7 +265,7 @@ fn check(options: &MjcfOptions) -> Result<(), RobotError> {
     }
 }
 
-/// The attributes of a limit, none for an infinite one.
+/// Formats the attributes of a limit, none for an infinite one.
 fn limited(what: &str, limit: f64) -> String {
     if limit.is_infinite() {
         return String::new();
@@ -273,7 +273,7 @@ fn limited(what: &str, limit: f64) -> String {
     format!(" {what}limited=\"true\" {what}range=\"{}\"", numbers(&[-limit, limit]))
 }
 
-/// The attributes of a place, none for the identity.
+/// Formats the attributes of a place, none for the identity.
 fn placed(pose: &Pose<f64>) -> String {
     let mut text = String::new();
     // Writing into a string cannot fail.

@@ -13,7 +13,7 @@ use crate::options::Meshes;
 use crate::vector::norm;
 use crate::xml::tree::Element;
 
-/// The place in an `origin` element.
+/// Reads the place in an `origin` element.
 pub(super) fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, ReadError> {
     let Some(origin) = within.one("origin")? else { return Ok(Pose::identity()) };
     origin.check_open(&["xyz", "rpy"], &mut context.warnings)?;
@@ -59,7 +59,7 @@ pub(super) fn joined(solids: &[Placed], kind: &str, context: &mut Context<'_>) -
     shapes
 }
 
-/// The capsule that a cylinder makes with two balls at its ends.
+/// Finds the capsule that a cylinder makes with two balls at its ends.
 fn capsule(tube: &Solid, at: &Pose<f64>, a: &Placed, b: &Placed) -> Option<Shape> {
     let Solid::Cylinder { radius, half_length } = *tube else { return None };
     // Far from the origin positions have fewer digits.
@@ -73,7 +73,7 @@ fn capsule(tube: &Solid, at: &Pose<f64>, a: &Placed, b: &Placed) -> Option<Shape
     pair.then_some(Shape::Capsule { radius, half_length })
 }
 
-/// The shape in a `geometry` element, or `None` if it is left out.
+/// Reads the shape in a `geometry` element, or `None` if it is left out.
 pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
     let kinds = ["box", "cylinder", "capsule", "sphere", "mesh"];
     let mut shapes = geometry.children();

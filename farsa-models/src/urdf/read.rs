@@ -17,7 +17,7 @@ use crate::urdf::visuals::{colors, visuals};
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
-/// The name of a root link that is the world itself.
+/// Name of a root link that is the world itself.
 const WORLD: &str = "world";
 
 /// Why elements of a URDF are not read.
@@ -31,7 +31,7 @@ const NOTED: [(&str, &str); 3] = [
 struct Links<'t> {
     names: BTreeMap<&'t str, usize>,
     elements: Vec<Element<'t>>,
-    /// The joint of every link.
+    /// Joint of every link.
     joints: Vec<Option<Element<'t>>>,
     parents: Vec<Option<usize>>,
 }
@@ -144,7 +144,7 @@ impl<'t> Links<'t> {
         ReadError::Malformed { place: self.elements[first].place(), why }
     }
 
-    /// The links in the file's order, but parents before their children.
+    /// Gets the links in the file's order, but parents before their children.
     fn order(&self) -> Result<Vec<usize>, ReadError> {
         debug_assert_eq!(self.names.len(), self.elements.len());
         let mut order = Vec::with_capacity(self.elements.len());
@@ -169,7 +169,7 @@ impl<'t> Links<'t> {
     }
 }
 
-/// The first names of a list.
+/// Formats the first names of a list.
 fn first_names(names: &[String]) -> String {
     let shown: Vec<&str> = names.iter().take(8).map(String::as_str).collect();
     let rest = if names.len() > shown.len() { ", ..." } else { "" };

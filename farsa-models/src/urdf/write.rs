@@ -14,7 +14,7 @@ use crate::xml::write::{
     visuals_by_body,
 };
 
-/// The name of the link that represents the world.
+/// Name of the link that represents the world.
 const WORLD: &str = "world";
 
 /// URDF requires a largest speed, which a description does not have [rad/s or m/s].
@@ -98,7 +98,7 @@ fn link(
     out.close("link");
 }
 
-/// The joints' names, the nameless ones' made of their segments'.
+/// Gets the joints' names, the nameless ones' made of their segments'.
 fn joint_names(robot: &Robot, segments: &[String]) -> Vec<String> {
     let taken: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.joint.name.as_str()).collect();
     // Made names differ from each other as their segments' do.
@@ -137,7 +137,7 @@ fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], [effo
     out.close("joint");
 }
 
-/// The sum of what the actuators of each segment's joint may exert.
+/// Computes the sum of what the actuators of each segment's joint may exert.
 fn efforts(robot: &Robot) -> Vec<f64> {
     let mut efforts = vec![0.0; robot.segments.len()];
     for actuator in &robot.actuators {
@@ -185,7 +185,7 @@ fn origin(pose: &Pose<f64>) -> String {
     format!("<origin xyz=\"{}\" rpy=\"{}\"/>", numbers(&pose.position), numbers(&roll_pitch_yaw(pose)))
 }
 
-/// The angles about the fixed axes x, then y, then z that make a pose's rotation [rad].
+/// Computes the angles about the fixed axes x, then y, then z that make a pose's rotation [rad].
 ///
 /// Yaw is measured after roll is undone: where the pitch is upright roll and yaw are one turn, and whatever was found for
 /// roll, their composition stays right.

@@ -78,7 +78,7 @@ struct Tag {
 }
 
 impl Tag {
-    /// The tag that the bytes begin with, to its `>` outside of quotes or to the end.
+    /// Reads the tag that the bytes begin with, to its `>` outside of quotes or to the end.
     fn from_bytes(bytes: &[u8]) -> Self {
         let mut tag = Self { length: bytes.len(), attributes: 0, namespaces: 0, empty: false };
         let mut quote = None;

@@ -154,12 +154,12 @@ impl<'t> Element<'t> {
         self.node().children.iter().map(move |index| Self { tree, index: *index })
     }
 
-    /// The children with this tag.
+    /// Iterates over the children with this tag.
     pub(crate) fn all(&self, tag: &'t str) -> impl Iterator<Item = Self> + use<'t> {
         self.children().filter(move |child| child.tag() == tag)
     }
 
-    /// The child with this tag, of which there may be one.
+    /// Gets the child with this tag, of which there may be one.
     pub(crate) fn one(&self, tag: &'t str) -> Result<Option<Self>, ReadError> {
         let mut elements = self.all(tag);
         let first = elements.next();
@@ -175,12 +175,12 @@ impl<'t> Element<'t> {
         self.node().attributes.iter().find(|(attribute, _)| attribute == name).map(|(_, value)| value.as_str())
     }
 
-    /// The value of an attribute that must be there.
+    /// Gets the value of an attribute that must be there.
     pub(crate) fn needed(&self, name: &str) -> Result<&'t str, ReadError> {
         self.attribute(name).ok_or_else(|| self.missing(name))
     }
 
-    /// Returns the element's name for messages.
+    /// Formats the element's name for messages.
     pub(crate) fn label(&self) -> String {
         match self.attribute("name") {
             Some(name) => format!("{} `{name}`", self.tag()),
@@ -272,7 +272,7 @@ impl<'t> Element<'t> {
         Ok(())
     }
 
-    /// The numbers of an attribute, at least `least` and at most `most`.
+    /// Gets the numbers of an attribute, at least `least` and at most `most`.
     pub(crate) fn list(&self, name: &'static str, least: usize, most: usize) -> Result<Option<Vec<f64>>, ReadError> {
         self.attribute(name).map(|text| self.parsed(name, text, least, most)).transpose()
     }
@@ -306,7 +306,7 @@ impl<'t> Element<'t> {
         Ok(Some(array))
     }
 
-    /// The finite number of an attribute.
+    /// Gets the finite number of an attribute.
     pub(crate) fn number(&self, name: &'static str) -> Result<Option<f64>, ReadError> {
         Ok(self.array::<1>(name)?.map(|[number]| number))
     }
@@ -319,7 +319,7 @@ impl<'t> Element<'t> {
     }
 }
 
-/// Returns whether a name that is so far from a valid one is likely meant to be it.
+/// Checks whether a name that is so far from a valid one is likely meant to be it.
 fn slip(name: &str, distance: usize) -> bool {
     distance <= 2 && name.chars().count() > 2 * distance
 }

@@ -51,7 +51,7 @@ pub(crate) fn friction_of_ground(robot: &Robot) -> Vec<f64> {
     losses
 }
 
-/// The comment of a file with grounds.
+/// Comment of a file with grounds.
 pub(crate) const GROUND: &str = "<!-- Friction on the ground acts along each sliding joint by itself: aslant up to 1.42 times as much \
     as in the description. -->";
 
@@ -94,19 +94,19 @@ pub(crate) fn unused(wanted: &str, names: &BTreeSet<&str>) -> String {
     name
 }
 
-/// The segments' names, changed where one is `reserved` by the format.
+/// Gets the segments' names, changed where one is `reserved` by the format.
 pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
     let taken: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.name.as_str()).collect();
     let name = |own: &str| if own == reserved { unused(own, &taken) } else { own.to_owned() };
     robot.segments.iter().map(|segment| name(&segment.name)).collect()
 }
 
-/// Returns whether a segment's mass is worth writing.
+/// Checks whether a segment's mass is worth writing.
 pub(crate) fn has_inertial(segment: &Segment) -> bool {
     segment.mass > 0.0 || segment.inertia.iter().chain(&segment.centre).any(|x| *x != 0.0)
 }
 
-/// The colliders of the world, then those of each segment of a valid robot, in their order.
+/// Gets the colliders of the world, then those of each segment of a valid robot, in their order.
 pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
     let mut children = vec![Vec::new(); robot.segments.len() + 1];
     for collider in &robot.colliders {
@@ -115,7 +115,7 @@ pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
     children
 }
 
-/// The visuals of the world, then those of each segment of a valid robot, in their order.
+/// Gets the visuals of the world, then those of each segment of a valid robot, in their order.
 pub(crate) fn visuals_by_body(robot: &Robot) -> Vec<Vec<&Visual>> {
     let mut indices = vec![Vec::new(); robot.segments.len() + 1];
     for visual in &robot.visuals {

@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-/// The largest count of a 16-bit quantity. In channels 65535 is NaN.
+/// Largest count of a 16-bit quantity. In channels 65535 is NaN.
 pub(crate) const COUNTS: f64 = 65534.0;
 
 /// The bytes of an episode in named blocks.
 #[derive(Default)]
 pub(crate) struct Blocks {
     pub(crate) bytes: Vec<u8>,
-    /// The offset of each block.
+    /// Offset of each block.
     pub(crate) starts: serde_json::Map<String, Value>,
 }
 

@@ -5,7 +5,7 @@ use crate::picture::camera::Camera;
 use crate::picture::moment::Picture;
 use crate::picture::png::encode;
 
-/// The most pictures of an animation.
+/// Most pictures of an animation.
 const MAX_PICTURES: usize = 1000;
 
 /// Returns an endless animated PNG of pictures of `size` [pixels], each shown for the given time [ms].

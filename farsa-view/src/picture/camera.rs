@@ -10,7 +10,7 @@ use crate::shape::vector::{Vector, across, add, along, cross, dot, scale, sub, u
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     name: &'static str,
-    /// The direction from the scene to the camera, of any length.
+    /// Direction from the scene to the camera, of any length.
     towards: Vector,
     /// True for a parallel projection.
     parallel: bool,
@@ -33,17 +33,17 @@ const CAMERAS: [Camera; 5] = [
 
 /// Half the shorter edge of the frame at distance 1, an angle of 23 degrees from edge to edge.
 const TANGENT: f64 = 0.2;
-/// The largest share of the frame that the scene fills.
+/// Largest share of the frame that the scene fills.
 const FILLED: f64 = 0.88;
-/// The least distance of a camera to the scene [m].
+/// Least distance of a camera to the scene [m].
 const NEAR: f64 = 1e-3;
 
 /// The projection of the world to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// The eye, or for a parallel projection a point in front of the scene [m].
+    /// Eye, or for a parallel projection a point in front of the scene [m].
     pub(crate) eye: Vector,
-    /// The directions to the right, upward and toward the viewer.
+    /// Directions to the right, upward and toward the viewer.
     pub(crate) axes: [Vector; 3],
     /// Pixels per tangent of the angle of sight, or per meter in a parallel projection.
     pub(crate) focal: f64,
@@ -51,9 +51,9 @@ pub(crate) struct Window {
     pub(crate) parallel: bool,
     /// Width and height [pixels].
     pub(crate) size: [u32; 2],
-    /// The center of the scene, in the world [m].
+    /// Center of the scene, in the world [m].
     pub(crate) centre: Vector,
-    /// The radius of a ball around the center that contains the scene [m].
+    /// Radius of a ball around the center that contains the scene [m].
     pub(crate) radius: f64,
 }
 
@@ -155,12 +155,12 @@ impl Camera {
 }
 
 impl Window {
-    /// Returns the depth of a point in front of the eye [m].
+    /// Computes the depth of a point in front of the eye [m].
     pub(crate) fn depth(&self, point: Vector) -> f64 {
         -dot(sub(point, self.eye), self.axes[2])
     }
 
-    /// Returns the place of a point in the picture from the upper left corner [pixels], `None` behind the eye.
+    /// Computes the place of a point in the picture from the upper left corner [pixels], `None` behind the eye.
     pub(crate) fn project(&self, point: Vector) -> Option<[f64; 2]> {
         let depth = self.depth(point);
         let from = sub(point, self.eye);
@@ -179,12 +179,12 @@ impl Window {
         if self.parallel { (add(self.eye, aside), scale(back, -1.0)) } else { (self.eye, unit(sub(aside, back))) }
     }
 
-    /// Returns the unit direction of view to a point.
+    /// Computes the unit direction of view to a point.
     pub(crate) fn sight(&self, point: Vector) -> Vector {
         if self.parallel { scale(self.axes[2], -1.0) } else { unit(sub(point, self.eye)) }
     }
 
-    /// Returns the size of a pixel on a surface at a point that faces the eye [m].
+    /// Computes the size of a pixel on a surface at a point that faces the eye [m].
     pub(crate) fn pixel(&self, point: Vector) -> f64 {
         if self.parallel { 1.0 / self.focal } else { self.depth(point).max(NEAR) / self.focal }
     }
@@ -198,7 +198,7 @@ impl Window {
         crate::picture::outline::clip(corners, |point| self.depth(*point) - 2.0 * NEAR, crate::shape::vector::mix)
     }
 
-    /// Returns the direction from the scene to the light, at the upper left in front of the scene.
+    /// Computes the direction from the scene to the light, at the upper left in front of the scene.
     pub(crate) fn key_light(&self) -> Vector {
         let [right, up, back] = self.axes;
         if back[2] > 0.99 {

@@ -4,7 +4,7 @@ use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
 use crate::picture::outline::{Point2, bounds, holds};
 
-/// The number of samples along each side of the common area of two outlines.
+/// Number of samples along each side of the common area of two outlines.
 const SIDE: usize = 6;
 
 /// Returns the indices of solids from back to front, without those that have no outline.

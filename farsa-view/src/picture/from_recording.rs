@@ -11,14 +11,14 @@ use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::{SceneObject, ShownWhile, screen_color};
 use crate::shape::vector::{Vector, length, sub};
 
-/// The height of trails above the ground [m].
+/// Height of trails above the ground [m].
 const TRAIL: f64 = 1e-3;
-/// The radius of marks of images on the ground, relative to the side of a pixel, and their height above areas [m].
+/// Radius of marks of images on the ground, relative to the side of a pixel, and their height above areas [m].
 const MARK: f64 = 0.15;
 const MARK_ABOVE: f64 = 5e-4;
-/// The colors of trails, those of best contrast to the ground first.
+/// Colors of trails, those of best contrast to the ground first.
 const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
-/// The color of the trails of points.
+/// Color of the trails of points.
 const PENCIL: Color = [96, 96, 96];
 
 impl Recording {

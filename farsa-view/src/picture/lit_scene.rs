@@ -19,11 +19,11 @@ pub(crate) fn encoded(light: Vector) -> Color {
     light.map(|x| (255.0 * x.clamp(0.0, 1.0).sqrt() + 0.5) as u8)
 }
 
-/// The background.
+/// Background.
 pub(crate) const BACKGROUND: Color = [255, 255, 255];
 /// Possible distances of grid lines [m]. Every second line is stronger.
 const STEPS: [f64; 5] = [0.01, 0.05, 0.25, 1.0, 5.0];
-/// The number of sampled points of the lamp.
+/// Number of sampled points of the lamp.
 const LIGHTS: usize = 48;
 /// Light from the lamp and ambient light.
 const KEY: f64 = 0.70;
@@ -40,7 +40,7 @@ pub(crate) struct Solid {
     pub(crate) role: Role,
     /// True if its upper faces show the grid.
     pub(crate) grid: bool,
-    /// The axes of its frame in the world.
+    /// Axes of its frame in the world.
     axes: [Vector; 3],
     reach: f64,
     albedo: Vector,
@@ -51,30 +51,30 @@ pub(crate) struct Solid {
 /// The hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen {
-    /// The index of the solid.
+    /// Index of the solid.
     pub(crate) solid: usize,
-    /// The place in the world [m].
+    /// Place in the world [m].
     pub(crate) point: Vector,
-    /// The unit normal on the side of the eye, in the world's axes.
+    /// Unit normal on the side of the eye, in the world's axes.
     pub(crate) normal: Vector,
-    /// The distance from the start of the ray [m].
+    /// Distance from the start of the ray [m].
     pub(crate) distance: f64,
 }
 
 /// All solids with the lamp.
 #[derive(Clone, Debug)]
 pub(crate) struct LitScene {
-    /// The solids. A plane is replaced by a piece of ground.
+    /// Solids. A plane is replaced by a piece of ground.
     pub(crate) solids: Vec<Solid>,
-    /// The indices of solids that can hide the sky, and of those that can hide the lamp.
+    /// Indices of solids that can hide the sky, and of those that can hide the lamp.
     hiders: Vec<usize>,
     shaders: Vec<usize>,
-    /// The direction from the scene to the center of the lamp.
+    /// Direction from the scene to the center of the lamp.
     pub(crate) key: Vector,
-    /// The distance of grid lines [m].
+    /// Distance of grid lines [m].
     pub(crate) step: f64,
     lights: Vec<Vector>,
-    /// The cosine of the lamp's half width, reduced a little, and its sine.
+    /// Cosine of the lamp's half width, reduced a little, and its sine.
     cone: [f64; 2],
 }
 
@@ -124,7 +124,7 @@ impl Solid {
         }
     }
 
-    /// Returns the hit of a ray, in the world.
+    /// Finds the hit of a ray, in the world.
     pub(crate) fn meet(&self, origin: Vector, direction: Vector) -> Option<Meeting> {
         let from = sub(origin, self.pose.position);
         let towards = dot(from, direction);
@@ -214,7 +214,7 @@ impl LitScene {
         Self { solids, hiders, shaders, key, step, lights, cone }
     }
 
-    /// Returns the first hit of a ray among the given solids.
+    /// Finds the first hit of a ray among the given solids.
     pub(crate) fn see(
         &self,
         origin: Vector,
@@ -235,7 +235,7 @@ impl LitScene {
         seen
     }
 
-    /// Returns true if nothing is between the eye and a point.
+    /// Checks if nothing is between the eye and a point.
     pub(crate) fn is_visible(&self, view: &Window, point: Vector) -> bool {
         let direction = view.sight(point);
         let origin = if view.parallel { along(point, direction, -view.depth(point)) } else { view.eye };
@@ -244,7 +244,7 @@ impl LitScene {
             .is_none_or(|seen| seen.distance > distance - 2e-3 * view.radius)
     }
 
-    /// Returns the share of the lamp that is visible from a point.
+    /// Computes the share of the lamp that is visible from a point.
     fn lamp(&self, point: Vector, normal: Vector) -> f64 {
         let origin = along(point, normal, 1e-5);
         let [cosine, sine] = self.cone;
@@ -282,7 +282,7 @@ impl LitScene {
         self.lights.iter().filter(&mut free).count() as f64 / self.lights.len() as f64
     }
 
-    /// Returns the share of the sky over a point that other solids do not hide.
+    /// Computes the share of the sky over a point that other solids do not hide.
     fn sky(&self, own: usize, point: Vector, normal: Vector) -> f64 {
         let others = self.hiders.iter().filter(|i| **i != own);
         others.map(|i| 1.0 - 0.85 * self.solids[*i].hides(point, normal)).product()
@@ -310,7 +310,7 @@ impl LitScene {
         dark
     }
 
-    /// Returns the color of a solid's surface without light and shadow.
+    /// Computes the color of a solid's surface without light and shadow.
     fn albedo(&self, view: &Window, seen: &Seen) -> Vector {
         let solid = &self.solids[seen.solid];
         if solid.grid && seen.normal[2] > 0.99 {
@@ -323,13 +323,13 @@ impl LitScene {
         solid.albedo
     }
 
-    /// Returns the light of unobstructed ground without the grid.
+    /// Computes the light of unobstructed ground without the grid.
     pub(crate) fn plain(&self, seen: &Seen) -> Vector {
         let facing = dot(seen.normal, self.key).max(0.0);
         scale(self.solids[seen.solid].albedo, FILL * (0.78 + 0.22 * seen.normal[2]) + KEY * facing)
     }
 
-    /// Returns the light from a point to the eye, optionally without `shadows` of the lamp.
+    /// Computes the light from a point to the eye, optionally without `shadows` of the lamp.
     pub(crate) fn shade(&self, view: &Window, seen: &Seen, shadows: bool) -> Vector {
         let solid = &self.solids[seen.solid];
         let (normal, sight) = (seen.normal, view.sight(seen.point));
@@ -364,7 +364,7 @@ mod tests {
         LitScene::new(&picture, &picture.window(Camera::default(), [100, 100]))
     }
 
-    /// The share of a cosine-weighted hemisphere whose rays hit a solid.
+    /// Computes the share of a cosine-weighted hemisphere whose rays hit a solid.
     fn sampled(solid: &Solid, point: Vector, normal: Vector) -> f64 {
         let mut stream = Stream::new(1, Domain::Start, 0, 0, 0);
         let [u, v] = across(normal);

@@ -25,10 +25,10 @@ const POINT: Color = OKABE_ITO[2];
 const HIT: Color = OKABE_ITO[6];
 const MISS: Color = [120, 120, 120];
 const WHITE: Color = [255, 255, 255];
-/// The opacity of hidden marks, which show through shapes.
+/// Opacity of hidden marks, which show through shapes.
 const HIDDEN: f64 = 0.30;
 
-/// Returns the length of a force of 1 N [m], `None` without forces.
+/// Computes the length of a force of 1 N [m], `None` without forces.
 pub(crate) fn metres_per_newton(picture: &Picture, view: &Window) -> Option<f64> {
     let largest = picture.contacts.iter().map(|push| length(push.force)).fold(0.0, f64::max);
     // The largest arrow has a seventh of the shorter edge.
@@ -174,7 +174,7 @@ fn thinned(places: &[Point2], near: f64) -> Vec<Point2> {
     places.iter().zip(keep).filter(|(_, keep)| *keep).map(|(place, _)| *place).collect()
 }
 
-/// Returns the distance of a place from the line between two others.
+/// Computes the distance of a place from the line between two others.
 pub(crate) fn distance(place: Point2, a: Point2, b: Point2) -> f64 {
     let ([x, y], [u, v]) = ([place[0] - a[0], place[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
     let square = u * u + v * v;

@@ -66,10 +66,10 @@ pub struct Picture {
 }
 
 const PALM: Color = [122, 143, 166];
-/// The colors of a robot's branches. Neighbors differ in lightness.
+/// Colors of a robot's branches. Neighbors differ in lightness.
 const BRANCHES: [Color; 5] = [[132, 184, 182], [104, 150, 190], [160, 190, 214], [104, 150, 190], [160, 190, 214]];
 
-/// Returns the body with the most children, at least two, such as a palm.
+/// Finds the body with the most children, at least two, such as a palm.
 fn junction(robot: &Robot) -> Option<usize> {
     let children = |body: usize| robot.segments.iter().filter(|s| s.parent.is_some_and(|p| p.index() == body)).count();
     // Among equals the last one, which is nearest to the fingers.

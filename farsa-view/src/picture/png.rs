@@ -11,9 +11,9 @@ use crate::picture::outline::bounds;
 use crate::shape::appearance::Color;
 use crate::shape::vector::{Vector, add, mix, scale};
 
-/// The number of rays along each side of a pixel at an edge.
+/// Number of rays along each side of a pixel at an edge.
 const FINE: usize = 4;
-/// The difference of colors of two corners above which there is an edge between them.
+/// Difference of colors of two corners above which there is an edge between them.
 const EDGE: u8 = 5;
 
 /// Returns a picture of `size` [pixels] as a PNG file, with equal bytes on every machine.

@@ -13,12 +13,12 @@ use crate::shape::appearance::{Color, Role};
 use crate::shape::geometry::{Geometry, Sight};
 use crate::shape::vector::{Vector, add, dot, length, scale, sub};
 
-/// The margin around the frame at which shapes are clipped [pixels].
+/// Margin around the frame at which shapes are clipped [pixels].
 const MARGIN: f64 = 20.0;
-/// The number of layers of a shadow, one for each part of the lamp, and the darkness of each.
+/// Number of layers of a shadow, one for each part of the lamp, and the darkness of each.
 const SHADOWS: usize = 4;
 const SHADOW: f64 = 0.12;
-/// The width of the line that separates shapes of equal color.
+/// Width of the line that separates shapes of equal color.
 const CONTOUR: &str = "stroke=\"#1b2733\" stroke-opacity=\".4\" stroke-width=\".8\"";
 
 /// Returns a picture in a frame of width and height [pixels] as an SVG element.
@@ -85,7 +85,7 @@ struct Drawing<'a> {
     prefix: &'a str,
     defs: String,
     body: String,
-    /// Returns true if a grid line is visible.
+    /// True if a grid line is visible.
     gridded: bool,
 }
 
@@ -248,7 +248,7 @@ impl Drawing<'_> {
         format!("url(#{id})")
     }
 
-    /// Returns the fill of a ball, with rings around its brightest point.
+    /// Draws the fill of a ball, with rings around its brightest point.
     fn radial(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
         let centre = solid.pose.position;
@@ -270,7 +270,7 @@ impl Drawing<'_> {
         self.gradient(i, "radialGradient", &format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\""), &stops)
     }
 
-    /// Returns the fill of a rod, with bands along its axis.
+    /// Draws the fill of a rod, with bands along its axis.
     fn rod(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
         let (half, radius) = match solid.geometry {

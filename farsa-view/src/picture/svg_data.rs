@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::picture::outline::Point2;
 use crate::shape::appearance::Color;
 
-/// Returns the data of a path through places, in steps of a tenth of a pixel.
+/// Writes the data of a path through places, in steps of a tenth of a pixel.
 pub(crate) fn path(places: &[Point2], closed: bool) -> String {
     let mut data = String::new();
     if places.len() < 2 || (closed && places.len() < 3) {

@@ -12,15 +12,15 @@ use crate::shape::appearance::{Color, OKABE_ITO, Role};
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::{SceneObject, screen_color};
 
-/// The color of walls without one, dark so that trails along them are visible.
+/// Color of walls without one, dark so that trails along them are visible.
 const WALL: Color = [84, 90, 99];
-/// The ground around a lamp.
+/// Ground around a lamp.
 const GLOW: Color = [255, 238, 170];
-/// The thickness of the drawn sides of a convex obstacle [m].
+/// Thickness of the drawn sides of a convex obstacle [m].
 const SIDE: f64 = 2e-3;
-/// The height of an area above the one below [m].
+/// Height of an area above the one below [m].
 const LAYER: f64 = 1e-4;
-/// The number of robots above which only hulls are shown.
+/// Number of robots above which only hulls are shown.
 const MAX_WITH_PARTS: usize = 50;
 
 /// Returns a frame on the ground, turned around the vertical.

@@ -5,30 +5,30 @@ use std::ops::Range;
 use crate::recording::images::{packed, unpacked};
 use crate::recording::schema::ImageChannel;
 
-/// The most pixels of an image, because pages number them in 16 bits.
+/// Most pixels of an image, because pages number them in 16 bits.
 const MAX_PIXELS: usize = u16::MAX as usize;
-/// The most changes of a recording, 8 MB.
+/// Most changes of a recording, 8 MB.
 const MAX_CHANGES: usize = 1 << 21;
 
 /// A pixel with another color than at the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Change {
-    /// The index of the pixel, row by row.
+    /// Index of the pixel, row by row.
     pub(crate) pixel: u16,
-    /// The color, with 5 bits red, 6 green and 5 blue from the highest bit.
+    /// Color, with 5 bits red, 6 green and 5 blue from the highest bit.
     pub(crate) shade: u16,
 }
 
 /// An image on the ground.
 #[derive(Clone, Debug, Default)]
 struct GroundImage {
-    /// The image of the current tick, and true if it has a pixel.
+    /// Image of the current tick, and true if it has a pixel.
     now: Vec<u16>,
     told: bool,
-    /// The last stored image.
+    /// Last stored image.
     last: Vec<u16>,
     changes: Vec<Change>,
-    /// The end of the changes of each tick, and the first tick of the image.
+    /// End of the changes of each tick, and the first tick of the image.
     ends: Vec<usize>,
     first: Option<usize>,
 }

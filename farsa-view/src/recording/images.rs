@@ -5,28 +5,28 @@ use std::ops::Range;
 
 use crate::recording::schema::ImageChannel;
 
-/// The most pixels of a recording, 8 MB or 5461 different images of 32 x 24 pixels.
+/// Most pixels of a recording, 8 MB or 5461 different images of 32 x 24 pixels.
 const MAX_PIXELS: usize = 1 << 22;
-/// The largest counts of red, green and blue.
+/// Largest counts of red, green and blue.
 const MAX_COUNTS: [f32; 3] = [31.0, 63.0, 31.0];
-/// The first bit of red, green and blue in a pixel.
+/// First bit of red, green and blue in a pixel.
 const SHIFT: [u32; 3] = [11, 5, 0];
 
 /// The images of a recording, including those of the current tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Images {
-    /// The number of images.
+    /// Number of images.
     count: usize,
-    /// The range of each image among the pixels of a tick.
+    /// Range of each image among the pixels of a tick.
     ranges: Vec<Range<usize>>,
     /// All images of the current tick, and true for those with a pixel.
     now: Vec<u16>,
     told: Vec<bool>,
-    /// The stored pixels.
+    /// Stored pixels.
     pixels: Vec<u16>,
-    /// The first stored pixel of each image, ticks x images.
+    /// First stored pixel of each image, ticks x images.
     starts: Vec<Option<u32>>,
-    /// The first pixel of the last stored image of each.
+    /// First pixel of the last stored image of each.
     last: Vec<Option<u32>>,
 }
 
@@ -91,7 +91,7 @@ impl Images {
         Some(pixels.iter().map(|pixel| unpacked(*pixel)))
     }
 
-    /// Returns the first pixel of an image at each tick, `u32::MAX` without an image.
+    /// Iterates over the first pixel of an image at each tick, `u32::MAX` without an image.
     pub(crate) fn starts(&self, image: usize) -> impl Iterator<Item = u32> + '_ {
         let of_image = self.starts.iter().skip(image).step_by(self.count.max(1));
         of_image.map(|start| start.unwrap_or(u32::MAX))

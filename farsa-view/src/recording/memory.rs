@@ -9,9 +9,9 @@ use crate::recording::ground_images::GroundImages;
 use crate::recording::images::Images;
 use crate::recording::schema::Schema;
 
-/// The length of a pose: position and rotation.
+/// Length of a pose: position and rotation.
 const POSE: usize = 7;
-/// The initial capacity [ticks].
+/// Initial capacity [ticks].
 const TICKS: usize = 1024;
 
 /// A contact of a pair.
@@ -81,13 +81,13 @@ pub struct Recording {
     /// NaN, as many as the widest field has per tick.
     blank: Vec<f32>,
     contacts: Vec<Touching>,
-    /// The number of contacts up to the end of each tick.
+    /// Number of contacts up to the end of each tick.
     contact_ends: Vec<usize>,
     rays: Vec<CastRay>,
     ray_ends: Vec<usize>,
     images: Images,
     grounds: GroundImages,
-    /// The most bytes of ticks, if limited.
+    /// Most bytes of ticks, if limited.
     room: Option<usize>,
     cut: bool,
 }

@@ -10,7 +10,7 @@ use crate::shape::scene_object::SceneObject;
 /// A quantity with one value per tick, as in tables and pages.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Channel {
-    /// The name.
+    /// Name.
     pub name: String,
     /// Label for pages. If this is empty, pages show the name instead.
     pub label: String,
@@ -66,11 +66,11 @@ impl Channel {
 /// An image of a camera or on the ground, as in pages.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ImageChannel {
-    /// The name.
+    /// Name.
     pub name: String,
     /// Number of columns and rows.
     pub size: [usize; 2],
-    /// The outer corners of the first and the last pixel on the ground [m], if it is an image there.
+    /// Outer corners of the first and the last pixel on the ground [m], if it is an image there.
     pub ground: Option<[[f64; 2]; 2]>,
 }
 
@@ -99,22 +99,22 @@ impl ImageChannel {
 /// Nodes are numbered in the order sensors, neurons, outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Links {
-    /// The first source and the one after the last.
+    /// First source and the one after the last.
     pub from: [usize; 2],
-    /// The first target and the one after the last.
+    /// First target and the one after the last.
     pub to: [usize; 2],
-    /// The index of the first weight in the parameters.
+    /// Index of the first weight in the parameters.
     pub first: usize,
 }
 
 /// One parameter for each node of a range, such as a bias.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeParameters {
-    /// The name of the parameter.
+    /// Name of the parameter.
     pub name: String,
-    /// The first node and the one after the last.
+    /// First node and the one after the last.
     pub nodes: [usize; 2],
-    /// The index of the first value in the parameters.
+    /// Index of the first value in the parameters.
     pub first: usize,
 }
 

@@ -17,7 +17,7 @@ pub struct Table<W: Write> {
     step: u32,
     scalars: Vec<f64>,
     values: Vec<f32>,
-    /// The first index of neurons and of outputs among the values.
+    /// First index of neurons and of outputs among the values.
     starts: [usize; 2],
     written: csv::Result<()>,
 }

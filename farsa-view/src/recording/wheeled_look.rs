@@ -10,23 +10,23 @@ use crate::shape::appearance::Color;
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::screen_color;
 
-/// The color of wheels, tracks and the dark parts between them.
+/// Color of wheels, tracks and the dark parts between them.
 const DARK: Color = [40, 43, 48];
-/// The color of the stripe that points ahead, and of bright plastic.
+/// Color of the stripe that points ahead, and of bright plastic.
 const LIGHT: Color = [250, 250, 245];
-/// The color of LEDs in any state.
+/// Color of LEDs in any state.
 const LED: Color = [255, 236, 190];
-/// The width of wheels, relative to the radius of the hull.
+/// Width of wheels, relative to the radius of the hull.
 const WIDTH: f64 = 0.22;
-/// The width of the narrower wheels of an e-puck.
+/// Width of the narrower wheels of an e-puck.
 const NARROW: f64 = 0.1;
-/// The rotation of z, the axis of cylinders, to y.
+/// Rotation of z, the axis of cylinders, to y.
 const ON_AXLE: [f64; 4] = [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
 
 /// A part in the robot's frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// The name, empty for the body.
+    /// Name, empty for the body.
     pub(crate) name: &'static str,
     pub(crate) geometry: Geometry,
     pub(crate) place: Pose<f64>,

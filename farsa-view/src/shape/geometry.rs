@@ -86,7 +86,7 @@ fn ball(origin: Vector, direction: Vector, centre: Vector, radius: f64) -> Optio
         .then(|| Meeting { distance, normal: scale(along(from, direction, distance), 1.0 / radius) })
 }
 
-/// Returns the distances between which a ray is within `half` of 0 on one axis, empty if first > last.
+/// Computes the distances between which a ray is within `half` of 0 on one axis, empty if first > last.
 fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     if direction == 0.0 {
         let inside = origin.abs() <= half;
@@ -96,7 +96,7 @@ fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Returns the distances between which a ray is within the endless cylinder around z, empty if first > last.
+/// Computes the distances between which a ray is within the endless cylinder around z, empty if first > last.
 fn tube(origin: Vector, direction: Vector, radius: f64) -> [f64; 2] {
     let ([x, y, _], [u, v, _]) = (origin, direction);
     let square = u * u + v * v;
@@ -124,7 +124,7 @@ fn circle(centre: Vector, normal: Vector, radius: f64, count: usize) -> impl Ite
 }
 
 impl Geometry {
-    /// Returns the first hit of a ray from `origin` along the unit vector `direction`, if it starts outside.
+    /// Finds the first hit of a ray from `origin` along the unit vector `direction`, if it starts outside.
     pub(crate) fn meet(&self, origin: Vector, direction: Vector) -> Option<Meeting> {
         match *self {
             Self::Sphere { radius } => ball(origin, direction, [0.0; 3], radius),
@@ -185,7 +185,7 @@ impl Geometry {
         }
     }
 
-    /// Returns the radius of the ball around the origin that contains the geometry [m], infinite for a plane.
+    /// Computes the radius of the ball around the origin that contains the geometry [m], infinite for a plane.
     pub(crate) fn reach(&self) -> f64 {
         match *self {
             Self::Sphere { radius } | Self::Disc { radius } => radius,
@@ -290,7 +290,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Returns the distance to the surface, negative inside.
+    /// Computes the distance to the surface, negative inside.
     fn signed_distance(geometry: &Geometry, p: Vector) -> f64 {
         let outside = |d: [f64; 3]| length(d.map(|x| x.max(0.0))) + d[0].max(d[1]).max(d[2]).min(0.0);
         match *geometry {
@@ -314,7 +314,7 @@ mod tests {
         }
     }
 
-    /// Returns the distance at which small steps of the signed distance reach the surface.
+    /// Computes the distance at which small steps of the signed distance reach the surface.
     fn marched(geometry: &Geometry, origin: Vector, direction: Vector) -> Option<f64> {
         let mut distance = 0.0;
         for _ in 0..20_000 {

@@ -18,7 +18,7 @@ pub(crate) fn scale(a: Vector, s: f64) -> Vector {
     [a[0] * s, a[1] * s, a[2] * s]
 }
 
-/// Returns the point at `distance` on the ray from `origin` along `direction`.
+/// Computes the point at `distance` on the ray from `origin` along `direction`.
 pub(crate) fn along(origin: Vector, direction: Vector, distance: f64) -> Vector {
     add(origin, scale(direction, distance))
 }
@@ -28,22 +28,22 @@ pub(crate) fn mix(a: Vector, b: Vector, share: f64) -> Vector {
     along(a, sub(b, a), share)
 }
 
-/// Returns the scalar product.
+/// Computes the scalar product.
 pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the vector product.
+/// Computes the vector product.
 pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Returns the Euclidean length.
+/// Computes the Euclidean length.
 pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Returns the unit vector in the direction of a, or 0 for 0.
+/// Computes the unit vector in the direction of a, or 0 for 0.
 pub(crate) fn unit(a: Vector) -> Vector {
     let length = length(a);
     if length > 0.0 { scale(a, 1.0 / length) } else { a }

@@ -23,7 +23,7 @@ pub(super) struct Introduction<'d> {
     terms: Vec<String>,
     objectives: Vec<String>,
     behaviour: Vec<Ranged>,
-    /// The most bytes of a line.
+    /// Most bytes of a line.
     longest_line: usize,
     parameters: Vec<Ranged>,
 }

@@ -11,13 +11,13 @@ use crate::experiment::parameter::Parameter;
 use crate::limits::Limits;
 use crate::run::plan::MAX_SEED;
 
-/// The largest number of an individual.
+/// Largest number of an individual.
 const MAX_INDIVIDUAL: u32 = 1_000_000_000;
 
 /// The shape of valid requests.
 pub(crate) struct RequestSchema {
     pub(crate) experiment: &'static str,
-    /// The names of the populations, in their order.
+    /// Names of the populations, in their order.
     pub(crate) populations: Vec<String>,
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) genotype: Genotype,
@@ -49,9 +49,9 @@ pub(crate) struct Request {
     pub(crate) id: Option<serde_json::Value>,
     pub(crate) seed: u64,
     pub(crate) generation: u32,
-    /// The number of the first individual of each population.
+    /// Number of the first individual of each population.
     pub(crate) individual: u32,
-    /// The parameters of every individual of each population.
+    /// Parameters of every individual of each population.
     pub(crate) parameters: Vec<Vec<Vec<f32>>>,
     /// Flag of each evaluated population. The others only serve as opponents.
     pub(crate) evaluated: Vec<bool>,
@@ -136,7 +136,7 @@ impl RequestSchema {
         Error::unknown(place, "population", name, self.populations.iter().map(String::as_str)).to_string()
     }
 
-    /// The vectors of each population, in their order.
+    /// Gets the vectors of each population, in their order.
     fn divided(&self, what: &str, given: ParameterVectors) -> Result<Vec<Vectors>, String> {
         let names = &self.populations;
         match given {

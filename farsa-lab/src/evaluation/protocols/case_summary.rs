@@ -57,7 +57,7 @@ impl CaseSummary {
         Proportion { successes: self.findings.successes, of: self.findings.trials }
     }
 
-    /// The means of terms and notes, by name.
+    /// Iterates over the means of terms and notes, by name.
     fn means(&self) -> impl Iterator<Item = (&str, &Finding)> {
         self.terms.iter().chain(&self.findings.notes).map(|(name, finding)| (name.as_str(), finding))
     }
@@ -94,7 +94,7 @@ pub(crate) fn rows(protocol: &Protocol, found: &[CaseSummary]) -> (Vec<Vec<Strin
     (std::iter::once(head.clone()).chain(found.iter().map(line)).collect(), words)
 }
 
-/// The terms and notes that are numbers in every case.
+/// Gets the terms and notes that are numbers in every case.
 fn means(found: &[CaseSummary]) -> Vec<&str> {
     let is_mean = |case: &CaseSummary, name: &str| {
         case.means().any(|(own, finding)| own == name && matches!(finding, Finding::Mean(_)))
@@ -103,7 +103,7 @@ fn means(found: &[CaseSummary]) -> Vec<&str> {
     first.map(|(name, _)| name).filter(|name| found.iter().all(|case| is_mean(case, name))).collect()
 }
 
-/// The same for a terminal, with what trained and held-out cases came to together.
+/// Formats the same for a terminal, with what trained and held-out cases came to together.
 pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
     let (rows, words) = rows(protocol, found);
     let mut text = text_table(&rows, words..usize::MAX);

@@ -24,7 +24,7 @@ pub(crate) struct ProtocolRecord {
 }
 
 impl ProtocolRecord {
-    /// Returns whether both describe the same test, whatever their tables hold.
+    /// Checks whether both describe the same test, whatever their tables hold.
     pub(crate) fn same_test(&self, other: &Self) -> bool {
         *self == Self { table_crc: self.table_crc, ..other.clone() }
     }

@@ -17,11 +17,11 @@ use crate::store::directory::Directory;
 /// Which trials of a test by a protocol.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CaseSelection<'c> {
-    /// The protocol's name.
+    /// Protocol's name.
     pub(crate) protocol: &'c str,
     /// Names or numbers of cases. Empty for all.
     pub(crate) cases: &'c [String],
-    /// The number of the trial in each case.
+    /// Number of the trial in each case.
     pub(crate) trial: u32,
     /// Seed of the test.
     pub(crate) seed: u64,

@@ -107,7 +107,7 @@ pub(crate) fn draw(
     })
 }
 
-/// The end of the trial in each case, each with room for what is to be seen in all.
+/// Gets the end of the trial in each case, each with room for what is to be seen in all.
 fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
     for number in trials.cases.clone() {
@@ -129,7 +129,7 @@ fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, 
     Ok(cases)
 }
 
-/// Returns the labeled pictures in rows of the given length.
+/// Arranges the labeled pictures in rows of the given length.
 fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [width, height]: [u32; 2]) -> String {
     let margin = MARGIN as u32;
     let rows = cases.len().div_ceil(columns) as u32;

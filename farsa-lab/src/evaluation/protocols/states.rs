@@ -14,13 +14,13 @@ use crate::experiment::protocol::{CaseId, Protocol};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// The first trials of each case that are recorded.
+/// First trials of each case that are recorded.
 const TRIALS: usize = 6;
 /// Maximum number of recorded cases.
 const MAX_CASES: usize = 60;
 /// Most steps that are kept of a trial: of a longer one every second is, or every fourth, and so on.
 const MAX_STEPS: usize = 1000;
-/// The columns before those of the neurons.
+/// Columns before those of the neurons.
 const HEAD: [&str; 4] = ["case", "trial", "success", "step"];
 
 /// The states of some trials.
@@ -114,7 +114,7 @@ impl States {
         Ok(Self { neurons, trials: recordings })
     }
 
-    /// The points of all trials.
+    /// Iterates over the points of all trials.
     pub(crate) fn points(&self) -> impl Iterator<Item = &[f32]> + Clone {
         self.trials.iter().flat_map(|trial| &trial.steps).map(|(_, states)| states.as_slice())
     }

@@ -77,7 +77,7 @@ impl ProtocolTable {
         Ok(Self { cases: tables.collect::<Result<_, String>>()? })
     }
 
-    /// The content of the file, which is to be written to `path`.
+    /// Writes the content of the file for `path`.
     ///
     /// # Errors
     /// [`Error::File`], should the writer refuse.
@@ -96,7 +96,7 @@ impl ProtocolTable {
     }
 }
 
-/// The number of a case, and the case.
+/// Finds the number of a case, and the case.
 fn case(fields: &[String]) -> Option<(usize, Case)> {
     let [number, row, column, held_out] = fields else { return None };
     let case = Case { row: row.clone(), column: column.clone(), held_out: held_out.parse().ok()? };

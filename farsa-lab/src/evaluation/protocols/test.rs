@@ -28,7 +28,7 @@ pub(crate) struct ProtocolRun {
     protocol: Protocol,
     generation: u32,
     individual: u32,
-    /// The champions of all populations, if there are several.
+    /// Champions of all populations, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     individuals: Vec<u32>,
     seed: u64,
@@ -156,7 +156,7 @@ pub(crate) fn lesions(
     Ok(run(plan, &mut pool, directory, &subject, (protocol, asked), effort)?.0)
 }
 
-/// The experiment's protocol of this name, with its number.
+/// Gets the experiment's protocol of this name, with its number.
 fn protocol(plan: &Plan<'_>, pool: &Pool<'_>, name: &str) -> Result<(usize, Protocol), Error> {
     let mut protocols = pool.info().protocols.clone();
     let number = Protocol::find(&protocols, name, plan.experiment.name())?;

@@ -16,7 +16,7 @@ use crate::strategy::simple::SimpleStrategy;
 const ACTIVE: &str = "strategy.active";
 const RESTARTS: &str = "strategy.restarts";
 
-/// The first columns of both.
+/// First columns of both.
 const SHAPE: DiagnosticsChart = DiagnosticsChart {
     title: "distribution",
     axis: "sigma, axis ratio",

@@ -32,7 +32,7 @@ fn share(default: f64) -> Setting {
         .doc("Standard deviation of mutation, as a share of each parameter's range.")
 }
 
-/// The mean step size.
+/// Mean step size.
 const STEP_SIZE: Diagnostics = Diagnostics {
     file: "strategy",
     charts: &[DiagnosticsChart { title: "step size", axis: "mean", curves: &[("step size", "of the parents")] }],
@@ -96,7 +96,7 @@ fn mutation(settings: &Settings, genes: usize) -> Result<RealMutation, Error> {
     })
 }
 
-/// The steady state strategy of evorobotpy, [`farsa_evo::real::SteadyState`].
+/// Steady state strategy of evorobotpy, [`farsa_evo::real::SteadyState`].
 pub(in crate::strategy) static STEADY_STATE: SimpleStrategy = SimpleStrategy {
     name: "sss",
     summary: "The steady state strategy of evorobotpy: the better half stays, each of it with one mutant [Nolfi2021].",

@@ -23,7 +23,7 @@ fn normalise() -> Setting {
     )
 }
 
-/// The evolution strategy of `OpenAI`, [`farsa_evo::gradient::OpenAiEs`].
+/// Evolution strategy of `OpenAI`, [`farsa_evo::gradient::OpenAiEs`].
 pub(in crate::strategy) static OPEN_AI_ES: SimpleStrategy = SimpleStrategy {
     name: "open-ai-es",
     summary: "A gradient estimated from mirrored noise of one size, followed by Adam [Salimans2017].",

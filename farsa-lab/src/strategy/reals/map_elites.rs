@@ -30,7 +30,7 @@ fn division() -> [Setting; 2] {
     ]
 }
 
-/// The number of elites, and the sum of their fitness.
+/// Number of elites, and the sum of their fitness.
 const ARCHIVE: Diagnostics = Diagnostics {
     file: "strategy",
     charts: &[

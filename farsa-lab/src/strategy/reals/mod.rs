@@ -33,7 +33,7 @@ pub(super) use pareto::NSGA2;
 
 const SIGMA: &str = "strategy.sigma";
 
-/// The ranges of all genes.
+/// Gets the ranges of all genes.
 fn bounds(genes: usize) -> Vec<[f64; 2]> {
     vec![[-1.0, 1.0]; genes]
 }
@@ -57,7 +57,7 @@ fn population_of_pairs(default: i64) -> Setting {
         .doc("Individuals of a generation, an even number: each of its directions there and back.")
 }
 
-/// The pairs of a generation.
+/// Gets the pairs of a generation.
 fn pairs(settings: &Settings) -> Result<usize, Error> {
     let population = settings.count(POPULATION)?;
     if population.is_multiple_of(2) {
@@ -85,7 +85,7 @@ fn sigma(default: f64, why: &str) -> Setting {
     Setting::number(SIGMA, default, 1e-9..=10.0).doc(&doc)
 }
 
-/// The length of the latest step and of the point.
+/// Length of the latest step and of the point.
 const STEPS: Diagnostics = Diagnostics {
     file: "strategy",
     charts: &[DiagnosticsChart {

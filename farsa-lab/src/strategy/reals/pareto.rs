@@ -13,7 +13,7 @@ const CROSSOVER_INDEX: &str = "strategy.crossover_index";
 const MUTATION_RATE: &str = "strategy.mutation_rate";
 const MUTATION_INDEX: &str = "strategy.mutation_index";
 
-/// The elitist non-dominated sorting genetic algorithm, [`farsa_evo::pareto::Nsga2`].
+/// Elitist non-dominated sorting genetic algorithm, [`farsa_evo::pareto::Nsga2`].
 pub(in crate::strategy) static NSGA2: SimpleStrategy = SimpleStrategy {
     name: "nsga2",
     summary: "The front of several objectives, by sorting those that nobody dominates; wants two objectives [Deb2002].",
