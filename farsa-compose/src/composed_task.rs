@@ -1,4 +1,4 @@
-//! The task of an experiment from a file, in any world.
+//! Task of an experiment from a file, in any world.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -25,10 +25,10 @@ pub(crate) trait Body: Clone + Send + 'static {
     /// Gets the agents.
     fn agents_mut(&mut self) -> &mut Agents;
 
-    /// Returns the bodies of a recording.
+    /// Builds the schema with the bodies of a recording.
     fn bodies(&self) -> Schema;
 
-    /// Returns the scalars of a recording, except those of terms.
+    /// Lists the scalars of a recording, except those of terms.
     fn scalars(&self) -> Vec<Channel>;
 
     /// Returns the robot for exports.
@@ -39,14 +39,14 @@ pub(crate) trait Body: Clone + Send + 'static {
         None
     }
 
-    /// Returns the quantity of a sensor channel.
+    /// Describes the quantity of a sensor channel.
     fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity;
 
-    /// Returns the quantity of a motor channel.
+    /// Describes the quantity of a motor channel.
     fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity;
 }
 
-/// The task of an experiment over the episode of its world.
+/// Task of an experiment over the episode of its world.
 #[derive(Clone, Debug)]
 pub(crate) struct ComposedTask<E>(pub(crate) E);
 

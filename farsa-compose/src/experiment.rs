@@ -344,7 +344,7 @@ fn strategy(
     Ok(strategies[source.position(names, ("strategy", name), path)?])
 }
 
-/// Returns the settings of a strategy that a document changes, with its values as defaults.
+/// Lists the settings of a strategy that a document changes, with its values as defaults.
 fn strategy_settings(
     document: &Document,
     strategy: &dyn StrategyDefinition,

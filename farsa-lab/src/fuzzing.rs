@@ -1,4 +1,4 @@
-//! The readers of a run's files, configurations, command lines and lines of an optimiser, one call each: for the fuzz targets
+//! Readers of a run's files, configurations, command lines and lines of an optimiser, one call each: for the fuzz targets
 //! in `fuzz/`.
 //!
 //! The command has one public entry, [`Laboratory::main`], which reads the arguments of the process, starts threads and writes

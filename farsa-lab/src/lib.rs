@@ -44,7 +44,7 @@ pub use experiment::{
 };
 pub use run::{Experiment, Laboratory, SimpleExperiment};
 
-/// The types of `farsa export`: controllers, channels and starts as plain data.
+/// Types of `farsa export`: controllers, channels and starts as plain data.
 pub mod exports {
     pub use crate::experiment::{
         ActuatorExport, ControllerExport, Exports, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,

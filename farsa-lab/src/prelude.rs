@@ -1,4 +1,4 @@
-//! The names that most experiments need, for `use farsa_lab::prelude::*`.
+//! Names that most experiments need, for `use farsa_lab::prelude::*`.
 
 pub use farsa_view::Schema;
 

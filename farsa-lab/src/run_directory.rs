@@ -1,4 +1,4 @@
-//! The files of a run, for programs that analyze runs.
+//! Files of a run, for programs that analyze runs.
 
 use std::path::Path;
 

@@ -1,10 +1,10 @@
-//! The shared state of both readers.
+//! Shared state of both readers.
 
 use crate::files::ModelFiles;
 use crate::options::ReadOptions;
 use crate::warnings::Warnings;
 
-/// The shared state of both readers.
+/// Shared state of both readers.
 pub(crate) struct Context<'o> {
     pub(crate) files: ModelFiles,
     pub(crate) options: &'o ReadOptions,

@@ -140,7 +140,7 @@ pub(crate) fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) 
     valid.into_iter().map(|candidate| (candidate, distance(name, candidate))).min_by_key(|(_, distance)| *distance)
 }
 
-/// The number of changed, added or dropped letters between two names, of which the first 64 letters count.
+/// Counts the changed, added or dropped letters between two names, of which the first 64 letters count.
 fn distance(a: &str, b: &str) -> usize {
     let letters: Vec<char> = b.chars().take(64).collect();
     let mut row: Vec<usize> = (0..=letters.len()).collect();

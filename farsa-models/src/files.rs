@@ -1,4 +1,4 @@
-//! The files that a model names: found within its folders only, regular, and read no further than allowed.
+//! Files that a model names: found within its folders only, regular, and read no further than allowed.
 
 use std::fs::{File, FileType};
 use std::io::Read as _;

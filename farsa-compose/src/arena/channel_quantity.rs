@@ -1,4 +1,4 @@
-//! The quantities of the channels of robots in an arena.
+//! Quantities of the channels of robots in an arena.
 
 use farsa_body::robots::MobileRobot;
 use farsa_body::sensors::infrared;
@@ -7,7 +7,7 @@ use crate::document::{InfraredModel, MotorKind, SensorKind};
 use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::eye::seen;
 
-/// Returns the quantity of a sensor channel.
+/// Describes the quantity of a sensor channel.
 pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> ChannelQuantity {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let side = ["left", "right"][channel % 2];
@@ -104,7 +104,7 @@ fn infrared_way(robot: &MobileRobot, groups: u32, channel: usize) -> String {
     format!("{prefix}{angle:.0} degrees to the left of ahead")
 }
 
-/// Returns the quantity of a motor channel.
+/// Describes the quantity of a motor channel.
 pub(crate) fn driven(kind: &MotorKind, channel: usize, robot: &MobileRobot) -> ChannelQuantity {
     let largest = robot.max_wheel_speed;
     match kind {

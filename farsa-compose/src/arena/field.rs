@@ -1,6 +1,6 @@
 //! Food on a field, and robots that forage on it.
 
-/// The state of a forager.
+/// State of a forager.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Forager {
     /// Energy \[0..1\], 0 for a dead robot.
@@ -84,12 +84,12 @@ impl Field {
         }
     }
 
-    /// Returns the states of all robots.
+    /// Gets the states of all robots.
     pub(crate) fn robots(&self) -> &[Forager] {
         &self.robots
     }
 
-    /// Returns the food of each cell, row by row from the origin along x.
+    /// Gets the food of each cell, row by row from the origin along x.
     pub(crate) fn food(&self) -> &[bool] {
         &self.food
     }
@@ -99,33 +99,33 @@ impl Field {
         self.size
     }
 
-    /// Returns the number of cells along each side.
+    /// Gets the number of cells along each side.
     pub(crate) fn cells(&self) -> usize {
         self.cells
     }
 
-    /// Returns the number of delivered pieces of food.
+    /// Gets the number of delivered pieces of food.
     pub(crate) fn collected(&self) -> u32 {
         self.collected
     }
 
-    /// Returns the number of pieces lost with dead robots.
+    /// Gets the number of pieces lost with dead robots.
     pub(crate) fn lost(&self) -> u32 {
         self.lost
     }
 
-    /// Returns the number of pieces that robots carry.
+    /// Gets the number of pieces that robots carry.
     pub(crate) fn carried(&self) -> u32 {
         self.robots.iter().map(|forager| forager.carried).sum()
     }
 
-    /// Returns the number of pieces on the field.
+    /// Gets the number of pieces on the field.
     #[cfg(test)]
     pub(crate) fn left(&self) -> usize {
         self.food.iter().filter(|food| **food).count()
     }
 
-    /// Returns the number of dead robots.
+    /// Gets the number of dead robots.
     pub(crate) fn deaths(&self) -> usize {
         self.robots.iter().filter(|forager| !forager.alive).count()
     }

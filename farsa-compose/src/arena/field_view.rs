@@ -29,7 +29,7 @@ fn carried(robot: usize) -> String {
 }
 
 impl Field {
-    /// Returns the channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food,
+    /// Lists the channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food,
     /// `carried 1`...
     pub(crate) fn channels(&self) -> Vec<Channel> {
         let of_robot = |robot| {
@@ -79,7 +79,7 @@ impl Field {
     }
 }
 
-/// Returns the marks of a robot's load and death.
+/// Lists the marks of a robot's load and death.
 fn marks(number: usize, robot: &MobileRobot, name: &str) -> Vec<SceneObject> {
     let (body, above) = (BodyId(number as u16), AROUND * robot.height);
     let on = |what: &str, geometry, placement, color| {

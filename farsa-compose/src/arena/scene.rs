@@ -1,4 +1,4 @@
-//! The arena, and the bodies that names refer to.
+//! Arena, and the bodies that names refer to.
 
 use farsa_body::ports::BodyId;
 use farsa_body::robots::{MobileParts, MobileRobot};
@@ -61,7 +61,7 @@ impl Thing {
     }
 }
 
-/// The arena of a document.
+/// Arena of a document.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
     pub(crate) arena: Arena,

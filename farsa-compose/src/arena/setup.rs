@@ -1,4 +1,4 @@
-//! The scene with the sensors, motors and terms of its robots.
+//! Scene with the sensors, motors and terms of its robots.
 
 use farsa_body::ports::{BodyId, Channels as _};
 use farsa_body::robots::MobileRobot;

@@ -63,7 +63,7 @@ impl How {
     }
 }
 
-/// The placements of a trial.
+/// Placements of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Starting {
     rules: Vec<Rule>,

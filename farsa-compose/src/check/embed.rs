@@ -14,7 +14,7 @@ const MAX_BYTES: u64 = 1_000_000;
 /// Most named files.
 const MAX_FILES: usize = 16;
 
-/// Returns the names of files in a document, with their paths.
+/// Lists the names of files in a document, with their paths.
 fn named(document: &Document) -> Vec<(String, &str)> {
     let scene = document.world.scene.as_deref().map(|name| ("/world/scene".to_owned(), name));
     let model =

@@ -1,12 +1,12 @@
-//! The text of a file, checked against the schema of the format.
+//! Text of a file, checked against the schema of the format.
 
 /// Embeds the files that a text names.
 pub(crate) mod embed;
 /// Access to the JSON schema.
 pub(crate) mod schema;
-/// The values of a document as settings.
+/// Values of a document as settings.
 pub(crate) mod settings;
-/// The text: lines of its values, names of its parts, limits.
+/// Text: lines of its values, names of its parts, limits.
 pub(crate) mod source;
 /// Reads and checks a text value by value.
 pub(crate) mod walk;

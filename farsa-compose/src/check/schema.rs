@@ -60,7 +60,7 @@ pub(crate) struct Part<'s> {
     own: &'s Map<String, Value>,
 }
 
-/// The type of a value.
+/// Type of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Table,
@@ -99,7 +99,7 @@ impl<'s> Part<'s> {
         branches.iter().filter_map(move |value| self.at(value))
     }
 
-    /// Returns the part without the alternative `null`.
+    /// Gets the part without the alternative `null`.
     fn given(self) -> Self {
         let null = |part: &Self| part.own.get("type").is_some_and(|kind| kind == "null");
         self.branches("anyOf").find(|part| !null(part)).unwrap_or(self)

@@ -1,4 +1,4 @@
-//! The values of a document as settings, for `--set`, sweeps and conditions.
+//! Values of a document as settings, for `--set`, sweeps and conditions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +21,7 @@ pub(crate) struct Entry {
     whole: bool,
 }
 
-/// Returns the settings of a valid document, in its order.
+/// Lists the settings of a valid document, in its order.
 pub(crate) fn entries(document: &Value, schema: &Value) -> Vec<Entry> {
     let mut entries_of_document = Vec::new();
     if let (Some(part), Some(table)) = (Part::root(schema), document.as_object()) {

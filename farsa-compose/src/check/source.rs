@@ -1,4 +1,4 @@
-//! The text of an experiment: lines of its values, names of its parts, limits of its sizes.
+//! Text of an experiment: lines of its values, names of its parts, limits of its sizes.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::check::schema::{Part, SCHEMA};
 use crate::check::settings::names;
 use crate::limits::Limits;
 
-/// The text of an experiment, for errors with file, line and key.
+/// Text of an experiment, for errors with file, line and key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Source {
     file: String,
@@ -98,7 +98,7 @@ impl Source {
         number.ok_or_else(|| Error::unknown(&self.of(path), what, name, names))
     }
 
-    /// Returns the error of a value.
+    /// Creates the error of a value.
     pub(crate) fn wrong(&self, path: &str, why: impl std::fmt::Display) -> Error {
         Error::Setting { place: self.of(path), key: key(path), why: why.to_string() }
     }
@@ -121,7 +121,7 @@ impl Lines {
         Self(std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect())
     }
 
-    /// Returns the line of a byte, from 1.
+    /// Gets the line of a byte, from 1.
     pub(crate) fn of(&self, offset: usize) -> usize {
         // The number of lines that start at or before the byte is its line, counted from 1.
         self.0.partition_point(|&start| start <= offset)

@@ -1,4 +1,4 @@
-//! The quantities of the channels of a robot with joints.
+//! Quantities of the channels of a robot with joints.
 
 use farsa_body::actuators::Law;
 use farsa_body::ports::JointId;
@@ -31,7 +31,7 @@ fn about(joint: Option<JointId>, scene: &Scene) -> (String, [f64; 2], [&'static 
     (name, joint.map_or([0.0, 1.0], |joint| scene.range(joint)), units)
 }
 
-/// Returns the quantity of a sensor channel.
+/// Describes the quantity of a sensor channel.
 pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> ChannelQuantity {
     let first = || scene.robot.segments.first().map_or("", |segment| segment.name.as_str()).to_owned();
     let body = |name: &Option<String>| name.clone().unwrap_or_else(first);
@@ -79,7 +79,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Channe
     }
 }
 
-/// Returns the quantity of a motor channel.
+/// Describes the quantity of a motor channel.
 pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> ChannelQuantity {
     let joint = |names: &[String], channel, given: bool, is: fn(&Law<f64>) -> bool| {
         let joint = joint(names, channel, scene, |joint| given || actuation::has(scene, joint, is));

@@ -49,7 +49,7 @@ impl<W: SpatialWorld> Motor<W> for Driving {
     }
 }
 
-/// Returns the joints of a motor: those named, or all. Unless the law is `given`, all means those with an actuator of
+/// Lists the joints of a motor: those named, or all. Unless the law is `given`, all means those with an actuator of
 /// the kind.
 pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, source: &Source) -> Result<Vec<JointId>, Error> {
     type Is = fn(&Law<f64>) -> bool;

@@ -75,7 +75,7 @@ impl JointedEpisode {
     }
 }
 
-/// Returns the schema: robot, colored things, markers as bodies after all others, images of sensors.
+/// Builds the schema: robot, colored things, markers as bodies after all others, images of sensors.
 fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
     let scene = &setup.scene;
     let mut robot = scene.alone();

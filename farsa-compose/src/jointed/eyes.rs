@@ -71,7 +71,7 @@ pub(crate) fn offset(
     Ok(VisualOffset::new(camera(eye, [1, 1], scene, path, source)?, target, from))
 }
 
-/// Returns the quantity of an image channel.
+/// Describes the quantity of an image channel.
 pub(crate) fn of_image(eye: &Eye, channel: usize) -> ChannelQuantity {
     let color = ["red", "green", "blue"][channel % 3];
     // Pixels are row by row, with three colors each.
@@ -79,7 +79,7 @@ pub(crate) fn of_image(eye: &Eye, channel: usize) -> ChannelQuantity {
     ChannelQuantity::new(format!("{color} of the pixel in column {column}, row {row}"), "1", [0.0, 1.0])
 }
 
-/// Returns the quantity of a channel of blobs.
+/// Describes the quantity of a channel of blobs.
 pub(crate) fn of_blobs(colors: &[ColorRange], channel: usize) -> ChannelQuantity {
     let color = colors.get(channel / 3).map_or("", |color| color.name.as_str());
     let what = match channel % 3 {
@@ -90,7 +90,7 @@ pub(crate) fn of_blobs(colors: &[ColorRange], channel: usize) -> ChannelQuantity
     ChannelQuantity::new(what, "1", [0.0, 1.0])
 }
 
-/// Returns the quantity of a channel of an offset.
+/// Describes the quantity of a channel of an offset.
 pub(crate) fn of_offset([of, from]: [&str; 2], channel: usize) -> ChannelQuantity {
     let way = ["to the left", "above"][channel % 2];
     ChannelQuantity::new(format!("widths of the image that {of} is {way} of {from}"), "1", [0.0, 1.0])

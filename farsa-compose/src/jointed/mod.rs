@@ -2,11 +2,11 @@
 
 /// Actuators of motors.
 mod actuation;
-/// The quantities of channels.
+/// Quantities of channels.
 mod channel_quantity;
 /// Motors, with their wrappers.
 mod driving;
-/// The episode.
+/// Episode.
 pub(crate) mod episode;
 /// Cameras with an image.
 mod eyes;
@@ -14,15 +14,15 @@ mod eyes;
 mod marker_position;
 /// A point of a body, or a marker.
 mod named_point;
-/// The robot, built in or from a file.
+/// Robot, built in or from a file.
 mod robot_model;
-/// The robot with the floor and the objects, and the parts that names refer to.
+/// Robot with the floor and the objects, and the parts that names refer to.
 pub(crate) mod scene;
 /// Sensors, with their wrappers.
 mod sensing;
-/// The scene with the sensors, motors and terms of its robot.
+/// Scene with the sensors, motors and terms of its robot.
 pub(crate) mod setup;
-/// The abilities that a world must have.
+/// Abilities that a world must have.
 mod spatial_world;
 /// Initial placements.
 mod starting;

@@ -1,4 +1,4 @@
-//! The robot, built in or from a file.
+//! Robot, built in or from a file.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;

@@ -1,4 +1,4 @@
-//! The robot with the floor and the objects, and the parts that names refer to.
+//! Robot with the floor and the objects, and the parts that names refer to.
 
 use farsa_body::Pose;
 use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
@@ -14,7 +14,7 @@ use crate::jointed::named_point::NamedPoint;
 use crate::jointed::robot_model::RobotModel;
 use crate::jointed::things::{Marker, Thing, What};
 
-/// The scene of a document.
+/// Scene of a document.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
     /// Robot and things as one description.
@@ -121,7 +121,7 @@ impl Scene {
         false
     }
 
-    /// Returns the number of the robot's own bodies.
+    /// Gets the number of the robot's own bodies.
     pub(crate) fn own_bodies(&self) -> usize {
         self.own[0]
     }

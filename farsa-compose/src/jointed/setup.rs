@@ -1,4 +1,4 @@
-//! The scene with the sensors, motors and terms of its robot.
+//! Scene with the sensors, motors and terms of its robot.
 
 use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::JointKind;

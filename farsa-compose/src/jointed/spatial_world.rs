@@ -1,4 +1,4 @@
-//! The abilities that a world must have for a robot with joints.
+//! Abilities that a world must have for a robot with joints.
 
 use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,

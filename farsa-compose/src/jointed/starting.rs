@@ -38,7 +38,7 @@ enum How {
     Fixed(Pose),
 }
 
-/// The placements of a trial.
+/// Placements of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Starting {
     rules: Vec<Rule>,

@@ -12,7 +12,7 @@ use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
 use crate::parts::agents::Agents;
 
-/// The measure of a term.
+/// Measure of a term.
 #[derive(Clone, Debug)]
 enum Measure {
     /// With the greatest distance of the surfaces [m].

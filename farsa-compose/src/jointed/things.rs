@@ -25,7 +25,7 @@ pub(crate) struct Thing {
     pub(crate) collider: Option<usize>,
 }
 
-/// The kind of a thing.
+/// Kind of a thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum What {
     /// A movable body.

@@ -15,7 +15,7 @@ use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::tally::Tally;
 
-/// The robots of a document in any world. Copies share the document and the test protocols.
+/// Robots of a document in any world. Copies share the document and the test protocols.
 #[derive(Clone, Debug)]
 pub(crate) struct Agents {
     pub(crate) document: Arc<Document>,
@@ -86,7 +86,7 @@ impl Agents {
         loaded
     }
 
-    /// Returns the outcome of a trial.
+    /// Builds the outcome of a trial.
     pub(crate) fn outcome(&self) -> Outcome {
         if self.ledger.failed {
             return Outcome::failed();
@@ -101,7 +101,7 @@ impl Agents {
         Outcome { observed: merged, ..self.ledger.outcome() }
     }
 
-    /// Returns the schema of bodies with channels, network and terms. `scalars` come first among the scalars.
+    /// Builds the schema of bodies with channels, network and terms. `scalars` come first among the scalars.
     pub(crate) fn schema(&self, bodies: Schema, scalars: Vec<Channel>) -> Schema {
         let NetworkSpec { inputs, outputs, network, .. } = &self.spec;
         let mut schema = bodies.with_sensors(inputs).with_outputs(outputs);
@@ -127,7 +127,7 @@ impl Agents {
         Schema { scalars: scalars.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
     }
 
-    /// Returns the names for tests, for recordings with `schema`. Neurons are numbered as in the network.
+    /// Builds the names for tests, for recordings with `schema`. Neurons are numbered as in the network.
     pub(crate) fn anatomy(&self, schema: &Schema) -> Anatomy {
         let NetworkSpec { network, outputs, .. } = &self.spec;
         Anatomy::new(schema, &self.description()).with_first(0, first_output(network, outputs.len()))

@@ -1,4 +1,4 @@
-//! The quantity of a channel, for exports.
+//! Quantity of a channel, for exports.
 
 use crate::document::Wrapper;
 

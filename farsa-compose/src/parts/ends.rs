@@ -1,4 +1,4 @@
-//! The inputs and outputs between which a network is built.
+//! Inputs and outputs between which a network is built.
 
 /// Names of inputs and outputs, and of the sensors and motors that they belong to.
 #[derive(Clone, Copy)]

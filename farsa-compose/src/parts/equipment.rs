@@ -1,4 +1,4 @@
-//! The sensors and motors of a robot.
+//! Sensors and motors of a robot.
 
 use farsa_body::ports::{Channels, Motor, Sensor};
 
@@ -8,7 +8,7 @@ use crate::parts::wrapping::NoiseStreams;
 /// Names of sensors or motors, with the first channel of each and the one after the last.
 type Spans = [(String, [usize; 2])];
 
-/// The sensors and motors of a robot, of kinds `S` and `M`.
+/// Sensors and motors of a robot, of kinds `S` and `M`.
 #[derive(Clone, Debug)]
 pub(crate) struct Equipment<S, M> {
     pub(crate) sensors: Vec<Part<S>>,

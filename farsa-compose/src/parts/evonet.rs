@@ -1,4 +1,4 @@
-//! The network of the 2013 program, with genes in its order.
+//! Network of the 2013 program, with genes in its order.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -108,7 +108,7 @@ impl EvonetNetwork {
         })
     }
 
-    /// Returns the numbers that a file fixes.
+    /// Gets the numbers that a file fixes.
     pub(crate) fn given(&self) -> &[Option<f32>] {
         &self.given
     }

@@ -23,7 +23,7 @@ pub(crate) fn band(color: &ColorRange) -> ColorBand {
     ColorBand { low, high }
 }
 
-/// Returns the quantity of a camera channel.
+/// Describes the quantity of a camera channel.
 pub(crate) fn seen(camera: &Camera, channel: usize) -> ChannelQuantity {
     let colors = camera.colors.len().max(1);
     let color = camera.colors.get(channel % colors).map_or("", |color| color.name.as_str());
@@ -31,7 +31,7 @@ pub(crate) fn seen(camera: &Camera, channel: usize) -> ChannelQuantity {
     ChannelQuantity::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
 }
 
-/// Returns the number of rays of a sensor in a step. Rays of infrared sensors depend on the robot.
+/// Counts the rays of a sensor in a step. Rays of infrared sensors depend on the robot.
 pub(crate) fn rays_of(kind: &SensorKind) -> usize {
     match kind {
         SensorKind::LaserDistance { beams, .. } => *beams as usize,

@@ -24,7 +24,7 @@ impl Groups {
         Self { groups: sizes.into_iter().map(group).collect(), apart }
     }
 
-    /// Returns the number of robots.
+    /// Gets the number of robots.
     pub(crate) fn robots(&self) -> usize {
         self.groups.last().map_or(0, |(_, [_, end])| *end)
     }
@@ -46,12 +46,12 @@ impl Groups {
         group.map_or("", |(name, _)| name)
     }
 
-    /// Returns the names of the populations, empty if all robots have one genome.
+    /// Lists the names of the populations, empty if all robots have one genome.
     pub(crate) fn populations(&self) -> Vec<String> {
         if self.apart { self.groups.iter().map(|(name, _)| name.clone()).collect() } else { Vec::new() }
     }
 
-    /// Returns the robots of each population.
+    /// Lists the robots of each population.
     pub(crate) fn ranges(&self) -> Vec<[usize; 2]> {
         if self.apart { self.groups.iter().map(|(_, range)| *range).collect() } else { vec![[0, self.robots()]] }
     }

@@ -1,4 +1,4 @@
-//! The terms of a trial, with success and failure.
+//! Terms of a trial, with success and failure.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -14,7 +14,7 @@ use crate::parts::groups::Groups;
 use crate::parts::tally::Tally;
 use crate::parts::wanted::Wanted;
 
-/// The terms of a trial with their totals.
+/// Terms of a trial with their totals.
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
     pub(crate) tallies: Vec<Tally>,
@@ -148,12 +148,12 @@ impl Ledger {
         self.paid.iter().filter_map(|number| self.tallies.get(*number))
     }
 
-    /// Returns the names of the fitness terms.
+    /// Lists the names of the fitness terms.
     pub(crate) fn names(&self) -> Vec<String> {
         self.paid().map(|tally| tally.label().to_owned()).collect()
     }
 
-    /// Returns the outcome of the trial.
+    /// Builds the outcome of the trial.
     pub(crate) fn outcome(&self) -> Outcome {
         let (steps, tallies) = (self.most_steps, &self.tallies);
         Outcome {

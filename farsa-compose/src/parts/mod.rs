@@ -1,4 +1,4 @@
-//! The parts that experiments have in any world, built from a document.
+//! Parts that experiments have in any world, built from a document.
 
 /// Controlled robots: channels, copies of one network, rewards.
 pub(crate) mod agents;
@@ -6,15 +6,15 @@ pub(crate) mod agents;
 pub(crate) mod behaviour;
 /// Networks of clusters and links.
 pub(crate) mod blocks;
-/// The quantity of a channel, for exports.
+/// Quantity of a channel, for exports.
 pub(crate) mod channel_quantity;
 /// Choices among points. A choice may follow an earlier one.
 pub(crate) mod choice;
-/// The inputs and outputs between which a network is built.
+/// Inputs and outputs between which a network is built.
 pub(crate) mod ends;
-/// The sensors and motors of a robot.
+/// Sensors and motors of a robot.
 pub(crate) mod equipment;
-/// The network of the 2013 program, with genes in its order.
+/// Network of the 2013 program, with genes in its order.
 pub(crate) mod evonet;
 /// Cameras with sectors.
 pub(crate) mod eye;
@@ -26,23 +26,23 @@ pub(crate) mod groups;
 pub(crate) mod hand_wired;
 /// Lesions and noise of the test protocols.
 pub(crate) mod interventions;
-/// The terms of a trial, with success and failure.
+/// Terms of a trial, with success and failure.
 pub(crate) mod ledger;
 /// A network of any kind.
 pub(crate) mod network;
-/// The channels of a robot, and the network between them.
+/// Channels of a robot, and the network between them.
 pub(crate) mod network_spec;
 /// A sensor or motor with its wrappers.
 pub(crate) mod part;
 /// Functions that drive robots instead of networks.
 pub(crate) mod reflex;
-/// The parameters of a search, and those of the network.
+/// Parameters of a search, and those of the network.
 pub(crate) mod searched;
 /// Checks of sizes by the limits of a reader.
 pub(crate) mod sizes;
 /// Layouts of block networks with a static lifetime.
 pub(crate) mod static_layout;
-/// The total of a term in a trial.
+/// Total of a term in a trial.
 pub(crate) mod tally;
 /// Conditions of success and failure.
 pub(crate) mod wanted;

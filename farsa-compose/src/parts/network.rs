@@ -33,7 +33,7 @@ pub(crate) enum AnyNetwork {
     Reflex(ReflexController),
 }
 
-/// The parameters of a network in the order of a search.
+/// Parameters of a network in the order of a search.
 pub(crate) struct Named {
     pub(crate) parameters: Vec<Parameter>,
     /// Values that are fixed unless the document searches them.
@@ -186,7 +186,7 @@ impl AnyNetwork {
         }
     }
 
-    /// Returns the number of values that the network keeps: parameters and state.
+    /// Gets the number of values that the network keeps: parameters and state.
     pub(crate) fn values(&self) -> usize {
         let state = match self {
             Self::Perceptron(..) | Self::HandWired(_) | Self::Reflex(_) => 0,
@@ -366,7 +366,7 @@ fn numbered<'k>(kinds: impl Iterator<Item = (&'k str, [f64; 2])>) -> Vec<Paramet
     named.collect()
 }
 
-/// Returns the number of searched parameters of a CTRNN: all except the gains.
+/// Counts the searched parameters of a CTRNN: all except the gains.
 fn searched(layout: &CtrnnLayout) -> usize {
     layout.parameter_count() - layout.neurons()
 }

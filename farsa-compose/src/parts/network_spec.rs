@@ -1,4 +1,4 @@
-//! The channels of a robot, and the network between them.
+//! Channels of a robot, and the network between them.
 
 use farsa_lab::Error;
 
@@ -12,7 +12,7 @@ use crate::parts::searched::Searched;
 /// Names of sensors or motors, with the first channel of each and the one after the last.
 pub(crate) type Spans = Vec<(String, [usize; 2])>;
 
-/// The channels of a robot, its network, and the parameters of a search.
+/// Channels of a robot, its network, and the parameters of a search.
 #[derive(Clone, Debug)]
 pub(crate) struct NetworkSpec {
     pub(crate) sensors: Spans,
@@ -70,7 +70,7 @@ impl NetworkSpec {
         Ok(Self { sensors, motors, about, inputs, outputs, network, searched })
     }
 
-    /// Returns the number of values that each robot keeps: channels, parameters and state.
+    /// Gets the number of values that each robot keeps: channels, parameters and state.
     pub(crate) fn values(&self) -> usize {
         self.inputs.len() + self.outputs.len() + self.network.values()
     }

@@ -1,4 +1,4 @@
-//! The parameters of a search, and those of the network.
+//! Parameters of a search, and those of the network.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,15 +9,15 @@ use crate::check::source::Source;
 use crate::document::Network;
 use crate::parts::network::AnyNetwork;
 
-/// The origin of a network parameter.
+/// Origin of a network parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Origin {
-    /// The searched parameter of this number.
+    /// Searched parameter of this number.
     Searched(usize),
     Fixed(f32),
 }
 
-/// The searched parameters, and the mapping to those of the network. Copies share names and ranges, because each lane
+/// Searched parameters, and the mapping to those of the network. Copies share names and ranges, because each lane
 /// of each thread has a copy and 828 000 parameters take 90 MB.
 #[derive(Clone, Debug)]
 pub(crate) struct Searched {
@@ -113,7 +113,7 @@ impl Searched {
         ))
     }
 
-    /// Returns the searched parameters, with names and ranges.
+    /// Gets the searched parameters, with names and ranges.
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

@@ -31,7 +31,7 @@ pub(crate) fn check_parts(document: &Document, robots: usize, infrared: usize, s
     Ok(())
 }
 
-/// The number of values that the wrappers and networks of all robots may still keep.
+/// Number of values that the wrappers and networks of all robots may still keep.
 pub(crate) struct MemoryBudget {
     left: usize,
     total: usize,

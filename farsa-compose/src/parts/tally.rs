@@ -1,4 +1,4 @@
-//! The total of a term in a trial.
+//! Total of a term in a trial.
 
 use farsa_lab::Error;
 use farsa_num::Scalar;

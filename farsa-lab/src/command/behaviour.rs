@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::experiment::behavior::Behavior;
 use crate::experiment::parameter::Parameter;
 
-/// The objectives and measures of an experiment, with the names of its JSON.
+/// Objectives and measures of an experiment, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct BehaviourInfo {
     /// Objectives of multi-objective strategies, the fitness first.
@@ -25,7 +25,7 @@ struct MeasureInfo {
 }
 
 impl BehaviourInfo {
-    /// Returns the objectives and measures of an experiment, if any.
+    /// Creates the objectives and measures of an experiment, if any.
     pub(crate) fn new(behaviour: Option<&dyn Behavior>) -> Self {
         let others = behaviour.map(Behavior::objectives).unwrap_or_default();
         let measures = behaviour.map(Behavior::measures).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The connections of an experiment: sensors with inputs, outputs with motors, terms with the fitness.
+//! Connections of an experiment: sensors with inputs, outputs with motors, terms with the fitness.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::Plan;
 
-/// The parts of an experiment and their channels, with the names of its JSON.
+/// Parts of an experiment and their channels, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct Connections {
     experiment: String,

@@ -23,7 +23,7 @@ const CONFIGURATIONS: [&str; 2] = ["ini", "conf"];
 /// Most remarks that are listed.
 const MAX_REMARKS: usize = 1000;
 
-/// The result of importing a configuration.
+/// Result of importing a configuration.
 #[derive(Debug, Serialize)]
 struct Summary<'i> {
     file: String,

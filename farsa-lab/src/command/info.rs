@@ -50,7 +50,7 @@ struct Entry {
     conditions: &'static [&'static str],
 }
 
-/// The description of an experiment under a condition, with the names of its JSON.
+/// Description of an experiment under a condition, with the names of its JSON.
 #[derive(Serialize)]
 struct Info {
     experiment: String,
@@ -80,7 +80,7 @@ struct Info {
     settings: Vec<SettingInfo>,
 }
 
-/// The description of a test protocol.
+/// Description of a test protocol.
 #[derive(Serialize)]
 struct ProtocolInfo {
     name: String,
@@ -100,7 +100,7 @@ impl ProtocolInfo {
     }
 }
 
-/// The description of a setting.
+/// Description of a setting.
 #[derive(Serialize)]
 pub(super) struct SettingInfo {
     key: String,

@@ -1,4 +1,4 @@
-//! The name, experiments and ranks of a call of the command.
+//! Name, experiments and ranks of a call of the command.
 
 use std::rc::Rc;
 

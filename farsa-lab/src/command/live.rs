@@ -21,7 +21,7 @@ const MAX_MODULE_BYTES: u64 = 100_000_000;
 /// First bytes of a gzip file.
 const GZIP: &[u8] = &[0x1f, 0x8b];
 
-/// The address of a served page.
+/// Address of a served page.
 #[derive(Serialize)]
 struct Address<'a> {
     address: &'a str,

@@ -1,4 +1,4 @@
-//! The command `farsa` for any set of experiments.
+//! Command `farsa` for any set of experiments.
 
 /// Arguments of the command line.
 mod arguments;
@@ -6,7 +6,7 @@ mod arguments;
 mod behaviour;
 /// `main` for any set of experiments.
 pub mod cli;
-/// The connections of an experiment.
+/// Connections of an experiment.
 mod connections;
 /// `farsa export`.
 mod export;
@@ -18,13 +18,13 @@ mod import;
 mod info;
 /// Signals that stop a run, and the exit code with which a scheduler restarts it.
 mod interrupt;
-/// The name, experiments and ranks of a call of the command.
+/// Name, experiments and ranks of a call of the command.
 mod invocation;
 /// `farsa live` and `farsa serve`.
 mod live;
 /// Help with examples, completions and manual pages.
 pub(crate) mod manual;
-/// The command on several ranks.
+/// Command on several ranks.
 mod on_ranks;
 /// Generates docs/command.md.
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The command on several ranks, of which rank 0 executes it.
+//! Command on several ranks, of which rank 0 executes it.
 
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ use crate::run::plan::Plan;
 use crate::run::replications::Replications;
 use crate::run::worker::Worker;
 
-/// The role of a rank.
+/// Role of a rank.
 pub(crate) enum Part {
     /// The rank executes the command, and the others wait for its orders.
     Leads,

@@ -16,7 +16,7 @@ use crate::run::pool::Pool;
 use crate::run::progress::Progress;
 use crate::strategy::any_strategy::Genome;
 
-/// The genes that a command line gives.
+/// Genes that a command line gives.
 pub(crate) struct GeneArguments {
     /// Lists of genes, with the names of populations before them or not.
     pub(crate) lists: Vec<String>,
@@ -26,7 +26,7 @@ pub(crate) struct GeneArguments {
     pub(crate) numbers: Vec<usize>,
 }
 
-/// The result of an evaluation.
+/// Result of an evaluation.
 #[derive(Debug, Serialize)]
 pub(crate) struct Evaluation {
     experiment: String,

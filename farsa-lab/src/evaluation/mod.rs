@@ -17,19 +17,19 @@ pub(crate) mod lines;
 /// Memory use of recordings.
 #[cfg(feature = "command")]
 mod memory_budget;
-/// The population that a part of the command line refers to.
+/// Population that a part of the command line refers to.
 #[cfg(feature = "command")]
 pub(crate) mod populations;
 /// `farsa test --protocol`: the champion in every case of a table.
 #[cfg(feature = "command")]
 pub(crate) mod protocols;
-/// The table of a test and its record, two files that belong together.
+/// Table of a test and its record, two files that belong together.
 #[cfg(feature = "command")]
 mod recorded;
 /// `farsa replay`: a trial of the run again, step by step.
 #[cfg(feature = "command")]
 pub(crate) mod replay;
-/// The result of a replay, and its page.
+/// Result of a replay, and its page.
 #[cfg(feature = "command")]
 pub(crate) mod replayed;
 /// `farsa test`: the champion on fresh starts.
@@ -38,7 +38,7 @@ pub(crate) mod test;
 /// `test.csv`: one line per trial of a test, and its summary.
 #[cfg(feature = "command")]
 pub(crate) mod test_table;
-/// The trials of a test, and their outcomes in numbers and words.
+/// Trials of a test, and their outcomes in numbers and words.
 pub(crate) mod trials;
 
 pub use genotypes::read_genotypes;

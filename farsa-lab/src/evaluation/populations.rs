@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 
-/// The populations of an experiment by name, in their order.
+/// Populations of an experiment by name, in their order.
 pub(crate) struct Populations<'n> {
     pub(crate) experiment: &'n str,
     pub(crate) names: &'n [String],

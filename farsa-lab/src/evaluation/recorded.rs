@@ -1,4 +1,4 @@
-//! The table of a test and its record, two files that belong together.
+//! Table of a test and its record, two files that belong together.
 
 use std::path::Path;
 use std::thread;
@@ -20,7 +20,7 @@ const MAX_BYTES: [u64; 2] = [1 << 30, 1 << 20];
 const ATTEMPTS: usize = 20;
 const PAUSE: Duration = Duration::from_millis(25);
 
-/// The record of a test.
+/// Record of a test.
 pub(crate) trait TableRecord: Serialize + DeserializeOwned {
     /// CRC-32 of the table: a process that was killed between the two files leaves another.
     fn table_crc(&self) -> u32;

@@ -205,7 +205,7 @@ impl Replayable {
         Ok(())
     }
 
-    /// The schema of its recordings.
+    /// Builds the schema of its recordings.
     pub(crate) fn schema(&self) -> Schema {
         let with = |bodies: &dyn Bodies| bodies.schema_with(&self.parameters);
         self.evaluator.bodies().map_or_else(|| self.evaluator.info().schema, with)
@@ -306,7 +306,7 @@ pub(crate) struct ReplaySummary {
     lesion: Option<Lesioned>,
 }
 
-/// The trials with a list of changes.
+/// Trials with a list of changes.
 #[derive(Debug, Serialize)]
 struct Lesioned {
     list: String,

@@ -1,4 +1,4 @@
-//! The result of a replay, and its page: of one run, or of two side by side.
+//! Result of a replay, and its page: of one run, or of two side by side.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::write_page;
 
-/// The result of a replay, with a summary of each run.
+/// Result of a replay, with a summary of each run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Replayed<S> {
     #[serde(flatten)]

@@ -55,7 +55,7 @@ pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record
 /// Trials of a test where no number is asked for.
 pub(crate) const TRIALS: usize = 100;
 
-/// The result of a test.
+/// Result of a test.
 #[derive(Debug, Serialize)]
 pub(crate) struct TestRun {
     directory: String,

@@ -39,7 +39,7 @@ pub struct TestTrial {
     pub fitness: f64,
 }
 
-/// The trials of a test as lines of text of equal length, the head first.
+/// Trials of a test as lines of text of equal length, the head first.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Table {
     lines: Vec<Vec<String>>,
@@ -149,7 +149,7 @@ impl Table {
         self.lines.iter().skip(1).filter_map(trial).collect()
     }
 
-    /// The lines, the head first.
+    /// Gets the lines, the head first.
     pub(super) fn lines(&self) -> &[Vec<String>] {
         &self.lines
     }
@@ -234,7 +234,7 @@ pub(crate) struct Share {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Finding {
-    /// The mean of a quantity, over the trials that have it.
+    /// Mean of a quantity, over the trials that have it.
     Mean(f64),
     /// Count of each word.
     Counts(BTreeMap<String, usize>),

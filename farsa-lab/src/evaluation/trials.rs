@@ -1,4 +1,4 @@
-//! The trials of a test, and their outcomes in numbers and words.
+//! Trials of a test, and their outcomes in numbers and words.
 
 use farsa_evo::Fitness;
 use farsa_view::readable;

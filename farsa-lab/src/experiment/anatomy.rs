@@ -1,4 +1,4 @@
-//! The parts of a controller that a test can change, by name.
+//! Parts of a controller that a test can change, by name.
 
 use std::ops::Range;
 
@@ -176,7 +176,7 @@ impl Anatomy {
         Ok(())
     }
 
-    /// The number in the network of a parameter of the schema.
+    /// Gets the number in the network of a parameter of the schema.
     fn own(&self, parameter: usize) -> usize {
         self.order.as_ref().map_or(parameter, |order| order.get(parameter).copied().unwrap_or(usize::MAX))
     }

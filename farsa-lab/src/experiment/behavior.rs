@@ -9,18 +9,18 @@ use crate::experiment::parameter::Parameter;
 /// The fitness is the first objective of every strategy, and these follow. [`NotedBehavior`] builds them from a table
 /// of [`Outcome::notes`].
 pub trait Behavior {
-    /// Returns the names of the further objectives, in order. More is better. By default none.
+    /// Lists the names of the further objectives, in order. More is better. By default none.
     fn objectives(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns the measures of a behavior, each with the range from low to high that an archive divides. A value beyond
+    /// Lists the measures of a behavior, each with the range from low to high that an archive divides. A value beyond
     /// it counts as the nearest end. By default none.
     fn measures(&self) -> Vec<Parameter> {
         Vec::new()
     }
 
-    /// Returns the objectives and then the measures of an individual, from its trials in order. A number that is not
+    /// Lists the objectives and then the measures of an individual, from its trials in order. A number that is not
     /// finite counts as a failure.
     fn describe(&self, trials: &[Outcome]) -> Vec<f64>;
 }

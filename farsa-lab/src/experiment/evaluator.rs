@@ -1,4 +1,4 @@
-//! The evaluation of an experiment: parameters in, outcomes out.
+//! Evaluation of an experiment: parameters in, outcomes out.
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
@@ -18,7 +18,7 @@ use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::{CaseId, Protocol};
 
-/// The data of a task under its settings: parameters, recording, trials, and what tests can do with it.
+/// Data of a task under its settings: parameters, recording, trials, and what tests can do with it.
 ///
 /// Start from [`new`](Self::new) and name the fields that differ:
 ///

@@ -23,7 +23,7 @@ pub trait Rollout: Task {
         let _ = recorder;
     }
 
-    /// The outcome of the episode that has ended.
+    /// Builds the outcome of the episode that has ended.
     fn outcome(&self) -> Outcome;
 }
 

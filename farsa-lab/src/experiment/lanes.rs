@@ -83,7 +83,7 @@ pub(crate) struct LaneRequest {
 /// Names of the instruction sets that there are steps for, on some machine.
 pub(crate) const SIMD: [&str; 3] = ["baseline", "avx2", "avx512"];
 
-/// The name of an instruction set.
+/// Gets the name of an instruction set.
 fn name(instructions: Instructions) -> &'static str {
     match instructions {
         Instructions::Avx512 => SIMD[2],
@@ -92,7 +92,7 @@ fn name(instructions: Instructions) -> &'static str {
     }
 }
 
-/// Returns the number of worlds with the least cost per world.
+/// Gets the number of worlds with the least cost per world.
 fn usual(instructions: Instructions) -> usize {
     if name(instructions) == SIMD[2] { LANES[1] } else { LANES[0] }
 }

@@ -1,4 +1,4 @@
-//! The contract of experiments and its parts.
+//! Contract of experiments and its parts.
 
 /// Named parts of a controller that a test can change.
 mod anatomy;
@@ -16,7 +16,7 @@ pub(crate) mod episode;
 pub(crate) mod evaluator;
 /// Decoding of genes into parameters.
 pub(crate) mod genotype;
-/// The loop over many episodes in the lanes of a batch of worlds.
+/// Loop over many episodes in the lanes of a batch of worlds.
 mod in_lanes;
 /// An evaluator made of a world and an episode.
 mod in_world;
@@ -32,11 +32,11 @@ mod limited;
 pub(crate) mod network_export;
 /// Parameters of a network with a bias and a leak for every neuron.
 mod network_parameters;
-/// The controller of a robot: its sensors, a network, and its motors.
+/// Controller of a robot: its sensors, a network, and its motors.
 mod neurocontroller;
 /// A controller with normalized observations.
 mod normalized_controller;
-/// The outcome of a trial, and the description of a robot.
+/// Outcome of a trial, and the description of a robot.
 pub(crate) mod outcome;
 /// A number that evolution sets, with its range.
 pub(crate) mod parameter;
@@ -46,7 +46,7 @@ pub(crate) mod protocol;
 mod rescored;
 /// A setting: its key, default, and allowed values.
 mod setting;
-/// The configuration of a run: settings and their values.
+/// Configuration of a run: settings and their values.
 pub(crate) mod settings;
 /// Values of settings.
 mod value;

@@ -1,4 +1,4 @@
-//! The parameters of a network with a bias and a leak for every neuron.
+//! Parameters of a network with a bias and a leak for every neuron.
 
 use farsa_nn::{Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 

@@ -1,4 +1,4 @@
-//! The controller of a robot: its sensors, a network, and its motors.
+//! Controller of a robot: its sensors, a network, and its motors.
 
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
-//! The outcome of a trial, and the description of a robot and its controller.
+//! Outcome of a trial, and the description of a robot and its controller.
 
 use std::fmt;
 
 use farsa_evo::ObservationStatistics;
 
-/// The outcome of one trial.
+/// Outcome of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
     /// Terms of the fitness, with names given by [`TaskInfo::terms`](crate::TaskInfo::terms).

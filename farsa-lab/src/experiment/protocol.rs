@@ -235,7 +235,7 @@ impl Protocol {
         None
     }
 
-    /// The names of the rows, or of the columns, each once in the order of the cases.
+    /// Gets the names of the rows, or of the columns, each once in the order of the cases.
     pub(crate) fn places<'c>(cases: &'c [Case], of: impl Fn(&'c Case) -> &'c str) -> Vec<&'c str> {
         let mut seen = BTreeSet::new();
         cases.iter().map(of).filter(|name| seen.insert(*name)).collect()

@@ -18,7 +18,7 @@ pub struct Rescored {
     score: Score,
 }
 
-/// The terms of an outcome.
+/// Terms of an outcome.
 type Score = Box<dyn Fn(&Outcome) -> Vec<f64> + Send>;
 
 impl Rescored {

@@ -33,7 +33,7 @@ impl Source {
     }
 }
 
-/// The values a setting may have.
+/// Values a setting may have.
 #[derive(Debug, Clone, PartialEq)]
 enum Allowed {
     Flag,

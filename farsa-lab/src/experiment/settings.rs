@@ -1,4 +1,4 @@
-//! The configuration of a run: the settings of an experiment and their values.
+//! Configuration of a run: the settings of an experiment and their values.
 
 use std::collections::BTreeMap;
 

@@ -18,25 +18,25 @@ use crate::store::directory::Directory;
 use crate::strategy::any_strategy::Genome;
 use crate::strategy::settings::NORMALISE;
 
-/// The formats of model files.
+/// Formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ModelFormat {
     /// MuJoCo's format.
     Mjcf,
-    /// The robot only.
+    /// Robot only.
     Urdf,
 }
 
-/// The formats of controllers.
+/// Formats of controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ControllerFormat {
     /// Names and numbers, including the body.
     Json,
-    /// The network for the flash memory of a board.
+    /// Network for the flash memory of a board.
     Bytes,
-    /// The network as constants of a Rust program.
+    /// Network as constants of a Rust program.
     Rust,
-    /// The network as tables for Python.
+    /// Network as tables for Python.
     Safetensors,
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn robot(
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
 }
 
-/// The champion of a population of a run.
+/// Champion of a population of a run.
 struct Champion {
     generation: u32,
     individual: u32,
@@ -108,7 +108,7 @@ impl Champion {
         Ok(Self { generation, individual, population, genes, normalisation })
     }
 
-    /// Returns the parameters of its genes.
+    /// Computes the parameters of its genes.
     fn parameters(&self, plan: &Plan<'_>, directory: &Directory, evaluator: &dyn Evaluator) -> Result<Vec<f32>, Error> {
         let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
         self.genes.decode(&plan.genotype(evaluator)).ok_or_else(damaged)
@@ -124,7 +124,7 @@ fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
     })
 }
 
-/// The origin of a controller.
+/// Origin of a controller.
 #[derive(Serialize)]
 struct Whose<'a> {
     /// Version of the meaning of fields.
@@ -153,7 +153,7 @@ impl Whose<'_> {
     }
 }
 
-/// The starts of the trials of a test.
+/// Starts of the trials of a test.
 #[derive(Serialize)]
 struct Trials<'a> {
     format: u32,

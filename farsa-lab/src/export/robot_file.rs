@@ -15,7 +15,7 @@ use crate::escaped::{OneLine, shortened};
 use crate::export::files::ModelFormat;
 use crate::store::bounded::read_stream_text;
 
-/// The content of a model file.
+/// Content of a model file.
 #[derive(Serialize)]
 pub(crate) struct Summary {
     robot: String,
@@ -80,7 +80,7 @@ pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String,
 }
 
 impl Summary {
-    /// Returns the description of the robot in a file.
+    /// Creates the description of the robot in a file.
     pub(crate) fn new(file: &Path, reading: &Imported) -> Self {
         let robot = &reading.robot;
         let joints = robot.joints().map(|id| {

@@ -1,4 +1,4 @@
-//! The bootstrap interval of a median.
+//! Bootstrap interval of a median.
 
 use farsa_num::Stream;
 

@@ -19,7 +19,7 @@ pub(crate) struct Chart {
     pub(crate) curves: Vec<Curve>,
 }
 
-/// The quantity of the lower axis.
+/// Quantity of the lower axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum Across {
     #[default]

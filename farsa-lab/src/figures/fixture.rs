@@ -1,6 +1,6 @@
 //! Results of other programs for the tests.
 
-/// Returns the cases of a kind in `tests/fixtures/statistics.json`.
+/// Reads the cases of a kind in `tests/fixtures/statistics.json`.
 pub(crate) fn fixture(kind: &str) -> Vec<serde_json::Value> {
     let kinds: serde_json::Value =
         serde_json::from_str(include_str!("../../tests/fixtures/statistics.json")).expect("JSON");

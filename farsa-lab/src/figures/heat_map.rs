@@ -47,7 +47,7 @@ fn shade(share: f64) -> String {
     format!("#{red:02X}{green:02X}{blue:02X}")
 }
 
-/// The places of the parts.
+/// Places of the parts.
 struct Places {
     left: f64,
     top: f64,

@@ -1,4 +1,4 @@
-//! The curves of a run's log: `fitness.svg` and the figure of a report on a single run.
+//! Curves of a run's log: `fitness.svg` and the figure of a report on a single run.
 
 use crate::figures::chart::{self, Chart, Curve};
 use crate::figures::series::Series;

@@ -1,11 +1,11 @@
-//! The Mann-Whitney U test, exact for small groups.
+//! Mann-Whitney U test, exact for small groups.
 
 use crate::figures::normal::upper_tail;
 
 /// Most values of both groups for the exact test, which takes too long beyond that.
 const MAX_EXACT: usize = 200;
 
-/// The comparison of two groups of values.
+/// Comparison of two groups of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Comparison {
     /// Mann and Whitney's U of the first group: pairs in which its value is the larger, ties as one half.

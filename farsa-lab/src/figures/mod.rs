@@ -11,15 +11,15 @@ pub(crate) mod chart;
 mod fixture;
 /// A table of shares, darker where a share is larger.
 pub(crate) mod heat_map;
-/// The curves of a run's log: `fitness.svg`.
+/// Curves of a run's log: `fitness.svg`.
 pub(crate) mod log_curves;
-/// The Mann-Whitney U test.
+/// Mann-Whitney U test.
 pub(crate) mod mann_whitney;
-/// The standard normal distribution.
+/// Standard normal distribution.
 mod normal;
 /// A plane with two axes.
 mod plane;
-/// The first two principal components.
+/// First two principal components.
 pub(crate) mod principal_components;
 /// Intervals of shares, and Fisher's exact test.
 pub(crate) mod proportion;
@@ -27,7 +27,7 @@ pub(crate) mod proportion;
 pub(crate) mod rates;
 /// Points in two dimensions, darker where a third value is larger.
 pub(crate) mod scatter;
-/// The values of a curve, thinned while they are added.
+/// Values of a curve, thinned while they are added.
 pub(crate) mod series;
 /// Numbers with four significant digits.
 pub(crate) mod significant;

@@ -1,4 +1,4 @@
-//! The standard normal distribution.
+//! Standard normal distribution.
 
 use farsa_num::exp;
 

@@ -14,7 +14,7 @@ pub(crate) const LABELS: usize = 7;
 /// Height of the labels and the name of the lower axis.
 pub(crate) const FOOT: f64 = 60.0;
 
-/// The range of an axis, in a part of the values.
+/// Range of an axis, in a part of the values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     low: f64,

@@ -1,8 +1,8 @@
-//! The first two principal components of points.
+//! First two principal components of points.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// The mean of points and the first two principal components of their deviations.
+/// Mean of points and the first two principal components of their deviations.
 #[derive(Debug, Clone)]
 pub(crate) struct PrincipalComponents {
     mean: DVector<f64>,

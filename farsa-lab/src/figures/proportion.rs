@@ -1,6 +1,6 @@
 //! Shares of successes with intervals, and Fisher's exact test.
 
-/// The 97.5 % quantile of the normal distribution.
+/// 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
 /// A number of successes and of trials.

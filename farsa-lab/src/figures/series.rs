@@ -1,4 +1,4 @@
-//! The values of a curve, thinned while they are added.
+//! Values of a curve, thinned while they are added.
 
 /// Number of points above which only every k-th is drawn, with k a power of two.
 pub(crate) const MAX_POINTS: usize = 1500;
@@ -39,7 +39,7 @@ impl Series {
         }
     }
 
-    /// Returns the number of generations.
+    /// Gets the number of generations.
     pub(crate) fn len(&self) -> usize {
         self.len
     }
@@ -73,7 +73,7 @@ pub(crate) fn thinned<T: Copy>(values: &[T]) -> impl Iterator<Item = (usize, T)>
     values.iter().copied().enumerate().filter(move |(index, _)| index.is_multiple_of(stride) || *index == last)
 }
 
-/// Returns the number of generations from one drawn point to the next.
+/// Computes the number of generations from one drawn point to the next.
 fn stride(points: usize) -> usize {
     points.div_ceil(MAX_POINTS).next_power_of_two()
 }

@@ -1,6 +1,6 @@
 //! Order statistics of a few runs.
 
-/// The median and the quartiles of some values.
+/// Median and quartiles of some values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Quartiles {
     pub(crate) lower: f64,

@@ -1,4 +1,4 @@
-//! The parts that all figures share: frame, colors, legend and short coordinates.
+//! Parts that all figures share: frame, colors, legend and short coordinates.
 
 use maud::{Markup, html};
 

@@ -29,7 +29,7 @@ pub(crate) struct Trajectories<'a> {
     pub(crate) panels: &'a [Panel],
 }
 
-/// The curves of a case.
+/// Curves of a case.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Panel {
     pub(crate) label: String,

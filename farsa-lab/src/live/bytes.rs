@@ -15,7 +15,7 @@ impl Bytes {
         Self(floats.into_iter().flat_map(|x| x.to_le_bytes()).collect())
     }
 
-    /// Returns the bytes as numbers. Trailing bytes are ignored.
+    /// Converts the bytes to numbers. Trailing bytes are ignored.
     pub(crate) fn floats(&self) -> Vec<f32> {
         self.0.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
     }

@@ -1,4 +1,4 @@
-//! The best individual of a run, with everything that its episodes depend on.
+//! Best individual of a run, with everything that its episodes depend on.
 
 use farsa_evo::Snapshot as _;
 use farsa_view::View;
@@ -23,7 +23,7 @@ pub(crate) fn champion(
     Ok((saved(champion), view))
 }
 
-/// Returns the champions of a run, one of each population.
+/// Reads the champions of a run, one of each population.
 ///
 /// # Errors
 /// Errors of [`Replayable::champions`].

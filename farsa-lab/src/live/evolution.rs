@@ -18,7 +18,7 @@ use crate::store::log::Line;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::opponents::HallOfFame;
 
-/// The results of a generation.
+/// Results of a generation.
 #[derive(Debug, Serialize)]
 pub(crate) struct EvolvedGeneration {
     generation: u32,
@@ -122,11 +122,11 @@ impl Evolution {
     }
 }
 
-/// The evaluated part of a generation.
+/// Evaluated part of a generation.
 enum Part {
     /// Every `parts`-th evaluation from number `part`, with its outcomes.
     Share { part: usize, parts: usize, outcomes: Vec<(usize, Option<Outcome>)> },
-    /// The outcomes of the whole generation, in order.
+    /// Outcomes of the whole generation, in order.
     All(Vec<(usize, Option<Outcome>)>),
 }
 

@@ -2,7 +2,7 @@
 
 /// Bytes as text in JSON.
 mod bytes;
-/// The best individual of a run.
+/// Best individual of a run.
 #[cfg(feature = "command")]
 mod champion;
 /// A hash of an episode after each step.
@@ -14,16 +14,16 @@ mod evolution;
 /// `farsa live`: an interactive page that runs an agent.
 #[cfg(feature = "command")]
 pub(crate) mod page;
-/// The part of a run that a page carries.
+/// Part of a run that a page carries.
 pub(crate) mod page_run;
 /// Requests to a session and their answers, as JSON.
 mod request;
-/// The state of a search, from which it continues.
+/// State of a search, from which it continues.
 mod run_state;
 /// `farsa serve`: the page of a running run.
 #[cfg(feature = "command")]
 pub(crate) mod serve;
-/// The agent of a page and its episodes.
+/// Agent of a page and its episodes.
 mod session;
 /// New generations and champions of a running run.
 #[cfg(feature = "command")]

@@ -30,7 +30,7 @@ const CURVE_POINTS: usize = 400;
 /// Most bytes of a run's state in a page.
 const MAX_STATE_BYTES: usize = 400_000;
 
-/// The description of an agent for the viewer.
+/// Description of an agent for the viewer.
 #[derive(Debug, Serialize)]
 struct About {
     /// Number of kinds of trials.
@@ -57,7 +57,7 @@ struct AboutIndividual {
     trials: Vec<AboutTrial>,
 }
 
-/// The result of a trial of the run.
+/// Result of a trial of the run.
 #[derive(Debug, Serialize)]
 struct AboutTrial {
     steps: u32,
@@ -68,7 +68,7 @@ struct AboutTrial {
     digests: Vec<u32>,
 }
 
-/// The content of a written page.
+/// Content of a written page.
 #[derive(Debug, Serialize)]
 pub(crate) struct LiveSummary {
     directory: String,
@@ -79,16 +79,16 @@ pub(crate) struct LiveSummary {
     pub(crate) summary: String,
 }
 
-/// The purpose of a page.
+/// Purpose of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Use {
     /// A file in which evolution can continue.
     File,
-    /// The page of `farsa serve`, which follows a run.
+    /// Page of `farsa serve`, which follows a run.
     Served,
 }
 
-/// The text of a page and the generations in it.
+/// Text of a page and the generations in it.
 pub(crate) struct PageText {
     pub(crate) html: String,
     generations: Vec<u32>,

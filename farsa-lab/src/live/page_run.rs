@@ -1,4 +1,4 @@
-//! The part of a run that a page carries.
+//! Part of a run that a page carries.
 
 use serde::{Deserialize, Serialize};
 

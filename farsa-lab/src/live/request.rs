@@ -82,19 +82,19 @@ pub(crate) struct EpisodeAnswer {
     pub(crate) success: bool,
 }
 
-/// The number of an added individual.
+/// Number of an added individual.
 #[derive(Debug, Serialize)]
 pub(crate) struct AddedIndividual {
     pub(crate) individual: usize,
 }
 
-/// The outcomes of a part of a generation.
+/// Outcomes of a part of a generation.
 #[derive(Debug, Serialize)]
 pub(crate) struct SharedOutcomes {
     pub(crate) outcomes: Bytes,
 }
 
-/// The results of fresh trials.
+/// Results of fresh trials.
 #[derive(Debug, Default, PartialEq, Serialize)]
 pub(crate) struct FreshResults {
     pub(crate) trials: usize,

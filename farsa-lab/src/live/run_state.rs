@@ -1,4 +1,4 @@
-//! The state of a search, from which it continues.
+//! State of a search, from which it continues.
 
 use farsa_evo::Snapshot as _;
 use serde::{Deserialize, Serialize};
@@ -28,7 +28,7 @@ impl RunState {
         Some(Self { generation: search.search.generation(), state, hall, observed })
     }
 
-    /// Returns the number of bytes of all parts.
+    /// Gets the number of bytes of all parts.
     pub(crate) fn size(&self) -> usize {
         self.state.0.len() + self.hall.0.len() + self.observed.as_ref().map_or(0, |observed| observed.0.len())
     }

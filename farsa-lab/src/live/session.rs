@@ -1,4 +1,4 @@
-//! The agent of a page and its episodes.
+//! Agent of a page and its episodes.
 
 use farsa_evo::ObservationStatistics;
 use farsa_num::Instructions;
@@ -66,7 +66,7 @@ impl Agent {
         Ok(Self { saved, normalisation })
     }
 
-    /// Returns the opponents in a trial, one of each other population.
+    /// Lists the opponents in a trial, one of each other population.
     fn opponents(&self, trial: u32) -> Vec<&[f32]> {
         self.saved.opponents.get(trial as usize).into_iter().flatten().map(Vec::as_slice).collect()
     }
@@ -135,7 +135,7 @@ impl LiveSession {
         Ok(AddedIndividual { individual: index })
     }
 
-    /// Returns the number of kinds of trials.
+    /// Gets the number of kinds of trials.
     pub(crate) fn trials(&self) -> usize {
         self.evaluator.info().trials
     }
@@ -150,12 +150,12 @@ impl LiveSession {
         self.evaluator.pushes()
     }
 
-    /// Returns the names of the robots that can be recorded.
+    /// Lists the names of the robots that can be recorded.
     pub(crate) fn robots(&self) -> Vec<String> {
         self.evaluator.info().robots
     }
 
-    /// Returns the names of the populations, none of a single one.
+    /// Lists the names of the populations, none of a single one.
     pub(crate) fn populations(&self) -> Vec<String> {
         let names = self.evaluator.info().populations;
         if names.len() > 1 { names } else { Vec::new() }
@@ -266,7 +266,7 @@ fn agent(individuals: &[Agent], index: usize) -> Result<&Agent, Error> {
     individuals.get(index).ok_or_else(|| Error::Usage(format!("individual {index} of {count} (the first is 0)")))
 }
 
-/// Returns the schema of an individual's recordings.
+/// Builds the schema of an individual's recordings.
 fn schema(evaluator: &dyn Evaluator, individual: &PageIndividual) -> Schema {
     let with = |bodies: &dyn Bodies| bodies.schema_with(&individual.parameters);
     evaluator.bodies().map_or_else(|| evaluator.info().schema, with)

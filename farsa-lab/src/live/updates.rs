@@ -16,7 +16,7 @@ use crate::store::log;
 /// Most bytes of a log.
 const MAX_LOG_BYTES: u64 = 1 << 28;
 
-/// The best and mean fitness of a generation, `None` where every evaluation failed.
+/// Best and mean fitness of a generation, `None` where every evaluation failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Row(pub(crate) usize, Option<f64>, Option<f64>);
 
@@ -28,7 +28,7 @@ impl Row {
     }
 }
 
-/// The part of a run that a listener has already received.
+/// Part of a run that a listener has already received.
 #[derive(Debug, Default)]
 pub(crate) struct SeenState {
     /// Number of generations whose fitness was read.
@@ -47,7 +47,7 @@ impl SeenState {
         Self { generations, ..Self::default() }
     }
 
-    /// Returns the rows that were added to the log.
+    /// Reads the rows that were added to the log.
     ///
     /// # Errors
     /// [`Error::Io`] and [`Error::File`] for an invalid log.

@@ -14,7 +14,7 @@ use crate::store::replace::sync_directory;
 /// Largest depth of folders in a run.
 const DEEPEST: usize = 8;
 
-/// The destination of a run.
+/// Destination of a run.
 pub(crate) struct Copy<'r, 'e> {
     run: &'r Gathered<'e>,
     pub(crate) to: PathBuf,

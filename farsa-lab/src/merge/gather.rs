@@ -1,4 +1,4 @@
-//! The distinct runs below directories.
+//! Distinct runs below directories.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -30,7 +30,7 @@ pub(crate) struct Gathered<'e> {
     pub(crate) asked: usize,
 }
 
-/// The distinct runs, in the order in which they were found, and the duplicates.
+/// Distinct runs, in the order in which they were found, and the duplicates.
 pub(crate) struct Gathering<'e> {
     pub(crate) runs: Vec<Gathered<'e>>,
     /// Skipped directory, and that of the same run with at least as many generations.

@@ -14,7 +14,7 @@ use crate::merge::run_table;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// The options of the command.
+/// Options of the command.
 pub(crate) struct Merge<'a> {
     /// Runs, or directories with runs.
     pub(crate) directories: &'a [PathBuf],
@@ -24,7 +24,7 @@ pub(crate) struct Merge<'a> {
     pub(crate) csv: Option<&'a Path>,
 }
 
-/// The results of the command.
+/// Results of the command.
 #[derive(Debug, Serialize)]
 pub(crate) struct Merged {
     runs: usize,

@@ -2,7 +2,7 @@
 
 /// Complete copies of runs.
 mod copy;
-/// The distinct runs below directories.
+/// Distinct runs below directories.
 mod gather;
 /// `farsa merge`: copies runs and makes a table.
 mod merged;

@@ -71,7 +71,7 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     Ok(row)
 }
 
-/// Returns the names of a run's populations, if there are several.
+/// Lists the names of a run's populations, if there are several.
 fn names(run: &Gathered<'_>) -> Result<Vec<String>, Error> {
     let several = run.lines.last().is_some_and(|line| !line.each.is_empty());
     Ok(if several { run.plan.evaluator()?.info().populations } else { Vec::new() })
@@ -91,7 +91,7 @@ fn populations(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<String>, Error> {
     Ok(populations)
 }
 
-/// Returns the settings in which two runs differ, in the order of their tables.
+/// Lists the settings in which two runs differ, in the order of their tables.
 fn differing<'r>(runs: &[(&'r Gathered<'_>, &Path)]) -> Vec<&'r str> {
     let mut keys: Vec<(&str, &Value, bool)> = Vec::new();
     for (run, _) in runs {

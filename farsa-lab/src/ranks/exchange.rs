@@ -1,4 +1,4 @@
-//! The messages of all ranks, in a fixed order.
+//! Messages of all ranks, in a fixed order.
 //!
 //! A run begins with a command and ends with a status. In each generation all ranks synchronize twice: they exchange a status
 //! before it and the outcomes of their trials in it. A rank with an error reports it at the next synchronization point, so no
@@ -34,7 +34,7 @@ pub(crate) enum SyncPoint {
     Outcomes,
 }
 
-/// The status of a rank.
+/// Status of a rank.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Status {
     /// The rank is ready for another generation.
@@ -48,7 +48,7 @@ pub(crate) enum Status {
 }
 
 impl Status {
-    /// Returns the status of a rank with an error.
+    /// Creates the status of a rank with an error.
     pub(crate) fn failed(error: &Error) -> Self {
         Self::Failed(error.exit_code(), error.to_string())
     }
@@ -72,7 +72,7 @@ pub(crate) enum WorkerCommand {
     End(u8),
 }
 
-/// The outcomes of a rank, or the reason for missing ones.
+/// Outcomes of a rank, or the reason for missing ones.
 #[derive(Serialize, Deserialize)]
 struct Report {
     status: Status,
@@ -109,7 +109,7 @@ impl<'r> Exchange<'r> {
         self.ranks.rank() > 0
     }
 
-    /// Returns the next synchronization point.
+    /// Gets the next synchronization point.
     pub(crate) fn next(&self) -> SyncPoint {
         self.next.get()
     }

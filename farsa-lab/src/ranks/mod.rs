@@ -3,13 +3,13 @@
 /// Blocks of evaluations, requested by workers and assigned by rank 0.
 #[cfg(feature = "command")]
 pub(crate) mod dealing;
-/// The messages of all ranks in a generation, in a fixed order.
+/// Messages of all ranks in a generation, in a fixed order.
 #[cfg(feature = "command")]
 pub(crate) mod exchange;
 /// Values that must be equal on all ranks.
 #[cfg(feature = "command")]
 pub(crate) mod facts;
-/// The evaluations of a rank: all that are left, or the blocks assigned by rank 0.
+/// Evaluations of a rank: all that are left, or the blocks assigned by rank 0.
 #[cfg(feature = "command")]
 pub(crate) mod numbers;
 mod port;
@@ -17,7 +17,7 @@ mod port;
 #[cfg(test)]
 #[cfg(feature = "command")]
 pub(crate) mod threads;
-/// The bytes of messages.
+/// Bytes of messages.
 pub(crate) mod wire;
 
 pub use port::{Alone, Ranks};

@@ -1,15 +1,15 @@
-//! The evaluations of a rank: all that are left, or the blocks assigned by rank 0.
+//! Evaluations of a rank: all that are left, or the blocks assigned by rank 0.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The numbers of evaluations. Each number is drawn once by one thread of all ranks.
+/// Numbers of evaluations. Each number is drawn once by one thread of all ranks.
 pub(crate) enum Numbers {
     /// From 0 to a count, in a single process and on rank 0, which assigns blocks of them.
     Counted { count: usize, drawn: AtomicUsize },
-    /// The numbers of assigned blocks.
+    /// Numbers of assigned blocks.
     Assigned(AssignedBlocks),
 }
 
@@ -23,7 +23,7 @@ pub(crate) struct AssignedBlocks {
     wanted: Condvar,
 }
 
-/// The current block and one in reserve, so that threads work while the next block is requested.
+/// Current block and one in reserve, so that threads work while the next block is requested.
 #[derive(Default)]
 struct Blocks {
     left: Range<usize>,

@@ -1,4 +1,4 @@
-//! The interface to a message-passing library, and its implementation for one process.
+//! Interface to a message-passing library, and its implementation for one process.
 
 use crate::error::Error;
 

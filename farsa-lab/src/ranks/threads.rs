@@ -25,7 +25,7 @@ struct State {
     lost: bool,
 }
 
-/// The state shared by the ranks of a test.
+/// State shared by the ranks of a test.
 struct Hub {
     size: usize,
     state: Mutex<State>,

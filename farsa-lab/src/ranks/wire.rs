@@ -1,4 +1,4 @@
-//! The bytes of messages between ranks.
+//! Bytes of messages between ranks.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -21,7 +21,7 @@ pub(crate) fn from_bytes<T: DeserializeOwned>(rank: usize, bytes: &[u8]) -> Resu
     postcard::from_bytes(bytes).map_err(why)
 }
 
-/// The outcomes of a rank with their numbers. Each name of a note is stored once.
+/// Outcomes of a rank with their numbers. Each name of a note is stored once.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Outcomes {
     names: Vec<String>,

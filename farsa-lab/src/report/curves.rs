@@ -1,4 +1,4 @@
-//! The curves of a report: those of a single run, or the median and quartiles of several.
+//! Curves of a report: those of a single run, or the median and quartiles of several.
 
 use crate::figures::chart::{Across, Chart, Curve};
 use crate::figures::log_curves::LogCurves;

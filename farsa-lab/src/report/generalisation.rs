@@ -1,4 +1,4 @@
-//! The number of runs that generalize to held-out cases.
+//! Number of runs that generalize to held-out cases.
 
 use crate::figures::proportion::{Proportion, fisher};
 use crate::report::outcome::probability;
@@ -8,7 +8,7 @@ use crate::report::run::percent;
 /// Least share of successful trials of a held-out case for a run to generalize to it.
 const GENERALISES: f64 = 0.75;
 
-/// The results of a group's runs in held-out cases.
+/// Results of a group's runs in held-out cases.
 pub(crate) struct HeldOut<'r> {
     pub(crate) label: &'r str,
     /// Names of the cases.

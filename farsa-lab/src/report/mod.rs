@@ -2,19 +2,19 @@
 
 /// Curves of a single run, or the median and quartiles of several.
 mod curves;
-/// The number of runs that generalize to held-out cases.
+/// Number of runs that generalize to held-out cases.
 mod generalisation;
-/// The moment at which runs are compared.
+/// Moment at which runs are compared.
 mod moment;
 /// Medians, successes and comparisons of groups of runs.
 pub(crate) mod outcome;
 /// A page of headings, texts, tables and figures, as HTML or Markdown.
 mod page;
-/// The results of test protocols.
+/// Results of test protocols.
 mod protocols;
 /// A run as a report reads it.
 mod run;
-/// The section about one experiment.
+/// Section about one experiment.
 mod section;
 /// Differences, complete tables and commands of configurations.
 mod settings;

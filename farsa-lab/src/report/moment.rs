@@ -1,4 +1,4 @@
-//! The moment at which runs are compared: a generation, or a number of evaluations if generations differ in size.
+//! Moment at which runs are compared: a generation, or a number of evaluations if generations differ in size.
 
 use crate::figures::chart::Across;
 use crate::report::run::{Group, Run};
@@ -6,7 +6,7 @@ use crate::report::run::{Group, Run};
 /// Number of points of a curve over evaluations.
 const POINTS: u64 = 500;
 
-/// The last moment that some runs have in common.
+/// Last moment that some runs have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moment {
     Generation(usize),
@@ -14,7 +14,7 @@ pub(crate) enum Moment {
 }
 
 impl Moment {
-    /// Returns the last common moment of all runs.
+    /// Finds the last common moment of all runs.
     pub(crate) fn common(groups: &[Group<'_>]) -> Self {
         let generation = groups.iter().map(Group::common).min().unwrap_or(0);
         let mut runs = groups.iter().flat_map(|group| &group.runs);
@@ -49,7 +49,7 @@ impl Moment {
         }
     }
 
-    /// Returns the lower axis of curves.
+    /// Builds the lower axis of curves.
     pub(crate) fn axis(self, groups: &[Group<'_>]) -> Across {
         match self {
             Self::Generation(_) => Across::Generations,
@@ -62,7 +62,7 @@ impl Moment {
     }
 }
 
-/// Returns the position of a run's last generation on an axis.
+/// Gets the position of a run's last generation on an axis.
 pub(crate) fn length(run: &Run<'_>, across: Across) -> usize {
     match across {
         Across::Generations => run.last(),

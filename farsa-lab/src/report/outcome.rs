@@ -1,4 +1,4 @@
-//! The results of groups of runs: medians, successes and comparisons.
+//! Results of groups of runs: medians, successes and comparisons.
 
 use crate::figures::bootstrap::{RESAMPLES, median_interval};
 use crate::figures::mann_whitney::{Comparison, compare};
@@ -8,12 +8,12 @@ use crate::report::moment::Moment;
 use crate::report::page::{Block, Table};
 use crate::report::run::{Group, Run, percent, short, whose};
 
-/// The criterion of a successful run.
+/// Criterion of a successful run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Success {
-    /// The least share of successful trials in the champion's test.
+    /// Least share of successful trials in the champion's test.
     Share(f64),
-    /// The fitness to be reached by the best of a generation.
+    /// Fitness to be reached by the best of a generation.
     Fitness(f64),
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn outcome(groups: &[Group<'_>], success: Success) -> Vec<Block> {
     blocks
 }
 
-/// Returns the measures: best and mean of each population at a moment, and the success of champions.
+/// Lists the measures: best and mean of each population at a moment, and the success of champions.
 fn measures(groups: &[Group<'_>], moment: Moment) -> Vec<Measure> {
     let mut measures: Vec<Measure> = Vec::new();
     for (population, name) in Group::populations(groups) {
@@ -94,7 +94,7 @@ fn measures(groups: &[Group<'_>], moment: Moment) -> Vec<Measure> {
 }
 
 impl Measure {
-    /// Returns the values of the runs of a group that have one.
+    /// Lists the values of the runs of a group that have one.
     fn values(&self, group: &Group<'_>) -> Vec<f64> {
         group.runs.iter().filter_map(|run| (self.of)(run)).collect()
     }

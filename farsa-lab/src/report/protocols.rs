@@ -1,4 +1,4 @@
-//! The results of test protocols, a table and a figure for each.
+//! Results of test protocols, a table and a figure for each.
 
 use crate::error::Error;
 use crate::evaluation::protocols::case_summary;
@@ -32,7 +32,7 @@ struct Alike<'r> {
     runs: Vec<(&'r Run<'r>, &'r TestedProtocol)>,
 }
 
-/// Returns the results of each protocol in each group of runs.
+/// Lists the results of each protocol in each group of runs.
 pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
     let mut names: Vec<&str> = Vec::new();
     for tested in groups.iter().flat_map(|group| &group.runs).flat_map(|run| &run.protocols) {
@@ -67,7 +67,7 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
     blocks
 }
 
-/// Returns the protocols without tests of some runs, with a command for the first of these runs.
+/// Lists the protocols without tests of some runs, with a command for the first of these runs.
 pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let mut others: Vec<(&Protocol, Vec<&Run<'_>>)> = Vec::new();
     for &run in groups.iter().flat_map(|group| &group.runs) {
@@ -90,7 +90,7 @@ pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>,
     Ok(if table.rows.is_empty() { Vec::new() } else { vec![heading, Block::Table(table)] })
 }
 
-/// Returns the runs of each group with the same tested cases.
+/// Lists the runs of each group with the same tested cases.
 fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
     let mut alike: Vec<Alike<'r>> = Vec::new();
     for group in groups {

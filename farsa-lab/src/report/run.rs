@@ -19,7 +19,7 @@ use crate::store::log::Line;
 use crate::store::manifest::Manifest;
 use crate::strategy::settings::GENERATIONS;
 
-/// The parts of a run that a report shows.
+/// Parts of a run that a report shows.
 pub(crate) struct Run<'e> {
     pub(crate) directory: Directory,
     pub(crate) plan: Plan<'e>,
@@ -43,7 +43,7 @@ pub(crate) struct Run<'e> {
     pub(crate) other_protocols: Vec<Protocol>,
 }
 
-/// The test of a run's champion.
+/// Test of a run's champion.
 pub(crate) struct Tested {
     pub(crate) findings: Findings,
     /// `None` for a test of an early version.
@@ -117,7 +117,7 @@ impl<'e> Run<'e> {
         self.lines.get(generation).and_then(row).map_or(f64::NAN, |row| row[which])
     }
 
-    /// Returns the populations with their names. A single population has no name.
+    /// Lists the populations with their names. A single population has no name.
     pub(crate) fn populations(&self) -> Vec<(Option<usize>, String)> {
         match self.populations.as_slice() {
             [] => vec![(None, String::new())],
@@ -125,7 +125,7 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// Returns the last finished generation.
+    /// Gets the last finished generation.
     pub(crate) fn last(&self) -> usize {
         self.lines.len().saturating_sub(1)
     }
@@ -233,13 +233,13 @@ impl<'r> Group<'r> {
         format!(" The best so far where the champion is the best of all generations: {}.", labels.join("; "))
     }
 
-    /// Returns the populations of the condition with the most of them.
+    /// Lists the populations of the condition with the most of them.
     pub(crate) fn populations(groups: &[Self]) -> Vec<(Option<usize>, String)> {
         let runs = groups.iter().flat_map(|group| &group.runs);
         runs.map(|run| run.populations()).max_by_key(Vec::len).unwrap_or_default()
     }
 
-    /// Returns the last common generation of the runs.
+    /// Gets the last common generation of the runs.
     pub(crate) fn common(&self) -> usize {
         self.runs.iter().map(|run| run.last()).min().unwrap_or(0)
     }

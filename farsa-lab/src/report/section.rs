@@ -1,4 +1,4 @@
-//! The section of a report about one experiment.
+//! Section of a report about one experiment.
 
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -139,7 +139,7 @@ fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
     Ok(table)
 }
 
-/// Returns the results of tests, or the commands that run them.
+/// Lists the results of tests, or the commands that run them.
 fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let mut names: Vec<&str> = Vec::new();
     for test in groups.iter().flat_map(|group| &group.runs).filter_map(|run| run.test.as_ref()) {
@@ -213,7 +213,7 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     Ok(blocks)
 }
 
-/// Returns the medians of a group's tests.
+/// Lists the medians of a group's tests.
 fn middle(group: &Group<'_>, names: &[&str]) -> Vec<String> {
     let findings: Vec<_> = group.runs.iter().filter_map(|run| Some(&run.test.as_ref()?.findings)).collect();
     let shown = |values: Vec<f64>, show: fn(f64) -> String| median(&values).map(show).unwrap_or_default();

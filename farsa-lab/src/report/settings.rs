@@ -1,4 +1,4 @@
-//! The configurations of the runs in a report: differences, complete tables, and commands.
+//! Configurations of the runs in a report: differences, complete tables, and commands.
 
 use crate::error::Error;
 use crate::experiment::settings::Setting;
@@ -82,7 +82,7 @@ pub(crate) fn shell(words: &[String]) -> Result<String, Error> {
     shlex::try_join(words.iter().map(String::as_str)).map_err(|error| Error::Other(error.to_string()))
 }
 
-/// Returns the settings of all groups without duplicates, in the order of the first.
+/// Lists the settings of all groups without duplicates, in the order of the first.
 fn settings<'r>(groups: &[Group<'r>]) -> Vec<&'r Setting> {
     let mut settings: Vec<&Setting> = Vec::new();
     for run in groups.iter().filter_map(|group| group.runs.first().copied()) {

@@ -1,4 +1,4 @@
-//! The internal states of a test protocol on their first two principal components.
+//! Internal states of a test protocol on their first two principal components.
 
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::principal_components::PrincipalComponents;

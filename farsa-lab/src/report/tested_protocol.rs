@@ -41,7 +41,7 @@ impl TestedProtocol {
         Ok((tested, others))
     }
 
-    /// Returns the cases in the order of the table.
+    /// Lists the cases in the order of the table.
     pub(crate) fn cases(&self) -> Vec<Case> {
         self.found.iter().map(CaseSummary::case).collect()
     }

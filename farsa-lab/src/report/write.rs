@@ -19,7 +19,7 @@ use crate::store::replace::{create_results, refuse_existing};
 /// Default criterion of a successful run.
 const HALF: Success = Success::Share(0.5);
 
-/// The summary of a written report.
+/// Summary of a written report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     runs: Vec<RunSummary>,

@@ -25,7 +25,7 @@ const REPLICATIONS: u64 = 20;
 /// Cores of the larger machine in the estimate.
 const MANY: usize = 64;
 
-/// The evaluated genomes.
+/// Evaluated genomes.
 pub(crate) struct Sample {
     /// Parameters of each individual.
     parameters: Vec<Vec<f32>>,
@@ -94,7 +94,7 @@ impl Sample {
     }
 }
 
-/// The measurement and the estimate.
+/// Measurement and estimate.
 #[derive(Debug, Serialize)]
 pub(crate) struct Bench {
     experiment: String,
@@ -126,7 +126,7 @@ pub(crate) struct Bench {
     predictions: Vec<Prediction>,
 }
 
-/// The size of a study.
+/// Size of a study.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Study {
     replications: u64,
@@ -138,7 +138,7 @@ struct Study {
     control_steps: f64,
 }
 
-/// The estimated duration of the study.
+/// Estimated duration of the study.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Prediction {
     cores: usize,

@@ -11,7 +11,7 @@ use crate::store::directory::Directory;
 use crate::store::replace::replace;
 use crate::strategy::any_strategy::AnyStrategy;
 
-/// The names of the scores.
+/// Names of the scores.
 pub(crate) struct CollectionTable {
     /// Objectives, the fitness first.
     objectives: Vec<String>,

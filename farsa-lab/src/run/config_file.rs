@@ -28,7 +28,7 @@ pub(crate) struct Entry<T> {
     pub(crate) place: String,
 }
 
-/// The content of a configuration file, before it is applied to an experiment.
+/// Content of a configuration file, before it is applied to an experiment.
 #[derive(Debug, Clone)]
 pub(crate) struct ConfigFile {
     pub(crate) name: String,
@@ -167,7 +167,7 @@ impl FileKey<'_> {
         matches!(self.value.map(Spanned::get_ref), Some(DeValue::Array(_)))
     }
 
-    /// Returns the values of a list with their places.
+    /// Lists the values of a list with their places.
     ///
     /// # Errors
     /// [`Error::Setting`] for a value that is not a list, or for an element that cannot be the value of a setting.
@@ -209,7 +209,7 @@ fn deepest(text: &str) -> Option<usize> {
     })
 }
 
-/// The starts of the lines of a text.
+/// Starts of the lines of a text.
 struct Lines(Vec<usize>);
 
 impl Lines {
@@ -217,7 +217,7 @@ impl Lines {
         Self(std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect())
     }
 
-    /// Returns the line of a byte, from 1.
+    /// Gets the line of a byte, from 1.
     fn line(&self, offset: usize) -> usize {
         self.0.partition_point(|&start| start <= offset)
     }
@@ -232,7 +232,7 @@ struct Key<'t> {
     value: Option<&'t Spanned<DeValue<'t>>>,
 }
 
-/// The keys of a file. Their names are joined late, because a long name of a table would be repeated in each key.
+/// Keys of a file. Their names are joined late, because a long name of a table would be repeated in each key.
 #[derive(Default)]
 struct Keys<'t> {
     /// Name and parent of each table.

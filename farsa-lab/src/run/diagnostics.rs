@@ -1,4 +1,4 @@
-//! The diagnostics of a strategy for each generation, as a table and a picture.
+//! Diagnostics of a strategy for each generation, as a table and a picture.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::store::replace::replace;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::Diagnostics;
 
-/// The table of diagnostics, which grows, and its curves.
+/// Table of diagnostics, which grows, and its curves.
 pub(crate) struct DiagnosticsTable(Option<Table>);
 
 struct Table {

@@ -1,4 +1,4 @@
-//! The interface to what evaluates a generation: the threads and ranks of a run, or the workers of a page.
+//! Interface to what evaluates a generation: the threads and ranks of a run, or the workers of a page.
 
 use crate::error::Error;
 use crate::experiment::evaluator::{Evaluation, Evaluator, TaskInfo};
@@ -36,7 +36,7 @@ pub(crate) trait EvaluationBackend {
     fn compare(&self, _generation: u32, _fingerprint: &dyn Fn() -> u64) {}
 }
 
-/// The reason for a round without results.
+/// Reason for a round without results.
 #[derive(Debug)]
 pub(crate) enum Unfinished {
     /// A stop was requested.

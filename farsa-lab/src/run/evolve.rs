@@ -1,4 +1,4 @@
-//! The loop over the generations of a run, with a checkpoint from time to time.
+//! Loop over the generations of a run, with a checkpoint from time to time.
 
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};

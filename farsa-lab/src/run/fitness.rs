@@ -1,4 +1,4 @@
-//! The fitness of a generation from the trials of all individuals.
+//! Fitness of a generation from the trials of all individuals.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
@@ -13,7 +13,7 @@ use crate::run::catch_panic::catch_panic;
 use crate::run::evaluation_backend::{EvaluationBackend, Unfinished};
 use crate::store::failures::FailedEvaluation;
 
-/// The opponents of a generation's evaluations, in order, with the same number for each.
+/// Opponents of a generation's evaluations, in order, with the same number for each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Opponents<'g> {
     pub(crate) parameters: &'g [&'g [f32]],
@@ -34,7 +34,7 @@ pub(crate) struct Generation<'g> {
     pub(crate) id: EpisodeId,
 }
 
-/// The scores of a generation.
+/// Scores of a generation.
 pub(crate) struct Judged {
     pub(crate) judgements: Scores,
     pub(crate) failed: Vec<FailedEvaluation>,
@@ -143,7 +143,7 @@ fn add_observed(all: &mut ObservationStatistics, trials: &[Outcome]) -> Result<(
     Ok(())
 }
 
-/// Returns the objectives, the fitness first, and then the measures of an individual. With opponents in turn, the other
+/// Lists the objectives, the fitness first, and then the measures of an individual. With opponents in turn, the other
 /// objectives are the fitness against each.
 fn row(
     evaluator: &dyn Evaluator,
@@ -191,10 +191,10 @@ fn row(
 /// A function from the trials of an individual to its scores.
 type Row<'r> = dyn Fn(&[Outcome]) -> Result<Vec<f64>, String> + 'r;
 
-/// The scores of an individual, and its trials.
+/// Scores of an individual, and its trials.
 pub(crate) type Individual = (Vec<f64>, Vec<Outcome>);
 
-/// The first failed trial of an individual, with the reason. `None` for a failure of the fitness.
+/// First failed trial of an individual, with the reason. `None` for a failure of the fitness.
 pub(crate) type FailedTrial = (Option<u32>, String);
 
 /// Returns the scores of an individual, or its first failed trial with the reason.

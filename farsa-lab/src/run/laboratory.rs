@@ -1,4 +1,4 @@
-//! The experiments and strategies that a command finds by name.
+//! Experiments and strategies that a command finds by name.
 
 use std::path::Path;
 

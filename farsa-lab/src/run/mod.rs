@@ -8,7 +8,7 @@ pub(crate) mod begin;
 pub(crate) mod bench;
 /// Panics of an experiment's code, caught.
 pub(crate) mod catch_panic;
-/// The archive or front of a strategy, as a table and a picture.
+/// Archive or front of a strategy, as a table and a picture.
 #[cfg(feature = "command")]
 pub(crate) mod collection;
 /// A configuration file, and the settings of a command line.
@@ -16,23 +16,23 @@ pub(crate) mod config_file;
 /// Rank 0 of a run: it sends commands to the workers and synchronizes all ranks.
 #[cfg(feature = "command")]
 pub(crate) mod coordinator;
-/// The diagnostics of a strategy for each generation, as a table and a picture.
+/// Diagnostics of a strategy for each generation, as a table and a picture.
 #[cfg(feature = "command")]
 mod diagnostics;
-/// The interface to what evaluates a generation: threads and ranks, or the workers of a page.
+/// Interface to what evaluates a generation: threads and ranks, or the workers of a page.
 pub(crate) mod evaluation_backend;
-/// The loop over generations, with saves.
+/// Loop over generations, with saves.
 #[cfg(feature = "command")]
 pub(crate) mod evolve;
 /// An experiment as the command sees it: a name, settings, and an evaluator.
 pub(crate) mod experiment;
-/// The fitness of a generation from the trials of all individuals.
+/// Fitness of a generation from the trials of all individuals.
 pub(crate) mod fitness;
 /// A file in another format, converted to a file that describes an experiment.
 mod imported_file;
-/// The experiments and strategies that a command finds by name.
+/// Experiments and strategies that a command finds by name.
 pub(crate) mod laboratory;
-/// The experiment, condition, seed and settings of a run.
+/// Experiment, condition, seed and settings of a run.
 pub(crate) mod plan;
 /// A pool of threads that run trials.
 #[cfg(feature = "command")]
@@ -45,7 +45,7 @@ pub(crate) mod progress;
 pub(crate) mod queue;
 /// `record.bin`: the reported fitness of every generation.
 pub(crate) mod record_file;
-/// The checksummed files of a run: checkpoint, champions and imported genotypes.
+/// Checksummed files of a run: checkpoint, champions and imported genotypes.
 pub(crate) mod records;
 /// Makes the files of a run agree with its checkpoint.
 #[cfg(feature = "command")]
@@ -53,9 +53,9 @@ mod recover;
 /// `farsa run --replications`: one plan under consecutive seeds.
 #[cfg(feature = "command")]
 pub(crate) mod replications;
-/// The state of a search, equal on every rank.
+/// State of a search, equal on every rank.
 pub(crate) mod search_state;
-/// The result of a run.
+/// Result of a run.
 #[cfg(feature = "command")]
 pub(crate) mod summary;
 /// Tests of whole runs with every strategy.
@@ -67,7 +67,7 @@ pub(crate) mod text_table;
 /// Ranks except the first: they evaluate the same search and write no files.
 #[cfg(feature = "command")]
 pub(crate) mod worker;
-/// The choice of world, where an experiment offers one.
+/// Choice of world, where an experiment offers one.
 pub(crate) mod world_choice;
 
 pub use experiment::{Experiment, SimpleExperiment};

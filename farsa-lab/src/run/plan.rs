@@ -1,4 +1,4 @@
-//! The experiment, condition, seed and settings of a run.
+//! Experiment, condition, seed and settings of a run.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -76,7 +76,7 @@ impl<'e> Pool<'e> {
         Self { exchange, ..self }
     }
 
-    /// Returns the ranks that share the evaluations.
+    /// Gets the ranks that share the evaluations.
     pub(crate) fn exchange(&self) -> Rc<Exchange<'e>> {
         self.exchange.clone()
     }
@@ -86,22 +86,22 @@ impl<'e> Pool<'e> {
         Stoppable { pool: self, stop }
     }
 
-    /// Returns the number of threads.
+    /// Gets the number of threads.
     pub(crate) fn threads(&self) -> usize {
         self.evaluators.len()
     }
 
-    /// Returns the lanes of each thread.
+    /// Gets the lanes of each thread.
     pub(crate) fn lanes(&self) -> Lanes {
         self.maker.lanes
     }
 
-    /// Returns the genotype of the experiment's parameters.
+    /// Gets the genotype of the experiment's parameters.
     pub(crate) fn genotype(&self) -> &Genotype {
         &self.genotype
     }
 
-    /// Returns the data of the task.
+    /// Gets the data of the task.
     pub(crate) fn info(&self) -> &TaskInfo {
         &self.info
     }
@@ -240,13 +240,13 @@ impl EvaluationBackend for Stoppable<'_, '_> {
     }
 }
 
-/// Returns the error of a thread that the system refused.
+/// Creates the error of a thread that the system refused.
 fn no_thread(number: usize, all: usize, source: &io::Error) -> Error {
     let least = number.saturating_sub(1).max(1);
     Error::Other(format!("cannot start thread {number} of {all}: {source}; --threads {least} or less may do"))
 }
 
-/// The state shared by the threads of a round.
+/// State shared by the threads of a round.
 struct Work<'w, T, D> {
     numbers: Numbers,
     /// True if a thread found that the round cannot be finished.

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use crate::escaped::escaped;
 use crate::figures::significant::significant;
 
-/// The progress of a run or a test, on the standard error.
+/// Progress of a run or a test, on the standard error.
 pub(crate) enum Progress {
     Quiet,
     Lines,

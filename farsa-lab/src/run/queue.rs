@@ -35,7 +35,7 @@ pub(crate) struct Queue<'q, 'e> {
     pub(crate) quiet: bool,
 }
 
-/// The state of a run.
+/// State of a run.
 #[derive(Debug)]
 pub(crate) enum State {
     Finished {

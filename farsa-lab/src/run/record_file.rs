@@ -177,7 +177,7 @@ pub(crate) fn history<'p>(
     Ok((identity, history.with_champion(champion), path))
 }
 
-/// The record of a run in progress.
+/// Record of a run in progress.
 pub(crate) struct RunRecordWriter {
     file: AppendLog,
     /// Bytes of the longest entry.

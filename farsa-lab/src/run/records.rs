@@ -52,7 +52,7 @@ pub(crate) struct Champions {
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
-/// The best individual of a population.
+/// Best individual of a population.
 #[derive(Debug, Clone)]
 pub(crate) struct Best {
     /// Index in the generation, counted through all populations.
@@ -61,7 +61,7 @@ pub(crate) struct Best {
     pub(crate) genes: Genome,
 }
 
-/// The best individual with genes of one type.
+/// Best individual with genes of one type.
 #[derive(Serialize, Deserialize)]
 struct BestOf<G> {
     individual: u32,

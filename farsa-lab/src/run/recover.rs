@@ -23,7 +23,7 @@ use crate::store::temporary_file;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::history::History;
 
-/// The files of a run that grow, open at their ends.
+/// Files of a run that grow, open at their ends.
 pub(crate) struct RunFiles {
     pub(crate) record: RunRecordWriter,
     pub(crate) log: Log,

@@ -16,7 +16,7 @@ use crate::run::queue::{Member, Queue, State};
 use crate::run::summary::Summary;
 use crate::run::text_table::text_table;
 
-/// The selected replications of a plan.
+/// Selected replications of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Selection {
     /// Number of replications, at least one. The first has the seed of the plan, and each next one the next seed.
@@ -25,7 +25,7 @@ pub(crate) struct Selection {
     pub(crate) only: Option<u32>,
 }
 
-/// The results of the replications that this process found finished or has finished, in the order of their seeds.
+/// Results of the replications that this process found finished or has finished, in the order of their seeds.
 #[derive(Debug, Serialize)]
 pub(crate) struct Replications {
     #[serde(rename = "replications")]
@@ -46,7 +46,7 @@ struct Replication {
 }
 
 impl Selection {
-    /// Returns the seeds with the numbers of their replications.
+    /// Lists the seeds with the numbers of their replications.
     ///
     /// # Errors
     /// [`Error::Usage`] for a number above the count, and for seeds above the largest.

@@ -1,4 +1,4 @@
-//! The state of a search: strategy, opponents and observations. It is equal on every rank of a run.
+//! State of a search: strategy, opponents and observations. It is equal on every rank of a run.
 
 use farsa_evo::{EvoError, Fitness, ObservationStatistics, Scores, Statistics};
 
@@ -11,7 +11,7 @@ use crate::store::failures::FailedEvaluation;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::opponents::{HallOfFame, Pairing, chosen};
 
-/// The state of a search.
+/// State of a search.
 pub(crate) struct SearchState {
     pub(crate) search: AnyStrategy,
     /// Opponents from previous generations, for several populations.
@@ -21,7 +21,7 @@ pub(crate) struct SearchState {
     seed: u64,
 }
 
-/// The result of a generation.
+/// Result of a generation.
 pub(crate) struct GenerationResult {
     /// Reported fitness of every individual.
     pub(crate) fitness: Vec<Fitness>,
@@ -48,7 +48,7 @@ impl SearchState {
         Self { search, hall, observed, seed }
     }
 
-    /// Returns the champions that are still opponents.
+    /// Gets the champions that are still opponents.
     pub(crate) fn hall(&self) -> &HallOfFame {
         &self.hall
     }

@@ -1,4 +1,4 @@
-//! The result of a run.
+//! Result of a run.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use crate::escaped::OneLine;
 use crate::figures::significant::significant;
 use crate::run::records::{Best, Champions};
 
-/// The result of a run.
+/// Result of a run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) directory: String,
@@ -35,7 +35,7 @@ pub(crate) struct Winner {
 }
 
 impl Winner {
-    /// Returns the champions of all populations with the given names.
+    /// Lists the champions of all populations with the given names.
     pub(crate) fn from_champions(champions: &Champions, names: &[String]) -> Vec<Self> {
         let Champions { generation, best, .. } = champions;
         let winner = |(number, &Best { individual, fitness, .. }): (usize, &Best)| Self {

@@ -20,7 +20,7 @@ use crate::run::search_state::SearchState;
 use crate::store::checksummed;
 use crate::store::directory::Directory;
 
-/// The functions with which a worker prepares a run.
+/// Functions with which a worker prepares a run.
 pub(crate) struct Worker<'f, 'e> {
     /// Returns the plan of a configuration.
     pub(crate) plan: &'f dyn Fn(&ConfigFile) -> Result<Plan<'e>, Error>,

@@ -1,4 +1,4 @@
-//! The choice of world, where an experiment offers one.
+//! Choice of world, where an experiment offers one.
 
 use crate::error::Error;
 use crate::experiment::settings::Value;

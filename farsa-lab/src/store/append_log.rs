@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::store::bounded::read_regular;
 use crate::store::replace::{replace_and_keep, sync_directory};
 
-/// The length and checksum of a file when a checkpoint was written.
+/// Length and checksum of a file when a checkpoint was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Mark {
     bytes: u64,
@@ -19,7 +19,7 @@ pub(crate) struct Mark {
 }
 
 impl Mark {
-    /// Returns the mark of a file with this content.
+    /// Creates the mark of a file with this content.
     pub(crate) fn of(content: &[u8]) -> Self {
         Self { bytes: content.len() as u64, crc: Crc32::new().with(content).finish() }
     }

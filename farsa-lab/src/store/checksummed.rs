@@ -20,7 +20,7 @@ const FORMAT: u32 = 1;
 const HEAD: usize = 8 + 4 + 8;
 const CHECKSUM: usize = 4;
 
-/// The content of a checksummed file.
+/// Content of a checksummed file.
 pub(crate) trait Checksummed: Serialize + DeserializeOwned {
     /// First bytes of the file.
     const MAGIC: [u8; 8];
@@ -43,7 +43,7 @@ pub(crate) fn write<T: Checksummed>(path: &Path, content: &T) -> Result<(), Erro
     replace(path, &bytes)
 }
 
-/// Returns the bytes of a checksummed file. `path` is for errors.
+/// Builds the bytes of a checksummed file. `path` is for errors.
 pub(crate) fn to_bytes<T: Checksummed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
     let head = [&T::MAGIC[..], &FORMAT.to_le_bytes(), &[0; 8]].concat();
     let mut bytes = postcard::to_extend(content, head).map_err(|error| Error::Io {

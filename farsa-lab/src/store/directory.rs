@@ -1,4 +1,4 @@
-//! The directory of a run and the names of its files.
+//! Directory of a run and the names of its files.
 
 use std::fs;
 use std::io;
@@ -106,7 +106,7 @@ impl Directory {
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
-    /// The complete configuration.
+    /// Gets the path of the complete configuration.
     pub(crate) fn config(&self) -> PathBuf {
         self.path.join("config.toml")
     }
@@ -114,35 +114,35 @@ impl Directory {
     pub(crate) fn manifest(&self) -> PathBuf {
         self.path.join("manifest.json")
     }
-    /// The log of fitness.
+    /// Gets the path of the log of fitness.
     pub(crate) fn log(&self) -> PathBuf {
         self.path.join("fitness.csv")
     }
-    /// The log as a picture.
+    /// Gets the path of the log as a picture.
     pub(crate) fn plot(&self) -> PathBuf {
         self.path.join("fitness.svg")
     }
-    /// The champion of each population.
+    /// Gets the path of the champion of each population.
     pub(crate) fn champion(&self) -> PathBuf {
         self.path.join("champion.bin")
     }
-    /// The state from which a run continues.
+    /// Gets the path of the state from which a run continues.
     pub(crate) fn checkpoint(&self) -> PathBuf {
         self.path.join("checkpoint.bin")
     }
-    /// The reported fitness of every generation.
+    /// Gets the path of the reported fitness of every generation.
     pub(crate) fn record(&self) -> PathBuf {
         self.path.join("record.bin")
     }
-    /// The file from which earlier versions rebuilt generations.
+    /// Gets the path of the file from which earlier versions rebuilt generations.
     pub(crate) fn earlier_lineage(&self) -> PathBuf {
         self.path.join("lineage.bin")
     }
-    /// The failed evaluations, if there are any.
+    /// Gets the path of the failed evaluations, if there are any.
     pub(crate) fn failures(&self) -> PathBuf {
         self.path.join("failures.csv")
     }
-    /// The parents of every individual.
+    /// Gets the path of the parents of every individual.
     pub(crate) fn lineage(&self) -> PathBuf {
         self.path.join("lineage.csv")
     }
@@ -154,15 +154,15 @@ impl Directory {
     pub(crate) fn genotypes(&self) -> PathBuf {
         self.path.join("genotypes.bin")
     }
-    /// The champion's trials on new starts.
+    /// Gets the path of the champion's trials on new starts.
     pub(crate) fn test(&self) -> PathBuf {
         self.path.join(format!("test{}.csv", self.tests))
     }
-    /// The description of the test.
+    /// Gets the path of the description of the test.
     pub(crate) fn test_record(&self) -> PathBuf {
         self.path.join(format!("test{}.json", self.tests))
     }
-    /// The directory of tests by protocols.
+    /// Gets the directory of tests by protocols.
     pub(crate) fn protocols(&self) -> PathBuf {
         self.path.join(format!("protocols{}", self.tests))
     }

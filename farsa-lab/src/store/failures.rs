@@ -48,7 +48,7 @@ fn growing(path: &Path, content: &[u8]) -> Result<AppendLog, Error> {
     AppendLog::new(path, content).map(|file| file.with_limit(MAX_BYTES))
 }
 
-/// The failures of a run in progress. The file is created by the first failure.
+/// Failures of a run in progress. The file is created by the first failure.
 pub(crate) struct Failures {
     path: PathBuf,
     file: Option<AppendLog>,

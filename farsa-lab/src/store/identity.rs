@@ -1,4 +1,4 @@
-//! The identity of a run: everything that its results depend on.
+//! Identity of a run: everything that its results depend on.
 
 use std::path::Path;
 

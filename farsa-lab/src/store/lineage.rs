@@ -14,7 +14,7 @@ pub(crate) const HEADER: &str = "generation,individual,parents\n";
 /// Bytes of the largest lineage.
 const MAX_BYTES: u64 = 1 << 32;
 
-/// The lineage of a run in progress.
+/// Lineage of a run in progress.
 pub(crate) struct Lineage(AppendLog);
 
 /// Formats the lines of the current generation, which are empty for individuals without parents.

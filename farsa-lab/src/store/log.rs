@@ -29,7 +29,7 @@ pub(crate) fn header(populations: usize) -> String {
 /// One generation's best, mean and worst fitness.
 pub(crate) type Row = [f64; 3];
 
-/// The content of a line.
+/// Content of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Line {
     pub(crate) row: Row,
@@ -40,7 +40,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Returns the line of a generation. `each` has the statistics of every population, where there are several.
+    /// Creates the line of a generation. `each` has the statistics of every population, where there are several.
     pub(crate) fn new(statistics: &Statistics, evaluations: usize, each: &[Statistics]) -> Self {
         let row = |&Statistics { best, mean, worst, .. }: &Statistics| [best, mean, worst];
         let (evaluations, failed) = (evaluations as u64, statistics.failed as u64);
@@ -61,7 +61,7 @@ impl Line {
     }
 }
 
-/// The log of a run in progress. Its lines are not kept in memory.
+/// Log of a run in progress. Its lines are not kept in memory.
 pub(crate) struct Log {
     file: AppendLog,
     generations: usize,

@@ -20,7 +20,7 @@ const FORMAT: u32 = 1;
 /// Bytes of the largest manifest. A session takes about five hundred.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// The manifest of a run.
+/// Manifest of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Manifest {
     /// Version of the format.
@@ -42,7 +42,7 @@ pub(crate) struct Manifest {
     pub(crate) sessions: Vec<Session>,
 }
 
-/// The work of one process.
+/// Work of one process.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Session {
     pub(crate) farsa: String,
@@ -60,7 +60,7 @@ pub(crate) struct Session {
     pub(crate) evaluations: u64,
 }
 
-/// The machine of a session.
+/// Machine of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Machine {
     os: String,
@@ -153,7 +153,7 @@ impl Session {
 }
 
 impl Machine {
-    /// Returns the number of processors that a process may use.
+    /// Gets the number of processors that a process may use.
     pub(crate) fn cores(&self) -> usize {
         self.logical_processors
     }
@@ -165,7 +165,7 @@ impl Machine {
         format!("{processor}, {logical_processors} logical processors, {os} {architecture}")
     }
 
-    /// Returns the machine of this process.
+    /// Describes the machine of this process.
     pub(crate) fn here() -> Self {
         // Only Linux has a file with the processor's name.
         let processor = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {

@@ -1,4 +1,4 @@
-//! The files of a run.
+//! Files of a run.
 
 /// Files that grow at their end.
 pub(crate) mod append_log;
@@ -6,7 +6,7 @@ pub(crate) mod append_log;
 pub(crate) mod bounded;
 /// Files with a kind, a format version, a length and a checksum.
 pub(crate) mod checksummed;
-/// The directory of a run and the names of its files.
+/// Directory of a run and the names of its files.
 pub(crate) mod directory;
 /// `failures.csv`: the failed evaluations.
 pub(crate) mod failures;

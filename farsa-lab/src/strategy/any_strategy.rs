@@ -178,7 +178,7 @@ impl fmt::Debug for AnyStrategy {
     }
 }
 
-/// The genes of an individual.
+/// Genes of an individual.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Genome {
     Words(Vec<u16>),
@@ -203,7 +203,7 @@ impl Genome {
     }
 }
 
-/// The genomes of a generation.
+/// Genomes of a generation.
 pub(crate) enum Genomes {
     Words(Population),
     Reals(Population<f64>),

@@ -1,4 +1,4 @@
-//! The interface between a strategy and the command.
+//! Interface between a strategy and the command.
 
 use farsa_evo::coevolution::Populations;
 use farsa_evo::{EvoError, Snapshot, Strategy};

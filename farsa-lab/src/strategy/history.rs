@@ -1,4 +1,4 @@
-//! The genomes and champions of past generations.
+//! Genomes and champions of past generations.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use crate::strategy::any_strategy::{AnyStrategy, Genome, Genomes};
 /// Makes the strategy of a run, at its first generation.
 pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<AnyStrategy, Error> + 'h>;
 
-/// The finished generations of a run, and their file.
+/// Finished generations of a run, and their file.
 pub(crate) struct History<'h> {
     path: PathBuf,
     past: Past<'h>,
@@ -23,14 +23,14 @@ pub(crate) struct History<'h> {
 
 /// Source of the genomes.
 enum Past<'h> {
-    /// The reported fitness.
+    /// Reported fitness.
     RunRecord { record: Record, fresh: Fresh<'h> },
     /// External genomes as the only generation: one population after the other, of equal size.
     Imported { genomes: Vec<Vec<u16>>, populations: usize },
 }
 
 impl<'h> History<'h> {
-    /// Returns the number of generations with reported fitness.
+    /// Creates the history of a run from its record.
     pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
         Self { path, past: Past::RunRecord { record, fresh }, observations: Vec::new(), champion: None }
     }
@@ -45,7 +45,7 @@ impl<'h> History<'h> {
         Self { champion, ..self }
     }
 
-    /// The generation whose best is the run's champion, by default the last finished one.
+    /// Gets the generation whose best is the run's champion, by default the last finished one.
     pub(crate) fn champion_generation(&self) -> u32 {
         self.champion.unwrap_or(self.finished().saturating_sub(1))
     }
@@ -69,7 +69,7 @@ impl<'h> History<'h> {
         }
     }
 
-    /// Returns the number of populations.
+    /// Gets the number of populations.
     pub(crate) fn populations(&self) -> usize {
         match &self.past {
             Past::RunRecord { record, .. } => record.populations(),

@@ -1,4 +1,4 @@
-//! The strategies that a run may be asked for by name.
+//! Strategies that a run may be asked for by name.
 
 use crate::error::Error;
 use crate::strategy::definition::StrategyDefinition;

@@ -2,13 +2,13 @@
 
 /// A strategy over integer or real genes.
 pub(crate) mod any_strategy;
-/// The interface between a strategy and the command.
+/// Interface between a strategy and the command.
 pub(crate) mod definition;
 /// Competitive coevolution of two populations with generalist selection.
 mod generalist;
 /// Genomes and champions of past generations.
 pub(crate) mod history;
-/// The strategies that `--strategy` finds by name.
+/// Strategies that `--strategy` finds by name.
 pub(crate) mod known;
 /// One individual, trained by an iteration per generation.
 mod learning;
@@ -26,7 +26,7 @@ mod reals;
 pub(crate) mod settings;
 /// A strategy of a name, a line, a table and a function.
 mod simple;
-/// The truncation algorithm, in one population or several.
+/// Truncation algorithm, in one population or several.
 pub(crate) mod truncation;
 
 pub use any_strategy::AnyStrategy;

@@ -10,7 +10,7 @@ use crate::strategy::history::History;
 /// An individual of another population.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Opponent {
-    /// The best of an earlier generation.
+    /// Best of an earlier generation.
     Champion { population: usize, generation: u32 },
     /// One of the same generation, counted through all populations.
     Peer(usize),
@@ -100,7 +100,7 @@ pub(crate) fn chosen(search: &AnyStrategy, genotype: &Genotype, trials: usize) -
     Some(parameters)
 }
 
-/// The champions of every generation. Empty for a single population.
+/// Champions of every generation. Empty for a single population.
 #[derive(Debug, Default)]
 pub(crate) struct HallOfFame {
     /// For every generation the parameters of each population's champion.

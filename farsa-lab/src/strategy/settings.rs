@@ -1,4 +1,4 @@
-//! The settings that strategies share, and the table of an experiment with those of its strategy.
+//! Settings that strategies share, and the table of an experiment with those of its strategy.
 
 use farsa_evo::words::Mutation;
 

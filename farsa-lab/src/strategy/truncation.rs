@@ -1,4 +1,4 @@
-//! The truncation algorithm, in one population or several.
+//! Truncation algorithm, in one population or several.
 
 use farsa_evo::EvoError;
 use farsa_evo::coevolution::Populations;

@@ -1,8 +1,8 @@
 //! Sweeps: one file with many settings, `farsa sweep`.
 
-/// The points of a sweep and their names.
+/// Points of a sweep and their names.
 mod points;
-/// The file of a sweep.
+/// File of a sweep.
 mod sweep_file;
 /// `farsa sweep`: the runs of all points.
 pub(crate) mod work;

@@ -1,4 +1,4 @@
-//! The points of a sweep: the settings that vary, and the names of the points.
+//! Points of a sweep: the settings that vary, and the names of the points.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ const MAX_RUNS: usize = 100_000;
 /// Bytes of the longest name that is not cut. File systems allow 255, and temporary names are longer.
 const MAX_NAME_BYTES: usize = 160;
 
-/// The points of a sweep file, with distinct names and valid settings.
+/// Points of a sweep file, with distinct names and valid settings.
 pub(crate) struct Points<'f, 'e> {
     file: &'f SweepFile,
     laboratory: &'f Laboratory<'e>,

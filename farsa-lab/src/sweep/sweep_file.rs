@@ -1,4 +1,4 @@
-//! The file of a sweep.
+//! File of a sweep.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(crate) struct Axis {
     pub(crate) rows: Vec<Vec<Entry<Value>>>,
 }
 
-/// The parts of a sweep file that are not a configuration.
+/// Parts of a sweep file that are not a configuration.
 #[derive(Default)]
 struct Added {
     grid: Vec<Column>,
@@ -154,7 +154,7 @@ fn wrong(key: &Entry<String>, why: &str) -> Error {
     Error::Setting { place: key.place.clone(), key: key.value.clone(), why: why.into() }
 }
 
-/// Returns the seeds of a list.
+/// Reads the seeds of a list.
 fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
     let mut seeds: Vec<u64> = Vec::new();
     for Entry { value, place } in found.list()? {
@@ -175,7 +175,7 @@ fn listed_seeds(found: &FileKey<'_>) -> Result<Vec<u64>, Error> {
     Ok(seeds)
 }
 
-/// Returns the seeds of every point: the listed ones, or one for each replication.
+/// Lists the seeds of every point: the listed ones, or one for each replication.
 fn seeds_of(
     base: &ConfigFile,
     replications: Option<Entry<u32>>,

@@ -27,14 +27,14 @@ pub(crate) struct Sweep<'s, 'e> {
     latest: RefCell<Option<(usize, Plan<'e>)>>,
 }
 
-/// The selected runs, counted from 0. All runs are selected by default.
+/// Selected runs, counted from 0. All runs are selected by default.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Selection {
     pub(crate) point: Option<usize>,
     pub(crate) replication: Option<usize>,
 }
 
-/// The results of the points.
+/// Results of the points.
 #[derive(Debug, Serialize)]
 pub(crate) struct Found {
     points: Vec<Point>,

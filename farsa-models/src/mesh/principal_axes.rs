@@ -1,4 +1,4 @@
-//! The principal axes of a symmetric matrix, and rotations from axes.
+//! Principal axes of a symmetric matrix, and rotations from axes.
 
 use farsa_num::Scalar;
 

@@ -6,7 +6,7 @@ use farsa_body::robot::{MassProperties, Shape};
 use crate::bounds::{MAX_SIZE, has_size};
 use crate::mesh::triangles::{Mesh, z_to_axis};
 
-/// The shape that replaces a mesh.
+/// Shape that replaces a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeshFit {
     /// Shape that holds all points, and its place.
@@ -89,7 +89,7 @@ impl Solid {
         }
     }
 
-    /// The mass properties of the true shape with `mass` [kg], or else of this `density` [kg/m3].
+    /// Computes the mass properties of the true shape with `mass` [kg], or else of this `density` [kg/m3].
     pub(crate) fn mass_properties(&self, mass: Option<f64>, density: f64) -> MassProperties {
         let mass = mass.unwrap_or_else(|| density * self.volume());
         match self {
@@ -119,7 +119,7 @@ impl Solid {
     }
 }
 
-/// Returns the body with mass and inertia times `by`.
+/// Computes the body with mass and inertia times `by`.
 pub(crate) fn scaled(body: &MassProperties, by: f64) -> MassProperties {
     MassProperties { mass: body.mass * by, centre: body.centre, inertia: body.inertia.map(|x| x * by) }
 }

@@ -120,7 +120,7 @@ impl Mesh {
         self
     }
 
-    /// The smallest by volume of a ball, a capsule and a box around all points, and where it is.
+    /// Finds the smallest by volume of a ball, a capsule and a box around all points, and where it is.
     ///
     /// Capsule and box are along the mesh's own axes or the principal axes of its surface (of its points, if it has no
     /// triangles), the capsule along the longest edge of the box. Both have the center of the box, but the capsule's
@@ -138,7 +138,7 @@ impl Mesh {
         (shape, place)
     }
 
-    /// The second moment of the surface about its middle [xx, yy, zz, xy, xz, yz, m4].
+    /// Computes the second moment of the surface about its middle [xx, yy, zz, xy, xz, yz, m4].
     fn surface(&self) -> [f64; 6] {
         let (mut area, mut middle) = (0.0, [0.0; 3]);
         for [a, b, c] in self.corners() {

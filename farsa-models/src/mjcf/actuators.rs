@@ -1,4 +1,4 @@
-//! The actuators of an MJCF file.
+//! Actuators of an MJCF file.
 
 use farsa_body::actuators::{Held, Law, Servo, Torque, Velocity};
 use farsa_body::robot::Robot;

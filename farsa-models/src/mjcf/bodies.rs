@@ -1,4 +1,4 @@
-//! The bodies of an MJCF file: joints, inertias, geoms.
+//! Bodies of an MJCF file: joints, inertias, geoms.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,7 +35,7 @@ pub(crate) struct Geom<'t, 'c> {
     pub(crate) collider: usize,
 }
 
-/// The sources of the bodies, and lookups for other sections.
+/// Sources of the bodies, and lookups for other sections.
 pub(crate) struct Bodies<'t, 'c> {
     model: Element<'t>,
     compiler: &'c Compiler,

@@ -27,7 +27,7 @@ pub(crate) const ACTUATORS: [&str; 12] = [
     "dcmotor",
 ];
 
-/// The classes of a model.
+/// Classes of a model.
 pub(crate) struct Classes<'t> {
     names: BTreeMap<String, usize>,
     parents: Vec<Option<usize>>,
@@ -40,7 +40,7 @@ pub(crate) struct Classes<'t> {
 /// A class, a kind of element and an attribute.
 type Question<'t> = (usize, &'t str, &'static str);
 
-/// The default with an attribute, after its class and its place there. The larger of two comes first.
+/// Default with an attribute, after its class and its place there. The larger of two comes first.
 type Answer<'t> = ((usize, usize), Element<'t>);
 
 /// An element with the class that completes it.

@@ -1,4 +1,4 @@
-//! The settings of an MJCF file's `compiler` elements, and the places that they give a meaning.
+//! Settings of an MJCF file's `compiler` elements, and the places that they give a meaning.
 
 use farsa_body::Pose;
 use farsa_num::sin_cos;
@@ -17,7 +17,7 @@ pub(crate) const MUJOCO: &str = "how MuJoCo computes";
 /// Attributes for a rotation.
 pub(crate) const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// The settings in `compiler` elements.
+/// Settings in `compiler` elements.
 pub(crate) struct Compiler {
     /// Radians of the file's unit of angle.
     pub(crate) angle: f64,

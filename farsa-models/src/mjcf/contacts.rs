@@ -1,4 +1,4 @@
-//! The contacts of an MJCF file: which colliders may touch.
+//! Contacts of an MJCF file: which colliders may touch.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +24,7 @@ struct Touching<'b, 't, 'c> {
     contact: Contact,
 }
 
-/// The declarations of the `contact` sections.
+/// Declarations of the `contact` sections.
 #[derive(Default)]
 struct Declared {
     pairs: Vec<PairContact>,
@@ -171,7 +171,7 @@ fn touching<'b, 't, 'c>(bodies: &'b Bodies<'t, 'c>, most: usize) -> Result<Vec<T
     Ok(touching)
 }
 
-/// Returns the pairs that MuJoCo makes of the geoms' bits. Two geoms touch if the `contype` of one and the
+/// Lists the pairs that MuJoCo makes of the geoms' bits. Two geoms touch if the `contype` of one and the
 /// `conaffinity` of the other have a common bit. Declared pairs are excepted, and bodies that are excluded, share their
 /// motion, or are parent and child.
 fn generated(

@@ -1,4 +1,4 @@
-//! The geoms of an MJCF file and the meshes they are of.
+//! Geoms of an MJCF file and the meshes they are of.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use crate::vector::norm;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
-/// The meshes in `asset` elements, by name.
+/// Meshes in `asset` elements, by name.
 pub(crate) struct MeshAssets<'t, 'c> {
     all: BTreeMap<String, MeshAsset<'t, 'c>>,
 }

@@ -1,4 +1,4 @@
-//! The masses of an MJCF file's bodies: given by an `inertial`, or those of the geoms.
+//! Masses of an MJCF file's bodies: given by an `inertial`, or those of the geoms.
 
 use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};

@@ -1,4 +1,4 @@
-//! The inverse weights of segments, to which MuJoCo's contact parameters are relative.
+//! Inverse weights of segments, to which MuJoCo's contact parameters are relative.
 
 use farsa_body::Pose;
 use farsa_body::kinematics::KinematicTree;

@@ -1,4 +1,4 @@
-//! The elements of a body, as if there were no `frame`s around them.
+//! Elements of a body, as if there were no `frame`s around them.
 
 use farsa_body::Pose;
 

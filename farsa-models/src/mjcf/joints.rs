@@ -1,4 +1,4 @@
-//! The joints of an MJCF file.
+//! Joints of an MJCF file.
 
 use farsa_body::Pose;
 use farsa_body::robot::{Joint, JointKind};

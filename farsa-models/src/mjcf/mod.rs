@@ -2,25 +2,25 @@
 //!
 //! A model is read in this order, a file each.
 
-/// The entry: the sections of a model, one after the other.
+/// Entry: the sections of a model, one after the other.
 pub(crate) mod read;
 
-/// The settings of `compiler` elements, and the places and rotations that depend on them.
+/// Settings of `compiler` elements, and the places and rotations that depend on them.
 mod compiler;
 
-/// The classes of defaults, and the lookup of missing attributes.
+/// Classes of defaults, and the lookup of missing attributes.
 mod classes;
 
-/// The names that bodies, joints and geoms have or get.
+/// Names that bodies, joints and geoms have or get.
 mod names;
 
 /// Bodies and the segments that they become.
 mod bodies;
 
-/// The elements of a body, those of its `frame`s among them.
+/// Elements of a body, those of its `frame`s among them.
 mod items;
 
-/// The masses of bodies.
+/// Masses of bodies.
 mod inertials;
 
 /// Joints.
@@ -35,10 +35,10 @@ mod actuators;
 /// Which colliders may touch.
 mod contacts;
 
-/// The interaction of two surfaces.
+/// Interaction of two surfaces.
 mod surface;
 
-/// The inverse weights of bodies, to which contact parameters are relative.
+/// Inverse weights of bodies, to which contact parameters are relative.
 mod inverse_weight;
 
 /// From a robot to the text of a file.

@@ -1,11 +1,11 @@
-//! The names of an MJCF file's bodies, joints and geoms.
+//! Names of an MJCF file's bodies, joints and geoms.
 
 use std::collections::BTreeMap;
 
 use crate::error::{ReadError, repeated};
 use crate::xml::tree::Element;
 
-/// The names of bodies, joints and geoms: declared in the file, or generated from the kind and a number, with `_` appended
+/// Names of bodies, joints and geoms: declared in the file, or generated from the kind and a number, with `_` appended
 /// while another has them.
 #[derive(Default)]
 pub(crate) struct Names {

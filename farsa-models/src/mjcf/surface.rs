@@ -1,4 +1,4 @@
-//! The interaction of two surfaces: from MuJoCo's numbers of geoms and pairs to springs and dampers.
+//! Interaction of two surfaces: from MuJoCo's numbers of geoms and pairs to springs and dampers.
 
 use farsa_body::robot::Surface;
 

@@ -4,7 +4,7 @@
 mod geometry;
 /// From a file's links and joints to a robot.
 pub(crate) mod read;
-/// The visuals of links.
+/// Visuals of links.
 mod visuals;
 /// From a robot to the text of a file.
 mod write;

@@ -27,7 +27,7 @@ const NOTED: [(&str, &str); 3] = [
     ("gazebo", "another simulator's"),
 ];
 
-/// The joint that carries each link, and the order in which links are made.
+/// Joint that carries each link, and the order in which links are made.
 struct Links<'t> {
     names: BTreeMap<&'t str, usize>,
     elements: Vec<Element<'t>>,

@@ -1,4 +1,4 @@
-//! The visuals of a URDF's links.
+//! Visuals of a URDF's links.
 
 use std::collections::BTreeMap;
 

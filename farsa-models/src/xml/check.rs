@@ -69,7 +69,7 @@ fn find(bytes: &[u8], close: &[u8], from: usize) -> usize {
     rest.windows(close.len()).position(|window| window == close).map_or(bytes.len(), |at| from + at + close.len())
 }
 
-/// The outline of a tag.
+/// Outline of a tag.
 struct Tag {
     length: usize,
     attributes: usize,

@@ -9,7 +9,7 @@ use crate::error::{ReadError, SourceLocation, nearest, repeated};
 use crate::warnings::Warnings;
 use crate::xml::check::check;
 
-/// The elements of a model, the root first.
+/// Elements of a model, the root first.
 pub(crate) struct Tree {
     files: Vec<String>,
     nodes: Vec<Node>,
@@ -130,7 +130,7 @@ impl Tree {
         Element { tree: self, index }
     }
 
-    /// The model's element.
+    /// Gets the model's element.
     pub(crate) fn root(&self) -> Element<'_> {
         self.element(0)
     }

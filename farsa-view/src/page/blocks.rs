@@ -1,11 +1,11 @@
-//! The bytes of an episode in a page.
+//! Bytes of an episode in a page.
 
 use serde_json::Value;
 
 /// Largest count of a 16-bit quantity. In channels 65535 is NaN.
 pub(crate) const COUNTS: f64 = 65534.0;
 
-/// The bytes of an episode in named blocks.
+/// Bytes of an episode in named blocks.
 #[derive(Default)]
 pub(crate) struct Blocks {
     pub(crate) bytes: Vec<u8>,
@@ -29,7 +29,7 @@ impl Blocks {
     }
 }
 
-/// The bounding box of all positions, and the unit of their counts.
+/// Bounding box of all positions, and the unit of their counts.
 pub(crate) struct Space {
     pub(crate) origin: [f64; 3],
     pub(crate) unit: f64,

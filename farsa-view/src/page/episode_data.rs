@@ -1,4 +1,4 @@
-//! The data of an episode in a page, in the format of docs/replay-format.md.
+//! Data of an episode in a page, in the format of docs/replay-format.md.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

@@ -102,7 +102,7 @@ pub(crate) fn data_head(title: &str, from_above: bool) -> Value {
     })
 }
 
-/// The kind of a page, which decides its permissions and scripts.
+/// Kind of a page, which decides its permissions and scripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Shows recorded episodes.

@@ -1,8 +1,8 @@
 //! Pages for a browser. The markup, style and scripts are in `viewer/`.
 
-/// The numbers of an episode as bytes.
+/// Numbers of an episode as bytes.
 mod blocks;
-/// The data of an episode, in the format of docs/replay-format.md.
+/// Data of an episode, in the format of docs/replay-format.md.
 mod episode_data;
 /// Recorded episodes as one HTML file.
 pub(crate) mod html;

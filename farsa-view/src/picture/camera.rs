@@ -38,7 +38,7 @@ const FILLED: f64 = 0.88;
 /// Least distance of a camera to the scene [m].
 const NEAR: f64 = 1e-3;
 
-/// The projection of the world to a picture.
+/// Projection of the world to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
     /// Eye, or for a parallel projection a point in front of the scene [m].

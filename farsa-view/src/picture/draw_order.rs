@@ -1,4 +1,4 @@
-//! The order of shapes from back to front.
+//! Order of shapes from back to front.
 
 use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
@@ -7,7 +7,7 @@ use crate::picture::outline::{Point2, bounds, holds};
 /// Number of samples along each side of the common area of two outlines.
 const SIDE: usize = 6;
 
-/// Returns the indices of solids from back to front, without those that have no outline.
+/// Lists the indices of solids from back to front, without those that have no outline.
 ///
 /// The front one of two overlapping solids is the one that most rays through both hit first. In a cycle the farthest is first.
 pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Point2>]) -> Vec<usize> {

@@ -76,7 +76,7 @@ fn conditions(recording: &Recording, tick: usize) -> impl Fn(&SceneObject) -> bo
     }
 }
 
-/// Returns the marks of images on the ground at a tick, a disc for each pixel that is not black.
+/// Lists the marks of images on the ground at a tick, a disc for each pixel that is not black.
 fn lying(recording: &Recording, tick: usize) -> Vec<Instance> {
     let mut marks = Vec::new();
     for (number, image) in recording.schema().images.iter().enumerate() {
@@ -96,7 +96,7 @@ fn lying(recording: &Recording, tick: usize) -> Vec<Instance> {
     marks
 }
 
-/// Returns the trails of robots, colored things and points up to a tick, a little above the ground.
+/// Lists the trails of robots, colored things and points up to a tick, a little above the ground.
 ///
 /// The trail of a robot has the color of its hull, that of a point a pencil color.
 fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {

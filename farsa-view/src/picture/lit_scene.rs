@@ -1,4 +1,4 @@
-//! The shapes of a picture under its lamp, for rays and colors.
+//! Shapes of a picture under its lamp, for rays and colors.
 
 use farsa_body::Pose;
 use farsa_num::acos;
@@ -48,7 +48,7 @@ pub(crate) struct Solid {
     faces: Vec<(Vector, Vec<Vector>)>,
 }
 
-/// The hit of a ray.
+/// Hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen {
     /// Index of the solid.

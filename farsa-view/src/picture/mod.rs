@@ -4,7 +4,7 @@
 mod animation;
 /// Cameras and the views of pictures.
 pub(crate) mod camera;
-/// The order of shapes from back to front.
+/// Order of shapes from back to front.
 mod draw_order;
 /// Pictures of a tick of a recording.
 mod from_recording;
@@ -12,7 +12,7 @@ mod from_recording;
 mod lit_scene;
 /// Arrows, rays, points and trails as strokes.
 mod marks;
-/// The content of a picture.
+/// Content of a picture.
 pub(crate) mod moment;
 /// Polygons in the plane of the picture.
 pub(crate) mod outline;

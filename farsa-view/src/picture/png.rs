@@ -77,7 +77,7 @@ fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Color> {
     pixels
 }
 
-/// Returns the bounds of each solid in the picture, `[low, high]`.
+/// Lists the bounds of each solid in the picture, `[low, high]`.
 fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
     let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
     let place = |solid: &crate::picture::lit_scene::Solid| {
@@ -97,7 +97,7 @@ struct Canvas<'a> {
     boxes: Vec<[[f64; 2]; 2]>,
 }
 
-/// The light through a point of the picture and its solid.
+/// Light through a point of the picture and its solid.
 #[derive(Clone, Copy)]
 struct Sample {
     solid: Option<usize>,

@@ -68,7 +68,7 @@ pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
     framed(&hull, view.size, MARGIN)
 }
 
-/// Returns the number of corners that approximates the circles of a solid within a share of a pixel.
+/// Computes the number of corners that approximates the circles of a solid within a share of a pixel.
 fn roundness(solid: &Solid, view: &Window, off: f64) -> usize {
     let radius = match solid.geometry {
         Geometry::Capsule { radius, .. } | Geometry::Cylinder { radius, .. } => radius,
@@ -380,7 +380,7 @@ mod tests {
     use farsa_body::kinematics::KinematicTree;
     use farsa_body::robots::{ArmAndHand, Tabletop};
 
-    /// Returns the elements of a document by name with their attributes, and panics if it is not well-formed.
+    /// Lists the elements of a document by name with their attributes, and panics if it is not well-formed.
     fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
         let (mut open, mut found) = (Vec::new(), Vec::new());
         let mut rest = text;

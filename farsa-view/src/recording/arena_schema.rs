@@ -1,4 +1,4 @@
-//! The schema of a planar arena.
+//! Schema of a planar arena.
 
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;

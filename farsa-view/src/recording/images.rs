@@ -12,7 +12,7 @@ const MAX_COUNTS: [f32; 3] = [31.0, 63.0, 31.0];
 /// First bit of red, green and blue in a pixel.
 const SHIFT: [u32; 3] = [11, 5, 0];
 
-/// The images of a recording, including those of the current tick.
+/// Images of a recording, including those of the current tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Images {
     /// Number of images.

@@ -228,12 +228,12 @@ impl Recording {
         seen.then(|| of_camera.into_iter().flatten().chain(of_ground.into_iter().flatten()))
     }
 
-    /// Returns the stored images on the ground.
+    /// Gets the stored images on the ground.
     pub(crate) fn grounds(&self) -> &GroundImages {
         &self.grounds
     }
 
-    /// Returns the stored images of cameras.
+    /// Gets the stored images of cameras.
     pub(crate) fn images(&self) -> &Images {
         &self.images
     }

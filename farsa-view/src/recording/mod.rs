@@ -1,6 +1,6 @@
 //! Recorded episodes, as a [`Recorder`](farsa_body::Recorder) receives them.
 
-/// The schema of a planar arena.
+/// Schema of a planar arena.
 mod arena_schema;
 /// Images on the ground, stored as changes.
 pub(crate) mod ground_images;
@@ -8,13 +8,13 @@ pub(crate) mod ground_images;
 mod images;
 /// A recording in memory.
 pub(crate) mod memory;
-/// The schema of a recording: bodies, channels and a network.
+/// Schema of a recording: bodies, channels and a network.
 pub(crate) mod schema;
 /// Recordings as comma-separated values.
 mod table;
-/// The initial camera of a page.
+/// Initial camera of a page.
 pub(crate) mod view;
-/// The appearance of wheeled robots.
+/// Appearance of wheeled robots.
 mod wheeled_look;
 
 pub use memory::{CastRay, Recording, Touching};

@@ -1,4 +1,4 @@
-//! The schema of a recording: bodies, channels and a network.
+//! Schema of a recording: bodies, channels and a network.
 
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{JointKind, Robot};
@@ -88,7 +88,7 @@ impl ImageChannel {
         Self { ground: Some([from, to]), ..self }
     }
 
-    /// Returns the number of pixels.
+    /// Gets the number of pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0].saturating_mul(self.size[1])
     }
@@ -254,7 +254,7 @@ impl Schema {
         of_robot.chain(of_objects)
     }
 
-    /// Returns the number of bodies, visible or not.
+    /// Gets the number of bodies, visible or not.
     pub(crate) fn body_count(&self) -> usize {
         self.robot.as_ref().map_or(self.bodies.len(), |robot| robot.segments.len())
     }

@@ -1,4 +1,4 @@
-//! The appearance of wheeled robots: drawn parts within their hull.
+//! Appearance of wheeled robots: drawn parts within their hull.
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
@@ -33,7 +33,7 @@ pub(crate) struct Part {
     pub(crate) color: Color,
 }
 
-/// Returns the parts of a robot, its body first, by the wheels of a Khepera, an e-puck or a `MarXbot`, otherwise a disc.
+/// Lists the parts of a robot, its body first, by the wheels of a Khepera, an e-puck or a `MarXbot`, otherwise a disc.
 ///
 /// All parts are within the hull. Wheels have the size and distance of the robot's as far as the hull permits.
 pub(crate) fn parts(robot: &MobileRobot) -> Vec<Part> {
@@ -62,7 +62,7 @@ fn shaded(color: Color, share: f64) -> Color {
     color.map(|x| (f64::from(x) + (to - f64::from(x)) * share.abs()).round() as u8)
 }
 
-/// The lengths of parts [m].
+/// Lengths of parts [m].
 struct Look {
     radius: f64,
     height: f64,

@@ -1,4 +1,4 @@
-//! The role, color and place of shapes.
+//! Role, color and place of shapes.
 
 use farsa_body::Pose;
 

@@ -1,6 +1,6 @@
 //! Shapes of pictures and pages: geometry, role and color.
 
-/// The role, color and place of shapes.
+/// Role, color and place of shapes.
 pub(crate) mod appearance;
 /// Spheres, capsules, boxes and others, with their rays and outlines.
 pub(crate) mod geometry;

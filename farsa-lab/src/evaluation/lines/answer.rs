@@ -9,7 +9,7 @@ use crate::experiment::outcome::{Note, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::run::fitness::{FailedTrial, Individual};
 
-/// The first line: what the lines have to give.
+/// First line: what the lines have to give.
 #[derive(Serialize)]
 pub(super) struct Introduction<'d> {
     experiment: &'d str,
@@ -100,7 +100,7 @@ impl<K, T> Named<K, T> {
     }
 }
 
-/// The answer to a line.
+/// Answer to a line.
 #[derive(Serialize)]
 pub(super) struct Answer<'a> {
     pub(super) line: u64,
@@ -118,7 +118,7 @@ pub(super) struct Refusal<'a> {
     pub(super) error: &'a str,
 }
 
-/// The result of an individual.
+/// Result of an individual.
 #[derive(Serialize)]
 pub(super) struct IndividualResult {
     pub(super) fitness: Option<f64>,
@@ -158,7 +158,7 @@ impl IndividualResult {
     }
 }
 
-/// The result of a trial.
+/// Result of a trial.
 #[derive(Serialize)]
 struct Trial {
     terms: Named<String, f64>,

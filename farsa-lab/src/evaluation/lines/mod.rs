@@ -8,7 +8,7 @@ mod bounded_line;
 mod parameter_vectors;
 /// Requests: the content of an input line.
 mod request;
-/// The loop over lines.
+/// Loop over lines.
 mod serve;
 
 #[cfg(feature = "fuzzing")]

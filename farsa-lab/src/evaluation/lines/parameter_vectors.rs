@@ -26,7 +26,7 @@ pub(super) struct Vectors {
 }
 
 impl Vectors {
-    /// Returns the number of vectors.
+    /// Gets the number of vectors.
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }

@@ -14,7 +14,7 @@ use crate::run::plan::MAX_SEED;
 /// Largest number of an individual.
 const MAX_INDIVIDUAL: u32 = 1_000_000_000;
 
-/// The shape of valid requests.
+/// Shape of valid requests.
 pub(crate) struct RequestSchema {
     pub(crate) experiment: &'static str,
     /// Names of the populations, in their order.

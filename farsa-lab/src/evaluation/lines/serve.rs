@@ -116,7 +116,7 @@ fn by_population<T>(mut all: Vec<(&str, T)>, populations: usize) -> ByPopulation
     }
 }
 
-/// Returns the opponents of a population, trial after trial, individual after individual. As in the first generation of
+/// Lists the opponents of a population, trial after trial, individual after individual. As in the first generation of
 /// a run, trial t is against individual t of each other population.
 fn opponents(parameters: &[Vec<Vec<f32>>], own: usize, trials: usize) -> Vec<&[f32]> {
     let others = || parameters.iter().enumerate().filter(move |(other, _)| *other != own);

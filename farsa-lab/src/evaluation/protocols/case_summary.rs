@@ -47,7 +47,7 @@ impl CaseSummary {
         Self { row, column, held_out, rate, interval: share.interval(), terms, findings }
     }
 
-    /// The case.
+    /// Gets the case.
     pub(crate) fn case(&self) -> Case {
         Case { row: self.row.clone(), column: self.column.clone(), held_out: self.held_out }
     }

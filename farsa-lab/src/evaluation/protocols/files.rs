@@ -1,4 +1,4 @@
-//! The files of a protocol's results in a run's directory: `protocols/NAME.csv` and `protocols/NAME.json`.
+//! Files of a protocol's results in a run's directory: `protocols/NAME.csv` and `protocols/NAME.json`.
 
 use std::fs;
 use std::io;

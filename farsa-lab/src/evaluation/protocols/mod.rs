@@ -2,7 +2,7 @@
 
 /// Summaries of the trials of each case.
 pub(crate) mod case_summary;
-/// The files of a protocol's results in a run's directory.
+/// Files of a protocol's results in a run's directory.
 pub(crate) mod files;
 /// `farsa replay --protocol`: a trial of a case, step by step.
 pub(crate) mod replay;
@@ -14,7 +14,7 @@ pub(crate) mod sheet;
 pub(crate) mod states;
 /// `protocols/NAME.csv`: one line per trial, case after case.
 pub(crate) mod table;
-/// The command.
+/// Command.
 pub(crate) mod test;
 /// A single trial of a protocol's case, step by step.
 mod trial;

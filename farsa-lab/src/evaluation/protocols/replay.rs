@@ -18,7 +18,7 @@ use crate::figures::significant::significant;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// The cases of one run.
+/// Cases of one run.
 #[derive(Debug, Serialize)]
 pub(crate) struct CasesSummary {
     directory: String,

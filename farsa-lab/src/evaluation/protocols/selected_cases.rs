@@ -63,7 +63,7 @@ impl CaseTrials {
         Ok(Self { evaluator, subject, protocol, cases, trial: choice.trial, seed: choice.seed })
     }
 
-    /// The protocol.
+    /// Gets the protocol.
     pub(crate) fn protocol(&self) -> &Protocol {
         &self.protocol.1
     }
@@ -78,12 +78,12 @@ impl CaseTrials {
         &self.subject
     }
 
-    /// The evaluator.
+    /// Gets the evaluator.
     pub(crate) fn evaluator(&self) -> &dyn Evaluator {
         self.evaluator.as_ref()
     }
 
-    /// The schema of the recordings.
+    /// Builds the schema of the recordings.
     pub(crate) fn schema(&self) -> Schema {
         let parameters = self.subject.tested().parameters.first();
         let with = |bodies: &dyn Bodies| parameters.map(|parameters| bodies.schema_with(parameters));

@@ -23,7 +23,7 @@ const MAX_STEPS: usize = 1000;
 /// Columns before those of the neurons.
 const HEAD: [&str; 4] = ["case", "trial", "success", "step"];
 
-/// The states of some trials.
+/// States of some trials.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct States {
     /// Names of the neurons.
@@ -31,7 +31,7 @@ pub(crate) struct States {
     pub(crate) trials: Vec<StateTrial>,
 }
 
-/// The states of a trial.
+/// States of a trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct StateTrial {
     /// Its case, and its number in that.

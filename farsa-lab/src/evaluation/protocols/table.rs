@@ -9,7 +9,7 @@ use crate::experiment::protocol::{Case, Protocol};
 /// Columns of the case. The columns of a test follow, and their index counts the trials of the case.
 const HEAD: [&str; 4] = ["case", "row", "column", "held_out"];
 
-/// The trials of a protocol, a table for each case.
+/// Trials of a protocol, a table for each case.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProtocolTable {
     pub(crate) cases: Vec<(Case, Table)>,

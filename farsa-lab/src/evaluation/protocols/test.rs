@@ -20,7 +20,7 @@ use crate::run::progress::Progress;
 use crate::store::directory::Directory;
 use crate::store::lock::Lock;
 
-/// The result of a test by a protocol.
+/// Result of a test by a protocol.
 #[derive(Debug, Serialize)]
 pub(crate) struct ProtocolRun {
     directory: String,

@@ -124,7 +124,7 @@ fn over<C: Cells + Clone + 'static>(
     start.reals(|seed| MapElites::new(config.clone(), cells.clone(), seed))
 }
 
-/// The most equal parts of each of d ranges that make no more cells than these.
+/// Computes the most equal parts of each of d ranges that make no more cells than these.
 fn parts(cells: usize, d: usize) -> usize {
     let fits =
         |parts: usize| (0..d).try_fold(1, |all: usize, _| all.checked_mul(parts)).is_some_and(|all| all <= cells);
