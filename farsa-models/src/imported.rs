@@ -55,7 +55,7 @@ use crate::xml::tree::Tree;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Imported {
-    /// Robot description, which is always valid.
+    /// Robot description. It is always valid.
     pub robot: Robot,
     /// Frames of all links or bodies, in the order of the file.
     pub frames: Vec<Frame>,
@@ -66,7 +66,7 @@ pub struct Imported {
 impl Imported {
     /// Reads a URDF or MJCF file. Its root element determines the format.
     ///
-    /// You can also pass a pipe, which is read until it ends or until [`Limits::bytes`](crate::Limits::bytes) is
+    /// You can also pass a pipe. It is read until it ends or until [`Limits::bytes`](crate::Limits::bytes) is
     /// exceeded. Other files that the model names must be regular files.
     ///
     /// # Errors

@@ -63,8 +63,8 @@ pub struct PartNames {
 }
 
 impl Anatomy {
-    /// Creates the parts of a network from a schema, which names all nodes, links and parameters. Inputs are grouped
-    /// in the same way as in the description.
+    /// Creates the parts of a network from a schema. It must name all nodes, links and parameters. Inputs are
+    /// grouped in the same way as in the description.
     ///
     /// This assumes that neurons are numbered from 0, followed by the outputs, and that parameters have the order of
     /// the schema. If this is not the case, also use [`with_first`](Self::with_first) or

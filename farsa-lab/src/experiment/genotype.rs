@@ -21,7 +21,7 @@ impl Genotype {
         Self { ends: parameters.iter().map(|parameter| parameter.ends).collect(), bits: bits.clamp(1, u16::BITS) }
     }
 
-    /// Gets the number of genes, which is also the number of parameters.
+    /// Gets the number of genes. It is equal to the number of parameters.
     pub fn genes(&self) -> usize {
         self.ends.len()
     }

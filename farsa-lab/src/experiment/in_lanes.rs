@@ -4,7 +4,7 @@ use farsa_physics::{arena, articulated};
 
 use crate::experiment::episode::{Episode, EpisodeId};
 
-/// A batch of worlds, which are stepped together using SIMD. Each lane of the vectors contains a world.
+/// A batch of worlds that are stepped together using SIMD. Each lane of the vectors contains a world.
 pub trait Batch {
     /// One of the worlds.
     type Lane<'a>

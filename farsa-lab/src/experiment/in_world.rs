@@ -159,7 +159,7 @@ impl<W, R> InWorld<W, R> {
         &self.rollout
     }
 
-    /// Gets the episode and the world, which lets you run an episode by yourself.
+    /// Gets the episode and the world. Use this to run an episode by yourself.
     pub fn parts_mut(&mut self) -> (&mut R, &mut W) {
         self.budget = None;
         (&mut self.rollout, &mut self.world)

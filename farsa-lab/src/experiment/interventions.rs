@@ -27,7 +27,7 @@ pub struct Interventions {
 }
 
 impl Interventions {
-    /// Default levels for [`with_noise`](Self::with_noise), which are suitable for inputs from 0 to 1.
+    /// Default levels for [`with_noise`](Self::with_noise). They are suitable for inputs from 0 to 1.
     pub const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
 
     /// Appends a protocol, with a change for each of its cases. Cases without a change leave the controller as it is.

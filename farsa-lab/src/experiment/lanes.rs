@@ -20,7 +20,7 @@ impl Lanes {
         Self { count: 1, instructions: Instructions::baseline() }
     }
 
-    /// Selects the number of lanes, which is either 1 or one of [`LANES`].
+    /// Selects the number of lanes. It must be 1 or one of [`LANES`].
     ///
     /// # Errors
     /// Returns [`Error::Usage`] for any other number.

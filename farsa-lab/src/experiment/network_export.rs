@@ -6,7 +6,7 @@ use farsa_nn::{CtrnnLayout, CtrnnParts, Leak, LeakyLayout, LeakyParts};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
 
-/// A network with its parameters, which have the same order as in its layout.
+/// A network with its parameters, in the order of its layout.
 ///
 /// Written as JSON, it contains everything that another program needs to compute the same numbers. This includes the
 /// shape, and named tables of parameters. All variants have a `kind` in JSON, except for the leaky network.

@@ -18,11 +18,11 @@ use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::Protocol;
 
-/// Controller of a robot, which consists of sensors, a recurrent network and motors. To get an episode, you only need
-/// to add the world and the reward.
+/// Controller of a robot with sensors, a recurrent network and motors. To get an episode, you only need to add the
+/// world and the reward.
 ///
-/// Its network has a single hidden layer, which links all nodes to all ([`LeakyLayout`]). Leaks from 0 to 1 act as
-/// filters, and are evolved together with weights and biases. The loop over the steps remains in your hands:
+/// Its network has a single hidden layer. All nodes are linked to all nodes ([`LeakyLayout`]). Leaks from 0 to 1 act
+/// as filters, and are evolved together with weights and biases. The loop over the steps remains in your hands:
 ///
 /// ```
 /// use farsa_body::testing::PointWorld;

@@ -131,7 +131,7 @@ impl<C: Controller> NormalizedController<C> {
         &self.controller
     }
 
-    /// Gets a mutable reference to the controller, which you need to load other parameters.
+    /// Gets a mutable reference to the controller. You need it to load other parameters.
     pub fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
     }

@@ -13,11 +13,11 @@ use crate::experiment::value::Value;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Source {
-    /// Value is stated by the source of the experiment.
+    /// Stated by the source of the experiment.
     Given,
-    /// Value follows from other statements of the source.
+    /// Derived from other statements of the source.
     Derived,
-    /// Value was chosen here, since the source does not state it.
+    /// Chosen here, since the source does not state it.
     #[default]
     Chosen,
 }
@@ -89,7 +89,7 @@ impl Setting {
         Self::new(key, Value::Word(default.into()), Allowed::Text)
     }
 
-    /// Creates a setting for a list of numbers, which always has the same length as the default. Both limits are
+    /// Creates a setting for a list of numbers. It always has the same length as the default. Both limits are
     /// included.
     pub fn numbers(key: &str, default: &[f64], range: RangeInclusive<f64>) -> Self {
         Self::new(key, Value::Numbers(default.to_vec()), Allowed::Numbers(range))

@@ -107,7 +107,7 @@ impl Settings {
         }
     }
 
-    /// Gets a whole number, which may be negative.
+    /// Gets a whole number. It can be negative.
     ///
     /// # Errors
     /// Returns the errors of [`number`](Self::number).
@@ -137,7 +137,7 @@ impl Settings {
         }
     }
 
-    /// Gets a word, which is always a valid choice of its setting.
+    /// Gets a word. It is always a valid choice of its setting.
     ///
     /// # Errors
     /// Returns the errors of [`number`](Self::number).

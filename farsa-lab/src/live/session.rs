@@ -35,7 +35,7 @@ const LANES: usize = 8;
 /// An agent that runs in memory.
 ///
 /// It runs episodes in the same way as `farsa replay` and `farsa test`, but needs neither files nor threads. Agents
-/// and requests are JSON, which is written by `farsa live` and by its page. To get such a page for your own
+/// and requests are JSON that is written by `farsa live` and by its page. To get such a page for your own
 /// experiments, export a session from a WebAssembly module.
 pub struct LiveSession {
     evaluator: Box<dyn Evaluator>,

@@ -42,8 +42,8 @@ pub trait Experiment: Sync {
     /// Builds the table of all settings of a condition, with their defaults. If there are no conditions, `condition`
     /// is `""`.
     ///
-    /// The command adds the settings of the [`strategy`](Self::strategy), which are `evolution.*`. You can replace
-    /// them by settings with the same key, for example to change their defaults.
+    /// The command adds the settings of the [`strategy`](Self::strategy) (`evolution.*`). You can replace them by
+    /// settings with the same key, for example to change their defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
 
     /// Lists the files on which trials depend, such as sensor tables named by a setting. By default this list is empty.
@@ -78,7 +78,7 @@ pub trait Experiment: Sync {
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error>;
 }
 
-/// A simple [`Experiment`], which is given by a few constants and functions.
+/// A simple [`Experiment`] that is given by a few constants and functions.
 #[derive(Clone, Copy)]
 pub struct SimpleExperiment {
     /// Name on the command line. It may contain lower-case letters, digits and hyphens.
@@ -89,7 +89,7 @@ pub struct SimpleExperiment {
     pub conditions: &'static [&'static str],
     /// Builds the table of all settings of a condition, with their defaults.
     pub settings: fn(&str) -> Vec<Setting>,
-    /// Builds an evaluator, which is used by a single thread.
+    /// Builds an evaluator for a single thread.
     pub prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>,
 }
 

@@ -5,7 +5,7 @@ use crate::experiment::settings::Setting;
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart};
 
-/// A simple [`StrategyDefinition`], which is given by a few constants and functions.
+/// A simple [`StrategyDefinition`] that is given by a few constants and functions.
 ///
 /// ```
 /// use farsa_evo::gradient::{Snes, SnesConfig};

@@ -67,7 +67,7 @@ impl Page {
         self.episodes.len()
     }
 
-    /// Selects an episode by its index, which is shown next to the first one when the page opens.
+    /// Selects an episode by its index. When the page opens, it is shown next to the first one.
     pub fn open_beside(&mut self, episode: usize) {
         self.second = Some(episode);
     }

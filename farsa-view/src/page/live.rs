@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use crate::error::Error;
 use crate::page::html::{Kind, composed, data_head};
 
-/// An interactive page that runs an agent in the browser. It uses a WebAssembly module, which is stored in the page.
+/// An interactive page that runs an agent in the browser. It uses a WebAssembly module that is stored in the page.
 ///
-/// This module must export the functions `input`, `open`, `answer` and `output`, as `farsa-live` of the project does.
-/// Runs and requests are JSON, which only the module and the viewer need to understand.
+/// This module must export the functions `input`, `open`, `answer` and `output`, as `farsa-live` of the project
+/// does. Runs and requests are JSON. Only the module and the viewer need to understand them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LivePage {
     /// Title of the page.

@@ -47,7 +47,7 @@ pub struct Instance {
     pub focus: bool,
 }
 
-/// Colors of Okabe and Ito, which are distinct for any color vision.
+/// Colors of Okabe and Ito. They are distinct for any color vision.
 ///
 /// They are orange, sky blue, bluish green, yellow, blue, vermilion and reddish purple.
 pub const OKABE_ITO: [Color; 7] =
@@ -62,7 +62,7 @@ pub(crate) fn as_screens_take_it(color: [f64; 3]) -> Color {
 }
 
 impl Instance {
-    /// Creates a shape, which has the color of its role.
+    /// Creates a shape with the color of its role.
     pub fn new(geometry: impl Into<Geometry>, pose: Pose<f64>, role: Role) -> Self {
         Self { geometry: geometry.into(), pose, role, color: None, focus: role == Role::Object }
     }
@@ -79,7 +79,7 @@ impl Instance {
         self
     }
 
-    /// Gets the color of the shape, which may be that of its role.
+    /// Gets the color of the shape. If it has none, this is the color of its role.
     pub fn color(&self) -> Color {
         self.color.unwrap_or(match self.role {
             Role::Robot => ARM,

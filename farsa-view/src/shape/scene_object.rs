@@ -39,7 +39,7 @@ pub struct ShownWhile {
 }
 
 impl SceneObject {
-    /// Creates a fixed shape, which has the color of its role.
+    /// Creates a fixed shape with the color of its role.
     pub fn new(name: &str, geometry: Geometry, placement: Pose<f64>, role: Role) -> Self {
         Self { name: name.into(), body: None, geometry, placement, role, color: None, shown: None }
     }
