@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use crate::tool::{Said, command, ok, own, scratch};
+use crate::tool::{Said, command, interruptible, ok, own, scratch};
 
 /// Runs a line of a shell.
 fn shell(here: &Path, line: &str) -> Said {
@@ -26,7 +26,8 @@ fn begun(here: &Path, start: &mut Command) -> Child {
 }
 
 fn endless(here: &Path) -> Command {
-    let mut start = command(own(), here, &["run", "cart", "--generations", "4000000", "--out", "r", "--threads", "1"]);
+    let mut start =
+        interruptible(own(), here, &["run", "cart", "--generations", "4000000", "--out", "r", "--threads", "1"]);
     // A machine of a cluster that tests has its own.
     for name in ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID", "FLUX_JOB_ID", "_CONDOR_JOB_AD"]
     {

@@ -6,7 +6,7 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::tool::{Said, command, content, ok, own, results, say, scratch};
+use crate::tool::{Said, command, content, interruptible, ok, own, results, say, scratch};
 
 #[test]
 fn the_same_as_single_runs() {
@@ -106,7 +106,7 @@ fn generations(run: &Path) -> usize {
 #[cfg(unix)]
 fn cut_short(here: &Path, line: &str, signal: &str) -> Said {
     let arguments: Vec<&str> = line.split(' ').collect();
-    let mut child = command(own(), here, &arguments);
+    let mut child = interruptible(own(), here, &arguments);
     if signal == "-KILL" {
         // Nothing reads its output: a full pipe would hold it up.
         child.stderr(Stdio::null());
@@ -282,7 +282,7 @@ fn under_a_scheduler_an_interrupted_study_asks_to_be_started_again() {
     let here = scratch("replications-75");
     let line = format!("{SLOW} --replications 2");
     let arguments: Vec<&str> = line.split(' ').collect();
-    let mut child = command(own(), &here, &arguments);
+    let mut child = interruptible(own(), &here, &arguments);
     let child = child.env("SLURM_JOB_ID", "42").spawn().expect("the program");
     let patience = Instant::now() + Duration::from_secs(120);
     while generations(&here.join("runs/cart-rough-2")) < 20 {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use farsa_num::Instructions;
 
-use crate::tool::{Said, command, content, ok, own, results, say, scratch};
+use crate::tool::{Said, command, content, interruptible, ok, own, results, say, scratch};
 
 #[test]
 fn one_and_two_threads() {
@@ -88,7 +88,7 @@ fn interrupted_and_resumed() {
     ok(own(), &here, &format!("{SLOW} --generations 300 --out whole"));
     let arguments: Vec<&str> = SLOW.split(' ').chain(["--generations", "300", "--out", "stopped"]).collect();
     let run = here.join("stopped");
-    let mut child = command(own(), &here, &arguments).spawn().expect("the program");
+    let mut child = interruptible(own(), &here, &arguments).spawn().expect("the program");
     wait_for(&mut child, &run, 20);
     let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
     assert!(kill.success());

@@ -60,6 +60,14 @@ pub(crate) fn command(program: &Path, directory: &Path, arguments: &[impl AsRef<
     command
 }
 
+/// A program that ends by signals, also when this process ignores them, as under `nohup` or in the background of a shell.
+#[cfg(unix)]
+pub(crate) fn interruptible(program: &Path, directory: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
+    let mut command = command(Path::new("env"), directory, &["--default-signal=INT,TERM,HUP"]);
+    command.arg(program).args(arguments);
+    command
+}
+
 /// Runs a program to its end.
 pub(crate) fn say(program: &Path, directory: &Path, arguments: &str) -> Said {
     let arguments: Vec<&str> = arguments.split(' ').filter(|word| !word.is_empty()).collect();
