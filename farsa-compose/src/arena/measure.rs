@@ -71,7 +71,7 @@ pub(crate) enum Measure {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeasuredArea {
     pub(crate) body: BodyId,
-    /// Half the sides [m], or twice the radius of a disc.
+    /// Half the sides [m]. For a disc, both numbers are its radius.
     pub(crate) half: [f64; 2],
     pub(crate) disc: bool,
 }

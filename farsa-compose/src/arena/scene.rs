@@ -16,7 +16,7 @@ pub(crate) enum Thing {
     Cylinder { body: BodyId, radius: f64 },
     /// A robot with its radius [m].
     Robot { body: BodyId, radius: f64 },
-    /// An area with half its sides [m], or twice the radius of a disc.
+    /// An area with half its sides [m]. For a disc, both numbers are its radius.
     Area { body: BodyId, half: [f64; 2], disc: bool },
     /// A block with half the diagonal of its base [m].
     Block { body: BodyId, reach: f64 },
@@ -91,7 +91,7 @@ pub(crate) struct Block {
 }
 
 /// Distance from the arena, and between things, before a trial places them [m].
-const BESIDE: f64 = 1.0;
+const GAP: f64 = 1.0;
 
 impl Scene {
     /// Builds the arena with its robots and things.
@@ -111,11 +111,11 @@ impl Scene {
         }
         let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
         // Robots in a row next to the arena, with more than a meter between their hulls.
-        let apart = BESIDE + 3.0 * widest;
+        let apart = GAP + 3.0 * widest;
         for (number, robot) in robots.iter().enumerate() {
-            arena.add_robot(robot.clone(), [width + BESIDE + apart * number as f64, 0.0], 0.0);
+            arena.add_robot(robot.clone(), [width + GAP + apart * number as f64, 0.0], 0.0);
         }
-        let mut x = width + BESIDE + apart * robots.len().saturating_sub(1) as f64;
+        let mut x = width + GAP + apart * robots.len().saturating_sub(1) as f64;
         let mut last_reach = 0.0;
         let (mut built, mut blocks) = (Vec::new(), Vec::new());
         for (index, object) in document.objects.iter().enumerate() {
@@ -129,7 +129,7 @@ impl Scene {
                 ObjectKind::Wall { size, .. } | ObjectKind::Rectangle { size, .. } => size[0].max(size[1]),
                 ObjectKind::Block { size, .. } => size[0].max(size[1]),
                 ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => {
-                    let why = "is for robots with joints; beside one on wheels are cylinders, discs and rectangles";
+                    let why = "is for robots with joints; next to one on wheels are cylinders, discs and rectangles";
                     return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
             };
@@ -150,7 +150,7 @@ impl Scene {
             }
             for _ in 0..object.count.unwrap_or(1) {
                 // In rapier the order of contacts, and so the last bits, depend on these first places.
-                x += (BESIDE + 2.0 * reach).max(last_reach + reach);
+                x += (GAP + 2.0 * reach).max(last_reach + reach);
                 last_reach = reach;
                 built.push((object.name.clone(), add(&mut arena, &mut blocks, object, at.unwrap_or([x, 0.0]))));
             }

@@ -212,7 +212,9 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Sour
             let pose = Pose { position: point, rotation: [0.0, 0.0, sine, cosine] };
             Ok(How::Fixed(pose.cast()))
         }
-        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(source
-            .wrong(&format!("{path}/at"), "is for robots on wheels; beside one with joints it is `in-box` or `fixed`")),
+        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(source.wrong(
+            &format!("{path}/at"),
+            "is for robots on wheels; next to one with joints it is `in-box` or `fixed`",
+        )),
     }
 }

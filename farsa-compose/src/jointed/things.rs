@@ -102,7 +102,7 @@ impl Thing {
                 (0.0, 0.0, 0.0, (What::Marker(markers.len() - 1), None))
             }
             ObjectKind::Cylinder { .. } | ObjectKind::Disc { .. } | ObjectKind::Rectangle { .. } => {
-                let why = "is for robots on wheels; beside one with joints are walls, blocks, balls and markers";
+                let why = "is for robots on wheels; next to one with joints are walls, blocks, balls and markers";
                 return Err(source.wrong(path, why));
             }
         };

@@ -318,7 +318,7 @@ fn what_is_wrong_is_said() {
         (object("name = \"rod\"\nkind = \"marker\"\nat = [0.0, 0.0]"), "`rod` names something else already"),
         (
             object("name = \"disc\"\nkind = \"disc\"\nradius = 1.0\ncolor = [0.0, 0.0, 0.0]"),
-            "is for robots on wheels; beside one with joints are",
+            "is for robots on wheels; next to one with joints are",
         ),
         (
             object("name = \"ball\"\nkind = \"ball\"\nradius = 0.1\nmass = 0.2"),
@@ -326,7 +326,7 @@ fn what_is_wrong_is_said() {
         ),
         (
             start("place = \"ball\"\nat = \"anywhere\""),
-            "is for robots on wheels; beside one with joints it is `in-box` or `fixed`",
+            "is for robots on wheels; next to one with joints it is `in-box` or `fixed`",
         ),
         (start("place = \"ball\"\nat = \"turned\"\nlow = 0.0\nhigh = 1.0"), "is for joints; this is none"),
         (start("place = \"hinge\"\nat = \"fixed\"\npoint = [0.0, 0.0, 0.0]"), "a joint is `turned`"),

@@ -74,8 +74,8 @@ impl Genotype {
     /// Computes the parameters of real genes \[[`genes`](Self::genes)\]. If the number of genes is wrong, or if a
     /// gene is not finite, this returns `None`.
     ///
-    /// Genes are first reflected into -1 to 1. Each parameter is then computed as `first + (other - first) * (gene +
-    /// 1) / 2` in f64, and rounded to f32. It is never outside its range, and exact at both ends.
+    /// Genes are first reflected into -1 to 1. Each parameter is then computed as
+    /// `first + (other - first) * (gene + 1) / 2` in f64, and rounded to f32. It is never outside its range, and exact at both ends.
     pub fn decode_reals(&self, genes: &[f64]) -> Option<Vec<f32>> {
         let value = |(&gene, &[first, other]): (&f64, &[f64; 2])| {
             if !gene.is_finite() {

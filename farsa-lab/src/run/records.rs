@@ -144,7 +144,7 @@ macro_rules! sealed {
 
 sealed! {
     Checkpoint: b"farsackp", "checkpoint", Limits::DEFAULT.state_bytes + (1 << 20);
-    RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
+    RecordHead: b"farsatld", "record of the fitness that a strategy received", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
     ChampionsOfReals: b"farsacmr", "set of champions with real genes", 256 << 20;

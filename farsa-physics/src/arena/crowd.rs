@@ -8,7 +8,7 @@ use farsa_num::sin_cos;
 use crate::arena::description::CollisionRule;
 use crate::arena::grid::Grid;
 use crate::arena::model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, VELOCITY};
-use crate::arena::solid::{beside, meets_solid, overlaps_solid};
+use crate::arena::solid::{is_near, meets_solid, overlaps_solid};
 use crate::arena::step::{LEFT, Met, SWEEPS, WORK_WORDS, add_push, keep_deepest, position_of, step_without_collisions};
 use crate::arena::surface::{Meeting, meets_disc, meets_wall, ray_to_disc, wall_squared};
 
@@ -105,7 +105,7 @@ impl Crowd {
             }
         }
         for solid in &model.solids {
-            if beside(solid, center, radius) && overlaps_solid(solid, center, radius) {
+            if is_near(solid, center, radius) && overlaps_solid(solid, center, radius) {
                 take(meets_solid(solid, center, radius), NOTHING, 1.0, &mut push);
             }
         }

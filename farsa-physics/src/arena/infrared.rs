@@ -4,7 +4,7 @@ use farsa_body::sensors::infrared::InfraredModel;
 use farsa_num::{Mask, Scalar};
 
 use crate::arena::model::{Model, POSE_WORDS};
-use crate::arena::solid::{beside, to_solid};
+use crate::arena::solid::{is_near, to_solid};
 use crate::arena::step::{load, position_of, store};
 use crate::arena::surface::to_wall;
 
@@ -64,7 +64,7 @@ fn add_walls<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, robot: usize, 
     // Twice what is felt: lanes that the mask leaves out feel nothing anyway.
     let reach = S::splat(simd, 2.0 * (kind.radius + model.wall_seen.range()));
     for solid in &model.solids {
-        if beside(solid, pose.at, reach).any() {
+        if is_near(solid, pose.at, reach).any() {
             let way = to_solid(solid, pose.at);
             add_surface(simd, &kind.infrared, &model.wall_seen, pose.axis, way, kind.radius, out);
         }

@@ -143,7 +143,7 @@ fn nearest<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2]) -> Nearest<S> {
 
 /// Returns whether a place may be nearer to an obstacle than `reach` [m].
 #[inline(always)]
-pub(crate) fn beside<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach: S) -> S::Mask {
+pub(crate) fn is_near<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach: S) -> S::Mask {
     // The rectangle around it first: most places are far from most obstacles.
     let [u, v] = [(x - x.like(solid.centre[0])).abs(), (y - x.like(solid.centre[1])).abs()];
     (u - x.like(solid.around[0])).lt(reach) & (v - x.like(solid.around[1])).lt(reach)
@@ -152,7 +152,7 @@ pub(crate) fn beside<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach
 /// Returns whether a disc overlaps an obstacle.
 #[inline(always)]
 pub(crate) fn overlaps_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radius: S) -> S::Mask {
-    beside(solid, at, radius) & nearest(solid, at).square.lt(radius * radius)
+    is_near(solid, at, radius) & nearest(solid, at).square.lt(radius * radius)
 }
 
 /// The vector from a place to the nearest point of an obstacle [m], zero within.

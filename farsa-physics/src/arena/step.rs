@@ -4,7 +4,7 @@ use farsa_num::{Mask, Scalar, sin_cos};
 
 use crate::arena::description::CollisionRule;
 use crate::arena::model::{CONTACT, Kind, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS};
-use crate::arena::solid::{beside, meets_solid, overlaps_solid};
+use crate::arena::solid::{is_near, meets_solid, overlaps_solid};
 use crate::arena::surface::{Meeting, meets_disc, meets_wall, wall_squared};
 
 /// Sweeps of pushing overlapping discs apart.
@@ -180,7 +180,7 @@ fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], 
     }
     for solid in &model.solids {
         let radius = S::splat(simd, own);
-        if beside(solid, at, radius).any() {
+        if is_near(solid, at, radius).any() {
             any = any | overlaps_solid(solid, at, radius);
         }
     }

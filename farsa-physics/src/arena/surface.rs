@@ -58,11 +58,11 @@ pub(crate) fn meets_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2], radius:
     let divisor = S::select(outside, distance, one);
     // From within, out by the nearest side.
     let sign = |z: S| S::select(z.lt(zero), -one, one);
-    let beside = [radius.like(slab.half[0]) - u.abs(), radius.like(slab.half[1]) - v.abs()];
-    let along = beside[0].lt(beside[1]);
+    let overlap = [radius.like(slab.half[0]) - u.abs(), radius.like(slab.half[1]) - v.abs()];
+    let along = overlap[0].lt(overlap[1]);
     let [p, q] = [S::select(along, sign(u), zero), S::select(along, zero, sign(v))];
     let out = [S::select(outside, x / divisor, p), S::select(outside, y / divisor, q)];
-    let depth = radius - S::select(outside, distance, -beside[0].min(beside[1]));
+    let depth = radius - S::select(outside, distance, -overlap[0].min(overlap[1]));
     let [w, h] = out_of(slab, [a, b]);
     let point = [radius.like(slab.centre[0]) + w, radius.like(slab.centre[1]) + h];
     Meeting { depth, out: out_of(slab, out), point }

@@ -5,7 +5,7 @@ use farsa_body::{Pose, Twist};
 use farsa_num::{Scalar, sin_cos};
 
 use crate::arena::model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS, pose_words};
-use crate::arena::solid::{beside, cast_to_solid, ray_to_solid, to_solid};
+use crate::arena::solid::{cast_to_solid, is_near, ray_to_solid, to_solid};
 use crate::arena::surface::{ray_to_disc, ray_to_wall, to_wall};
 
 /// A planar world as its ports see it.
@@ -164,7 +164,7 @@ pub(crate) fn query_near(world: &impl View, from: [f32; 2], range: f32, mut tell
         }
     }
     // Farther than the range, so that rounding leaves out nothing that is within it.
-    for solid in model.solids.iter().filter(|solid| beside(solid, from, 2.0 * range.max(solid.around[0]))) {
+    for solid in model.solids.iter().filter(|solid| is_near(solid, from, 2.0 * range.max(solid.around[0]))) {
         let [x, y] = to_solid(solid, from);
         let distance = Scalar::sqrt(x * x + y * y);
         if distance <= range {

@@ -100,9 +100,9 @@ fn place<W: Arrange>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator
 fn check_joints<W: Joints>(world: &W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Result<(), ConformanceError> {
     for (index, &(joint, range)) in probe.joints.iter().enumerate() {
         let placed = joint_place(index, range);
-        let told = [world.position(joint), world.speed(joint)];
-        ensure(near(&placed, &told), Promise::JointPlaced, || {
-            format!("joint {index}: {told:?} instead of {placed:?}")
+        let measured = [world.position(joint), world.speed(joint)];
+        ensure(near(&placed, &measured), Promise::JointPlaced, || {
+            format!("joint {index}: {measured:?} instead of {placed:?}")
         })?;
     }
     Ok(())
@@ -115,17 +115,18 @@ where
 {
     for (index, &body) in probe.floating.iter().enumerate() {
         let (pose, twist) = body_place(index);
-        let (told, moving) = (world.pose(body), world.velocity(body));
-        let holds = near(&pose.position, &told.position)
-            && same_turn(&pose, &told)
+        let (measured, moving) = (world.pose(body), world.velocity(body));
+        let holds = near(&pose.position, &measured.position)
+            && same_turn(&pose, &measured)
             && near(&twist.linear, &moving.linear)
             && near(&twist.angular, &moving.angular);
-        ensure(holds, Promise::BodyPlaced, || format!("floating body {index}: {told:?}, {moving:?}"))?;
+        ensure(holds, Promise::BodyPlaced, || format!("floating body {index}: {measured:?}, {moving:?}"))?;
     }
     for (index, &body) in probe.planar.iter().enumerate() {
-        let (pose, told, moving) = (planar_place(index), world.pose(body), world.velocity(body));
-        let holds = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
-        ensure(holds, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
+        let (pose, measured, moving) = (planar_place(index), world.pose(body), world.velocity(body));
+        let holds =
+            near(&pose.position, &measured.position) && same_turn(&pose, &measured) && moving == Twist::default();
+        ensure(holds, Promise::BodyPlaced, || format!("planar body {index}: {measured:?}, {moving:?}"))?;
     }
     let before = Instant::from_world(world, probe);
     let placed = |body| probe.floating.contains(body) || probe.planar.contains(body);

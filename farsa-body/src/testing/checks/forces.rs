@@ -10,8 +10,9 @@ use crate::testing::trace::{Instant, parting, saved, trace};
 /// Checks the port [`ExternalForces`] of a world. The closure `make` must always create the same world.
 ///
 /// A force on one of the bodies in `pushed`, upwards and to the side, must accelerate the body in this direction during
-/// the next step only. Several forces on a body are added. A zero force and a force on the missing body `nobody` must
-/// not change any bit. A world that was restored has no pending forces.
+/// the next step only. Several forces on a body are added. A zero force must
+/// not change any bit, and neither must a force on `missing`, a body that does not exist. A world that was restored has
+/// no pending forces.
 ///
 /// # Errors
 /// Returns the first promise violated.
@@ -19,7 +20,7 @@ pub fn check_external_forces<W>(
     make: impl Fn() -> W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,
     pushed: &[W::Body],
-    nobody: W::Body,
+    missing: W::Body,
 ) -> Result<(), ConformanceError>
 where
     W: World + Joints + Kinematics + Actuated + Contacts + Snapshot + ExternalForces,
@@ -64,9 +65,9 @@ where
         }
     }
     for (what, body) in
-        probe.bodies.iter().map(|body| ("no force", *body)).chain([("a body that does not exist", nobody)])
+        probe.bodies.iter().map(|body| ("no force", *body)).chain([("a body that does not exist", missing)])
     {
-        let push = if body == nobody { force } else { [0.0; 3] };
+        let push = if body == missing { force } else { [0.0; 3] };
         let (other, _) = after(&|world| world.apply_force(body, [0.1, 0.2, 0.3], push));
         if let Some(detail) = plain.difference(&other) {
             return broken(format!("{what} changes what happens: {detail}"));

@@ -34,7 +34,7 @@ where
     let mut stream = Stream::new(0, Domain::Sensor, 0, 0, 0);
     let (mut met, mut seen) = (0, 0);
     for &from in places {
-        let near = told(world, from, range);
+        let near = surfaces(world, from, range);
         met += near.len();
         check_near(world, bodies, from, range, &near)?;
         for _ in 0..LOOKS {
@@ -74,7 +74,7 @@ where
     Ok(())
 }
 
-fn told<W: Sight>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
+fn surfaces<W: Sight>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
     let mut surfaces = Vec::new();
     world.query_near(from, range, &mut |near| surfaces.push(near));
     surfaces
@@ -96,7 +96,7 @@ where
     W: Sight,
     W::Body: PartialEq,
 {
-    let farther = told(world, from, 2.0 * range);
+    let farther = surfaces(world, from, 2.0 * range);
     for (index, near) in all.iter().enumerate() {
         let what = || format!("surface {index} near {from:?} at {:?}", near.point);
         let broken = |why: &str| format!("{}: {why}", what());
@@ -105,7 +105,7 @@ where
         let distance = near.distance;
         ensure(distance <= range, Promise::Near, || broken(&format!("{distance} of {range}")))?;
         ensure((apart - distance.abs()).abs() < CLOSE, Promise::Near, || {
-            broken(&format!("told at {distance}, is at {apart}"))
+            broken(&format!("reported at {distance}, is at {apart}"))
         })?;
         ensure(near.radius.is_finite() && near.radius >= 0.0, Promise::Near, || {
             broken(&format!("a radius of {}", near.radius))
@@ -117,7 +117,7 @@ where
         ensure(holds, Promise::Near, || broken("a wall with a radius or a signal, or no body of the world"))?;
         shown(&near.color, what)?;
         shown(near.signal.as_slice(), what)?;
-        ensure(farther.contains(near), Promise::Near, || broken("not told within twice the range"))?;
+        ensure(farther.contains(near), Promise::Near, || broken("not reported within twice the range"))?;
         // A wall may be looked at along its edge. A round body cannot be missed in its middle.
         if near.radius > 0.0 && distance > CLOSE {
             let sight = world.cast_planar(from, way.map(|x| x / apart), 2.0 * range, None);
@@ -159,7 +159,9 @@ where
     let same_surface = |near: &NearbySurface<W::Body>| {
         near.body == body && near.distance <= distance + CLOSE && near.color == sight.color
     };
-    ensure(near.iter().any(same_surface), Promise::Near, || format!("{}: seen at {distance}, but not told", what()))?;
+    ensure(near.iter().any(same_surface), Promise::Near, || {
+        format!("{}: seen at {distance}, but not reported", what())
+    })?;
     if body.is_some() {
         let behind = world.cast_planar(from, direction, range, body);
         let other = behind.is_none_or(|behind| behind.body != body && behind.distance >= distance);

@@ -156,7 +156,7 @@ impl Odd {
         }
         if length(off) - length(change) > slack {
             if self.steps == 0 {
-                self.first = format!("step {step}: moves at {mean:?}, told {start:?} -> {end:?}");
+                self.first = format!("step {step}: moves at {mean:?}, reported {start:?} -> {end:?}");
             }
             self.steps += 1;
         }
@@ -209,13 +209,13 @@ where
     W: Joints + Kinematics + Contacts,
 {
     for (index, &(joint, _)) in probe.joints.iter().enumerate() {
-        let told = [world.position(joint), world.speed(joint)];
-        ensure(finite(&told), Promise::Finite, || format!("step {step}, joint {index}: {told:?}"))?;
+        let motion = [world.position(joint), world.speed(joint)];
+        ensure(finite(&motion), Promise::Finite, || format!("step {step}, joint {index}: {motion:?}"))?;
     }
     for (index, &body) in probe.bodies.iter().enumerate() {
         let (pose, twist) = (world.pose(body), world.velocity(body));
-        let told = finite(&pose.position) && finite(&pose.rotation) && finite(&twist.linear) && finite(&twist.angular);
-        ensure(told, Promise::Finite, || format!("step {step}, body {index}: {pose:?}, {twist:?}"))?;
+        let holds = finite(&pose.position) && finite(&pose.rotation) && finite(&twist.linear) && finite(&twist.angular);
+        ensure(holds, Promise::Finite, || format!("step {step}, body {index}: {pose:?}, {twist:?}"))?;
         let length = pose.rotation.iter().fold(0.0, |sum, x| sum + x * x);
         ensure((length - 1.0).abs() < 1e-3, Promise::UnitRotation, || {
             format!("step {step}, body {index}: {:?}", pose.rotation)
@@ -228,11 +228,11 @@ where
     for pair in pairs(world) {
         let contact = world.pair_contact(pair);
         // A depth of minus infinity means that nothing is near.
-        let told = finite(&contact.force)
+        let holds = finite(&contact.force)
             && finite(&contact.point)
             && contact.normal_force.is_finite()
             && contact.depth < f32::INFINITY;
-        ensure(told, Promise::Finite, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
+        ensure(holds, Promise::Finite, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
         let holds = if contact.points == 0 {
             contact.normal_force == 0.0 && contact.force == [0.0; 3] && contact.point == [0.0; 3]
         } else {
