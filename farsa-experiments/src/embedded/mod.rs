@@ -55,14 +55,15 @@ pub static BRAITENBERG: EmbeddedExperiment = EmbeddedExperiment::new(
     starts_between_lamp_and_walls,
 );
 
-/// Can robots that see little and die soon feed a nest together? \[FARSA2\]
+/// A team of robots that see little and soon run out of energy has to feed a nest together \[FARSA2\].
 ///
-/// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is used up. The
-/// condition is the robot. Arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's.
+/// All robots share one genome. They leave the nest, pick up the food that they drive over, and have to return before
+/// their energy is used up. The condition selects the robot. The source specifies the arenas, nests, energy, steps,
+/// sensors, motors and hidden neurons.
 ///
-/// Chosen: the number of robots, the time step, the camera's view and the network's other traits. The load of a robot is not
-/// limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors. The source's bias neuron is the
-/// network's biases. Only its hidden neurons have biases.
+/// The number of robots, the time step, the view of the camera and the remaining properties of the network were chosen.
+/// The load of a robot is not limited. Each infrared channel of a `MarXbot` is the maximum of three of its 24 sensors.
+/// The bias neuron of the source corresponds to the biases of the hidden neurons.
 pub static FORAGING: EmbeddedExperiment = EmbeddedExperiment::new(
     "foraging",
     include_str!("../../experiments/foraging.toml"),
@@ -70,13 +71,14 @@ pub static FORAGING: EmbeddedExperiment = EmbeddedExperiment::new(
     nests_fit,
 );
 
-/// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
+/// A team of robots that sense a nest only while they are on it has to gather there \[FARSA2\].
 ///
-/// A team with one genome starts anywhere in an arena. When the time is up, every robot earns 100 on a nest, and up to 1 for being
-/// near the others. The condition is the robot. Arena, steps and rewards of the `MarXbot`s are the source's. Sensors and motors are
-/// those of `foraging` without energy. Spread and clusters are measured \[Gauci2014\].
+/// All robots share one genome and start anywhere in the arena. At the end of a trial, every robot earns 100 if it is on
+/// a nest, and up to 1 for its proximity to the others. The condition selects the robot. The source specifies the arena,
+/// the steps and the rewards of the `MarXbot`. Sensors and motors are those of [`FORAGING`] without the energy. The spread
+/// and the clusters of the robots are also measured \[Gauci2014\].
 ///
-/// Chosen: the nests, and all values that the settings call chosen.
+/// The nests, and all values that the settings list as chosen, are not specified by the source.
 pub static AGGREGATION: EmbeddedExperiment = EmbeddedExperiment::new(
     "aggregation",
     include_str!("../../experiments/aggregation.toml"),
@@ -84,7 +86,7 @@ pub static AGGREGATION: EmbeddedExperiment = EmbeddedExperiment::new(
     nests_fit,
 );
 
-/// Refuses nests of no size, and nests that cannot be as far from all walls.
+/// Rejects nests without a size, and nests that cannot have their distance from all walls.
 fn nests_fit(settings: &Settings) -> Result<(), Error> {
     if settings.number("nest.radius")? <= 0.0 {
         return Err(Error::setting("nest.radius", "must be more than 0"));
@@ -98,12 +100,13 @@ fn nests_fit(settings: &Settings) -> Result<(), Error> {
     Ok(())
 }
 
-/// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
+/// A population of predators and a population of prey evolve against each other \[FARSA2\].
 ///
-/// Two `MarXbots` of the same abilities in a walled arena. The predators, the first population, earn 1 - t/T for touching the prey
-/// at step t of T, else nothing. The prey, the second, earn the rest of 1. Arena, starts, T and rewards are the source's.
+/// The two robots are `MarXbot`s with the same abilities in a walled arena. A predator that touches the prey at step t of T
+/// earns 1 - t/T, and otherwise nothing. The prey earns the rest of 1. The source specifies the arena, the starts, T and
+/// the rewards.
 ///
-/// Chosen: headings, sensors, network and evolution, as the settings show.
+/// The headings, sensors, networks and the strategy were chosen, as the settings show.
 pub static PREDATOR_PREY: EmbeddedExperiment = EmbeddedExperiment::new(
     "predator-prey",
     include_str!("../../experiments/predator-prey.toml"),
@@ -111,7 +114,7 @@ pub static PREDATOR_PREY: EmbeddedExperiment = EmbeddedExperiment::new(
     starts_apart,
 );
 
-/// Refuses an arena in which both robots touch at the start.
+/// Rejects an arena in which both robots touch at the start.
 fn starts_apart(settings: &Settings) -> Result<(), Error> {
     let (size, touch) = (settings.number("world.size")?, settings.number("capture.touch")?);
     let radius = MobileRobot::marxbot().radius;
@@ -124,7 +127,7 @@ fn starts_apart(settings: &Settings) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses starts within the lamp or beyond the walls.
+/// Rejects starts within the lamp or beyond the walls.
 fn starts_between_lamp_and_walls(settings: &Settings) -> Result<(), Error> {
     let radius = MobileRobot::khepera().radius;
     let [near, far] = settings.array("start.distance")?;
