@@ -63,6 +63,7 @@ impl<R: Real> Pose<R> {
     }
 
     /// Rotates a vector from this frame to the reference frame.
+    #[inline]
     pub fn rotate(&self, v: [R; 3]) -> [R; 3] {
         let [x, y, z, w] = self.rotation;
         let u = [x, y, z];
@@ -73,18 +74,21 @@ impl<R: Real> Pose<R> {
     }
 
     /// Rotates a vector from the reference frame to this frame.
+    #[inline]
     pub fn rotate_back(&self, v: [R; 3]) -> [R; 3] {
         let [x, y, z, w] = self.rotation;
         Self { position: self.position, rotation: [-x, -y, -z, w] }.rotate(v)
     }
 
     /// Transforms a point (in meters) from this frame to the reference frame.
+    #[inline]
     pub fn transform(&self, point: [R; 3]) -> [R; 3] {
         let p = self.rotate(point);
         [p[0] + self.position[0], p[1] + self.position[1], p[2] + self.position[2]]
     }
 
     /// Transforms a point (in meters) from the reference frame to this frame.
+    #[inline]
     pub fn transform_back(&self, point: [R; 3]) -> [R; 3] {
         let p = self.position;
         self.rotate_back([point[0] - p[0], point[1] - p[1], point[2] - p[2]])
@@ -106,6 +110,7 @@ impl<R: Real> Pose<R> {
     }
 
     /// Converts the pose to a different precision. Each number is rounded once.
+    #[inline]
     pub fn cast<Q: Real>(&self) -> Pose<Q> {
         Pose {
             position: self.position.map(|x| Q::from_f64(x.to_f64())),

@@ -172,6 +172,7 @@ impl LeakyLayout {
     /// Separates parameters by kind. The length of the slice should be [`parameter_count`](Self::parameter_count).
     ///
     /// If the slice is too short, the last kinds are truncated. Additional parameters are ignored.
+    #[inline]
     pub fn split<'a>(&self, parameters: &'a [f32]) -> LeakyParts<'a> {
         let part = |kind| {
             let Range { start, end } = self.range(kind);

@@ -34,6 +34,7 @@ impl ColorBand {
     }
 
     /// Returns true if the color is in the range.
+    #[inline]
     pub fn shows(&self, color: [f32; 3]) -> bool {
         (0..3).all(|i| self.low[i] <= color[i] && color[i] <= self.high[i])
     }

@@ -20,6 +20,7 @@ pub struct Lesion {
 }
 
 impl Filter for Lesion {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         for (channel, (p, &x)) in passed.iter_mut().zip(values).enumerate() {
             *p = if self.which.contains(&channel) { 0.0 } else { x };
@@ -79,6 +80,7 @@ pub struct Sticking {
 }
 
 impl Filter for Sticking {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         let stuck = self.broken || self.ticks >= self.after;
         for (channel, (p, &x)) in passed.iter_mut().zip(values).enumerate() {

@@ -35,6 +35,7 @@ pub struct Source {
 }
 
 impl Filter for Source {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         for (p, &x) in passed.iter_mut().zip(values) {
             *p = x + match self.noise {

@@ -20,6 +20,7 @@ pub struct Scale {
 }
 
 impl Filter for Scale {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         for (p, &x) in passed.iter_mut().zip(values) {
             *p = self.gain * x + self.offset;
@@ -62,6 +63,7 @@ pub struct Saturation {
 }
 
 impl Filter for Saturation {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         for (p, &x) in passed.iter_mut().zip(values) {
             *p = Scalar::clamp(x, self.low, self.high);
@@ -104,6 +106,7 @@ pub type Thresholded<T, M> = Wrapped<T, Threshold, M>;
 pub struct Threshold(f32);
 
 impl Filter for Threshold {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         for (p, &x) in passed.iter_mut().zip(values) {
             *p = f32::from(u8::from(x > self.0));
@@ -143,6 +146,7 @@ pub type Recorded<T, M> = Wrapped<T, Record, M>;
 pub struct Record;
 
 impl Filter for Record {
+    #[inline]
     fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
         passed.copy_from_slice(values);
     }

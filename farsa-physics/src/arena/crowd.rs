@@ -61,7 +61,7 @@ impl Crowd {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn visit(&self, model: &Model, low: [f32; 2], high: [f32; 2], tell: impl FnMut(usize)) {
         match &self.grid {
             Some(grid) => grid.visit(low, high, tell),

@@ -97,6 +97,7 @@ pub(crate) fn ray_to_disc(from: [f32; 2], direction: [f32; 2], radius: f32) -> O
 }
 
 /// Where a ray enters a wall [m], or `None` if it begins within or misses.
+#[inline]
 pub(crate) fn ray_to_wall(slab: &Slab, from: [f32; 2], direction: [f32; 2]) -> Option<f32> {
     // Slabs: the ray is within the wall where it is between both pairs of sides, from the last entry to the first exit
     // [Ericson2005] section 5.3.3.

@@ -29,31 +29,32 @@ struct Sorted {
 }
 
 impl Sorted {
-    /// The bodies whose centers may lie in the rectangle, or `None` if they are too many.
+    /// Sorts the bodies whose centers may be in the rectangle. Returns false if there are too many.
     #[inline]
-    fn new(world: &impl View, low: [f32; 2], high: [f32; 2]) -> Option<Self> {
-        let mut sorted = Self { bodies: [0; 64], count: 0 };
+    fn fill(&mut self, world: &impl View, low: [f32; 2], high: [f32; 2]) -> bool {
         world.visit(low, high, |body| {
-            let mut at = sorted.count;
-            sorted.count += 1;
-            if at < sorted.bodies.len() {
-                while at > 0 && usize::from(sorted.bodies[at - 1]) > body {
-                    sorted.bodies[at] = sorted.bodies[at - 1];
+            let mut at = self.count;
+            self.count += 1;
+            if at < self.bodies.len() {
+                while at > 0 && usize::from(self.bodies[at - 1]) > body {
+                    self.bodies[at] = self.bodies[at - 1];
                     at -= 1;
                 }
-                sorted.bodies[at] = body as u16;
+                self.bodies[at] = body as u16;
             }
         });
-        (sorted.count <= sorted.bodies.len()).then_some(sorted)
+        self.count <= self.bodies.len()
     }
 }
 
 /// Visits the robots and cylinders whose centers may be in the rectangle [m], in their order.
 #[inline]
 pub(crate) fn in_order(world: &impl View, low: [f32; 2], high: [f32; 2], mut tell: impl FnMut(usize)) {
-    match Sorted::new(world, low, high) {
-        Some(sorted) => sorted.bodies[..sorted.count].iter().for_each(|body| tell(usize::from(*body))),
-        None => (0..world.model().round_bodies()).for_each(tell),
+    let mut sorted = Sorted { bodies: [0; 64], count: 0 };
+    if sorted.fill(world, low, high) {
+        sorted.bodies[..sorted.count].iter().for_each(|body| tell(usize::from(*body)));
+    } else {
+        (0..world.model().round_bodies()).for_each(tell);
     }
 }
 

@@ -102,7 +102,7 @@ impl View for World {
     fn set_word(&mut self, index: usize, x: f32) {
         self.words[index] = x;
     }
-    #[inline]
+    #[inline(always)]
     fn visit(&self, low: [f32; 2], high: [f32; 2], tell: impl FnMut(usize)) {
         self.crowd.visit(&self.model, low, high, tell);
     }

@@ -79,6 +79,7 @@ impl Batch {
 
     /// Gets one of the worlds. If the index is out of range, this is the last world. Note that relying on this is a
     /// mistake.
+    #[inline]
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.words.lanes, "lane {index} of {}", self.words.lanes);
         Lane { index: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }

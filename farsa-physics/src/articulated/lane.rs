@@ -51,10 +51,15 @@ impl Words {
 
     /// The state of one lane, and where its links are.
     pub(crate) fn store(&mut self, lane: usize, state: &[f32], links: &[LinkData<f32>]) {
+        self.set_state(lane, state);
+        store_links(&mut self.links, lane, self.lanes, links);
+    }
+
+    /// Replaces the state of one lane.
+    fn set_state(&mut self, lane: usize, state: &[f32]) {
         for (to, x) in self.state.iter_mut().skip(lane).step_by(self.lanes).zip(state) {
             *to = *x;
         }
-        store_links(&mut self.links, lane, self.lanes, links);
     }
 
     /// Where the links of one lane are, from its state.
@@ -238,18 +243,14 @@ impl Snapshot for Lane<'_> {
         }
     }
     fn restore(&mut self, from: &[f32]) {
-        for (i, x) in from.iter().take(self.snapshot_len()).enumerate() {
-            self.set_word(i, *x);
-        }
+        self.words.set_state(self.index, from);
         self.finish_placement();
     }
 }
 
 impl Arrange for Lane<'_> {
     fn clear(&mut self) {
-        for i in 0..self.model.state_len() {
-            self.set_word(i, self.model.initial[i]);
-        }
+        self.words.set_state(self.index, &self.model.initial);
         self.finish_placement();
     }
     fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {

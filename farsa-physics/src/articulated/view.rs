@@ -16,6 +16,7 @@ pub(crate) trait View<R: Real> {
     /// A word of the state.
     fn word(&self, index: usize) -> R;
     /// Returns whether any of `points` points, whose words begin at `first`, carries a normal impulse.
+    #[inline]
     fn carries(&self, first: usize, points: usize) -> bool {
         (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::from_f64(0.0))
     }
@@ -64,6 +65,7 @@ fn quaternion_about<R: Real, const I: usize>(m: &Matrix<R>) -> [R; 4] {
 }
 
 /// Pose of a body's frame. The identity for a body that does not exist.
+#[inline]
 pub(crate) fn pose<R: Real>(world: &impl View<R>, body: BodyId) -> Pose<R> {
     let Some(mount) = world.model().mounts.get(body.index()) else { return Pose::identity() };
     if mount.link == WORLD {
@@ -109,17 +111,20 @@ pub(crate) fn velocity<R: Real>(world: &impl View<R>, body: BodyId) -> Twist<R> 
 }
 
 /// Angle or displacement of a joint, or 0 for one that has none.
+#[inline]
 pub(crate) fn joint_position<R: Real>(world: &impl View<R>, joint: JointId) -> f32 {
     world.model().joint_index(joint).map_or(0.0, |(q, _)| world.word(q).to_f64() as f32)
 }
 
 /// Speed of a joint, or 0 for one that has none.
+#[inline]
 pub(crate) fn joint_speed<R: Real>(world: &impl View<R>, joint: JointId) -> f32 {
     let model = world.model();
     model.joint_index(joint).map_or(0.0, |(_, v)| world.word(model.positions + v).to_f64() as f32)
 }
 
 /// Sets the command of an actuator.
+#[inline]
 pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value: [f32; 2]) {
     if actuator < world.model().actuators.len() {
         let at = world.model().first_command() + 2 * actuator;
@@ -129,6 +134,7 @@ pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value:
 }
 
 /// Returns whether a point of a pair carries a normal force.
+#[inline]
 pub(crate) fn touches<R: Real>(world: &impl View<R>, pair: PairId) -> bool {
     let model = world.model();
     let Some(pair) = model.pairs.get(pair.index()) else { return false };

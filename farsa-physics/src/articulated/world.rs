@@ -133,9 +133,11 @@ impl<R: Precision> View<R> for World<R> {
     fn model(&self) -> &Model<R> {
         &self.model
     }
+    #[inline]
     fn word(&self, index: usize) -> R {
         self.state[index]
     }
+    #[inline]
     fn carries(&self, first: usize, points: usize) -> bool {
         let words = &self.state[first..first + POINT_WORDS * points];
         words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::from_f64(0.0))
@@ -195,6 +197,7 @@ impl<R: Precision> Joints for World<R> {
 }
 
 impl<R: Precision> Actuated for World<R> {
+    #[inline]
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
         view::command(self, actuator.index(), value);
     }
@@ -218,6 +221,7 @@ impl<R: Precision> Contacts for World<R> {
     fn pair_contact(&self, pair: PairId) -> PairContact {
         view::pair_contact(self, pair)
     }
+    #[inline]
     fn touches(&self, pair: PairId) -> bool {
         view::touches(self, pair)
     }
