@@ -212,7 +212,7 @@ impl Term {
             }
             Measure::Sensor([first, end]) => {
                 let channels = Rows::of(rows.x, rows.inputs, robot).get(*first..*end).unwrap_or_default();
-                channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
+                channels.iter().map(|x| f64::from(*x)).reduce(Scalar::max).unwrap_or(0.0)
             }
             Measure::InArea(areas) => yes(areas.iter().any(|area| is_in(area, pose, world))),
             // 1 - mean |p - p_j| / diagonal. The sum contains the robot itself at distance 0, the mean does not count it.

@@ -10,6 +10,8 @@ mod driving;
 pub(crate) mod episode;
 /// Cameras with an image.
 mod eyes;
+/// Pose and velocity of frames of bodies.
+mod frame;
 /// Positions of markers relative to a body.
 mod marker_position;
 /// A point of a body, or a marker.

@@ -12,6 +12,7 @@ use crate::check::source::Source;
 use crate::document::SensorKind;
 use crate::jointed::SpatialWorld;
 use crate::jointed::eyes::{blobs, image, offset};
+use crate::jointed::frame::{FramePose, FrameVelocity};
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
@@ -27,7 +28,9 @@ pub(crate) enum Sensing {
     Target(TargetPosition),
     Marker(MarkerPosition),
     Pose(BodyPose),
+    FramePose(FramePose),
     Velocity(BodyVelocity),
+    FrameVelocity(FrameVelocity),
     Height(Height),
     Camera(Camera),
     Image(CameraImage),
@@ -47,7 +50,9 @@ macro_rules! sensor {
             Sensing::Target($sensor) => $call,
             Sensing::Marker($sensor) => $call,
             Sensing::Pose($sensor) => $call,
+            Sensing::FramePose($sensor) => $call,
             Sensing::Velocity($sensor) => $call,
+            Sensing::FrameVelocity($sensor) => $call,
             Sensing::Height($sensor) => $call,
             Sensing::Camera($sensor) => $call,
             Sensing::Image($sensor) => $call,
@@ -115,7 +120,7 @@ impl Sensing {
 /// Builds the sensor at a path of the document.
 pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
     let wrong = |error: ChannelError| source.wrong(path, error);
-    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);
+    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source);
     Ok(match kind {
         SensorKind::JointPosition { joints, from, to } => {
             let build = |joint| {
@@ -152,10 +157,14 @@ pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Sour
                 }
             }
         }
-        SensorKind::BodyPose { body: name } => Sensing::Pose(BodyPose::new(body(name)?)),
-        SensorKind::BodyVelocity { body: name, axes } => {
-            Sensing::Velocity(BodyVelocity::new(body(name)?, (*axes).into()))
-        }
+        SensorKind::BodyPose { body: name } => match body(name)? {
+            (body, frame) if frame == Pose::identity() => Sensing::Pose(BodyPose::new(body)),
+            (body, frame) => Sensing::FramePose(FramePose::new(body, frame.cast())),
+        },
+        SensorKind::BodyVelocity { body: name, axes } => match body(name)? {
+            (body, frame) if frame == Pose::identity() => Sensing::Velocity(BodyVelocity::new(body, (*axes).into())),
+            (body, frame) => Sensing::FrameVelocity(FrameVelocity::new(body, frame.cast(), (*axes).into())),
+        },
         SensorKind::Height { body, point } => {
             Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, source)?))
         }

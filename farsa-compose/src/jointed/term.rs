@@ -22,10 +22,10 @@ enum Measure {
     Touch(Vec<PairId>),
     Displacement(Point),
     Moved(NamedPoint),
-    Speed(BodyId),
-    Forward(BodyId),
+    Speed(Point),
+    Forward(Point),
     /// With the components of a unit vector of the world.
-    Progress(BodyId, [f64; 3]),
+    Progress(Point, [f64; 3]),
     Position(Point, [f64; 3]),
     Height(Point),
     Upright(BodyId),
@@ -86,8 +86,9 @@ impl Term {
     fn place<W: SpatialWorld>(&self, world: &W, markers: &[[f32; 3]]) -> [f64; 3] {
         match &self.measure {
             Measure::Moved(point_named) => point_named.position(world, markers),
-            Measure::Displacement(point) => place_of(world, point),
-            Measure::Forward(body) | Measure::Progress(body, _) => place_of(world, &Point::origin(*body)),
+            Measure::Displacement(point) | Measure::Forward(point) | Measure::Progress(point, _) => {
+                place_of(world, point)
+            }
             _ => [0.0; 3],
         }
     }
@@ -110,11 +111,11 @@ impl Term {
             Measure::Touch(pairs) => yes(pairs.iter().any(|pair| world.touches(*pair))),
             Measure::Displacement(_) | Measure::Moved(_) => apart(self.place(world, markers), self.began),
             // From the dynamics, unlike in an arena, where it is the difference of two positions.
-            Measure::Speed(body) => length(world.velocity(*body).linear.map(f64::from)),
+            Measure::Speed(point) => length(velocity_of(world, point)),
             // x component of R^T (p - p'), with p' of the previous step.
-            Measure::Forward(body) => {
+            Measure::Forward(point) => {
                 let way = self.way(world, markers);
-                world.pose(*body).cast::<f64>().rotate_back(way)[0]
+                world.pose(point.body).cast::<f64>().rotate_back(way)[0]
             }
             // n . (p - p')
             Measure::Progress(_, [u, v, w]) => {
@@ -133,8 +134,7 @@ impl Term {
             }
             Measure::Sensor([first, end]) => {
                 let channels = agents.x.get(*first..*end).unwrap_or_default();
-                // The largest channel. Negative channels count as 0.
-                channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
+                channels.iter().map(|x| f64::from(*x)).reduce(Scalar::max).unwrap_or(0.0)
             }
             Measure::Effort => mean(agents.y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum(), agents.y.len()),
             // Mean of (2 y - 1)^2, because a motor rests at y = 1/2.
@@ -179,9 +179,9 @@ fn measure(
         RewardKind::Touch { bodies, with } => Measure::Touch(scene.pairs(bodies, with.as_ref(), path, source)?),
         RewardKind::Displacement { body } => Measure::Displacement(point(body, &[0.0; 3])?),
         RewardKind::Moved { object } => Measure::Moved(point_named(object)?.0),
-        RewardKind::Speed { body: name } => Measure::Speed(body(name)?),
-        RewardKind::Forward { body: name } => Measure::Forward(body(name)?),
-        RewardKind::Progress { along, body: name } => Measure::Progress(body(name)?, direction(along)?),
+        RewardKind::Speed { body } => Measure::Speed(point(body, &[0.0; 3])?),
+        RewardKind::Forward { body } => Measure::Forward(point(body, &[0.0; 3])?),
+        RewardKind::Progress { along, body } => Measure::Progress(point(body, &[0.0; 3])?, direction(along)?),
         RewardKind::Position { along, body, point: at } => Measure::Position(point(body, at)?, direction(along)?),
         RewardKind::Height { body, point: at } => Measure::Height(point(body, at)?),
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
@@ -200,6 +200,16 @@ fn measure(
 
 fn place_of<W: SpatialWorld>(world: &W, point: &Point) -> [f64; 3] {
     point.position(world).map(f64::from)
+}
+
+/// Computes the velocity of a point of a body [m/s].
+fn velocity_of<W: SpatialWorld>(world: &W, point: &Point) -> [f64; 3] {
+    let (twist, pose) = (world.velocity(point.body), world.pose(point.body).cast::<f64>());
+    let ([x, y, z], [u, v, w]) = (pose.rotate(point.at.map(f64::from)), twist.angular.map(f64::from));
+    // v + w x r
+    let turning = [v * z - w * y, w * x - u * z, u * y - v * x];
+    let linear = twist.linear.map(f64::from);
+    [0, 1, 2].map(|k| linear[k] + turning[k])
 }
 
 fn yes(flag: bool) -> f64 {
