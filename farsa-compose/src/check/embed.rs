@@ -83,7 +83,8 @@ pub(crate) fn embedded(
         if !inside {
             return Err(source.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
         }
-        contents.push((name, read_text_file(&target, MAX_BYTES)?));
+        let content = read_text_file(&target, MAX_BYTES).map_err(|error| source.wrong(&path, error))?;
+        contents.push((name, content));
     }
     if contents.is_empty() {
         return Ok(None);

@@ -7,6 +7,7 @@ use farsa_lab::{Error, Setting, Settings};
 use serde_json::{Map, Value};
 
 use crate::check::schema::{Kind, Part};
+use crate::name::is_part_of_key;
 
 /// Tables without settings of their values.
 const ELSEWHERE: [&str; 8] =
@@ -92,7 +93,8 @@ pub(crate) fn names(items: &[Value]) -> Vec<String> {
     let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
     let unique = |(index, item): (usize, &Value)| {
         let name = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
-        let name = name.map_or_else(|| (index + 1).to_string(), str::to_owned);
+        // A joint of a model may have a name that is no key.
+        let name = name.filter(|name| is_part_of_key(name)).map_or_else(|| (index + 1).to_string(), str::to_owned);
         if taken.insert(name.clone()) {
             return name;
         }

@@ -19,8 +19,8 @@ pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Sou
     let lines = Lines::new(text);
     let mut source = Source::new(file);
     let table = DeTable::parse(text).map_err(|error| {
-        let place = error.span().map_or_else(|| file.to_owned(), |span| source.of_line(lines.of(span.start)));
-        Error::Usage(format!("{place}: {}", error.message()))
+        let line = error.span().map_or_else(|| last_line(text, error.message()), |span| lines.of(span.start));
+        Error::Usage(format!("{}: {}", source.of_line(line), error.message()))
     })?;
     let part = Part::root(schema).ok_or_else(|| Error::Other("the schema is no table".into()))?;
     let mut walk = Walk { lines: &lines, source: &mut source, errors: Vec::new() };
@@ -35,6 +35,21 @@ pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Sou
         Err(last) => errors.push(last),
     }
     Err(Error::several(errors))
+}
+
+/// Finds the line of an error without a place: the last one of the shortest beginning of the text with this error.
+fn last_line(text: &str, message: &str) -> usize {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let fails = |count: usize| {
+        let length: usize = lines[..count].iter().map(|line| line.len()).sum();
+        DeTable::parse(&text[..length]).is_err_and(|error| error.span().is_none() && error.message() == message)
+    };
+    let (mut passes, mut fails_from) = (0, lines.len());
+    while fails_from - passes > 1 {
+        let middle = passes.midpoint(fails_from);
+        *if fails(middle) { &mut fails_from } else { &mut passes } = middle;
+    }
+    fails_from.max(1)
 }
 
 struct Walk<'w> {

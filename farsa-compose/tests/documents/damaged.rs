@@ -191,7 +191,13 @@ fn parts_that_do_not_go_together_are_refused() {
 #[test]
 fn files_of_more_than_anybody_writes_are_refused() {
     let nested = format!("{RIGHT}[a{}]\n", ".a".repeat(100_000));
-    assert!(error(&nested).ends_with("recursion limit"), "{}", error(&nested));
+    let found = error(&nested);
+    assert!(found.starts_with("look.toml line 37: ") && found.ends_with("recursion limit"), "{found}");
+    // An error without a place in the text has the line from which on the text has it.
+    for deep in ["[", "{ a = "] {
+        let found = error(&RIGHT.replace("walls = 0.1", &format!("walls = {}", deep.repeat(10_000))));
+        assert!(found.starts_with("look.toml line 25: "), "{found}");
+    }
     // Each condition is checked as a separate experiment.
     let conditions =
         |count| (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect::<Vec<_>>().concat();
@@ -307,6 +313,25 @@ fn plain(text: &str) -> String {
     text.replace('`', "")
 }
 
+/// Names in capitals are no keys of settings. They are unknown names like others.
+#[test]
+fn unknown_names_in_capitals_are_refused_with_their_lines() {
+    for (line, wrong, message) in [
+        ("place = \"lamp\"", "place = \"LAMP\"", "line 23: unknown object LAMP; the nearest is lamp"),
+        ("term = \"approach\"", "term = \"GOAL\"", "line 31: unknown term GOAL"),
+        ("object = \"lamp\"", "object = \"Lamp\"", "line 28: unknown object Lamp; the nearest is lamp"),
+    ] {
+        let found = plain(&error(&RIGHT.replace(line, wrong)));
+        assert!(found.starts_with(&format!("look.toml {message}")), "{wrong}: {found}");
+    }
+    for list in ["success", "failure", "end"] {
+        let found = plain(&error(&format!("{RIGHT}[[{list}]]\nterm = \"The Goal\"\nabove = 1\n")));
+        assert!(found.starts_with("look.toml line 38: unknown term The Goal"), "{found}");
+    }
+    let found = plain(&error(&format!("{RIGHT}[[behaviour.objectives]]\nterm = \"GOAL\"\n")));
+    assert!(found.starts_with("look.toml line 38: unknown term GOAL"), "{found}");
+}
+
 /// A robot alone has a number, which there has to be.
 #[test]
 fn robots_are_named_alone() {
@@ -330,6 +355,8 @@ enum Damage {
     UnknownWord,
     NoToml,
     Twice,
+    Capitals,
+    Deep,
 }
 
 /// The line damaged, if it can be.
@@ -349,6 +376,11 @@ fn damaged(line: &str, damage: Damage) -> Option<String> {
             let text = value.strip_prefix('"').filter(|_| word)?;
             Some(format!("{key} = \"zq-{text}"))
         }
+        Damage::Capitals => {
+            let text = value.strip_prefix('"').filter(|text| word && text.contains(char::is_lowercase))?;
+            Some(format!("{key} = \"{}", text.to_uppercase()))
+        }
+        Damage::Deep => Some(format!("{key} = {}", "[".repeat(300))),
         Damage::NoToml => Some(format!("{key} {value}")),
         Damage::Twice => Some(format!("{line}\n{line}")),
     }
@@ -357,7 +389,7 @@ fn damaged(line: &str, damage: Damage) -> Option<String> {
 /// One line of each file drawn at random is damaged: it is refused, with that line and its key.
 #[test]
 fn drawn_files_are_refused_with_line_and_key() {
-    const ALL: [Damage; 7] = [
+    const ALL: [Damage; 9] = [
         Damage::UnknownKey,
         Damage::OtherType,
         Damage::OutOfRange,
@@ -365,6 +397,8 @@ fn drawn_files_are_refused_with_line_and_key() {
         Damage::UnknownWord,
         Damage::NoToml,
         Damage::Twice,
+        Damage::Capitals,
+        Damage::Deep,
     ];
     let mut counts = [0; ALL.len()];
     for file in 0..300 {
@@ -389,7 +423,8 @@ fn drawn_files_are_refused_with_line_and_key() {
             "{damage:?} of line {line_number}: {found}\n{text}"
         );
         let key = lines[number].split(" = ").next().unwrap_or_default();
-        let named = found.contains(key) || matches!(damage, Damage::NoToml | Damage::Twice) || found.contains("zq");
+        let named = found.contains(key) || matches!(damage, Damage::NoToml | Damage::Twice | Damage::Deep);
+        let named = named || found.contains("zq") || damage == Damage::Capitals;
         assert!(named, "{damage:?} of `{key}`: {found}");
     }
     assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
