@@ -98,6 +98,20 @@ impl<'e> Run<'e> {
         })
     }
 
+    /// Returns the name of the experiment, with its origin if one of the runs is of another origin.
+    pub(crate) fn experiment(&self, runs: &[Self]) -> String {
+        let (name, from_file) = (self.plan.experiment.name(), self.plan.experiment.definition().is_some());
+        let differs = |other: &Self| {
+            let other = other.plan.experiment;
+            other.name() == name && other.definition().is_some() != from_file
+        };
+        match (runs.iter().any(differs), from_file) {
+            (false, _) => name.into(),
+            (true, true) => format!("{name} (from a file)"),
+            (true, false) => format!("{name} (built in)"),
+        }
+    }
+
     /// Formats the directory as the user named it.
     pub(crate) fn name(&self) -> String {
         self.directory.path().display().to_string()

@@ -15,15 +15,20 @@ use crate::report::settings::{command, complete, differences, shell};
 use crate::report::strategies::strategies;
 use crate::strategy::settings::POPULATION;
 
-/// Returns the section about an experiment's runs, with a heading unless it is the only one.
-pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program: &str) -> Result<Vec<Block>, Error> {
+/// Returns the section about an experiment's runs, with a heading if there are several experiments.
+pub(crate) fn section(
+    runs: &[&Run<'_>],
+    heading: Option<&str>,
+    success: Success,
+    program: &str,
+) -> Result<Vec<Block>, Error> {
     let Some(first) = runs.first() else { return Ok(Vec::new()) };
     let experiment = first.plan.experiment;
     let groups = Group::all(runs);
     let runs: Vec<&Run<'_>> = groups.iter().flat_map(|group| group.runs.iter().copied()).collect();
     let mut blocks = Vec::new();
-    if !alone {
-        blocks.push(Block::Heading(experiment.name().into()));
+    if let Some(heading) = heading {
+        blocks.push(Block::Heading(heading.into()));
     }
     blocks.push(Block::Text(sentence(experiment.summary())));
     blocks.extend(twins(&groups));

@@ -80,7 +80,7 @@ pub(crate) fn report(
     }
     create_results(&files)?;
     Ok(Summary {
-        runs: runs.iter().map(summary).collect(),
+        runs: runs.iter().map(|run| summary(run, &runs)).collect(),
         files: files.iter().map(|(path, _)| path.display().to_string()).collect(),
     })
 }
@@ -92,10 +92,10 @@ fn page(
     success: Option<Success>,
     program: &str,
 ) -> Result<Page, Error> {
-    let mut experiments: Vec<&str> = Vec::new();
-    for run in runs {
-        if !experiments.contains(&run.plan.experiment.name()) {
-            experiments.push(run.plan.experiment.name());
+    let mut experiments: Vec<String> = Vec::new();
+    for label in runs.iter().map(|run| run.experiment(runs)) {
+        if !experiments.contains(&label) {
+            experiments.push(label);
         }
     }
     let title = match runs {
@@ -104,8 +104,9 @@ fn page(
     };
     let mut blocks = Vec::new();
     for experiment in &experiments {
-        let these: Vec<&Run<'_>> = runs.iter().filter(|run| run.plan.experiment.name() == *experiment).collect();
-        blocks.extend(section(&these, experiments.len() == 1, success.unwrap_or(HALF), program)?);
+        let these: Vec<&Run<'_>> = runs.iter().filter(|run| run.experiment(runs) == *experiment).collect();
+        let heading = Some(experiment.as_str()).filter(|_| experiments.len() > 1);
+        blocks.extend(section(&these, heading, success.unwrap_or(HALF), program)?);
     }
     let mut words: Vec<String> = vec![program.into(), "report".into()];
     words.extend(runs.iter().map(Run::name));
@@ -124,10 +125,10 @@ fn page(
     Ok(Page { title, blocks })
 }
 
-fn summary(run: &Run<'_>) -> RunSummary {
+fn summary(run: &Run<'_>, runs: &[Run<'_>]) -> RunSummary {
     RunSummary {
         directory: run.name(),
-        experiment: run.plan.experiment.name().into(),
+        experiment: run.experiment(runs),
         condition: run.plan.condition.clone(),
         seed: run.plan.seed,
         generations: run.lines.len(),
