@@ -32,7 +32,7 @@ use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::experiment::Experiment;
-use crate::run::laboratory::{FILE, Laboratory};
+use crate::run::laboratory::{Laboratory, is_file};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::replications::{self, Replications};
@@ -388,7 +388,7 @@ impl<'e> Invocation<'e, '_> {
         directory: &Directory,
     ) -> Result<(), Error> {
         let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
-        let file_name = args.experiment.as_ref().filter(|name| name.ends_with(FILE));
+        let file_name = args.experiment.as_ref().filter(|name| is_file(name));
         let named = file_name.map(|name| self.find(name)).transpose()?;
         let other = |experiment: &&dyn Experiment| {
             experiment.name() == plan.experiment.name() && experiment.definition() != plan.experiment.definition()

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::Error;
+use crate::escaped::Quoted;
 use crate::run::config_file::ConfigFile;
 use crate::run::experiment::Experiment;
 use crate::run::imported_file::ImportedFile;
@@ -160,14 +161,20 @@ impl<'e> Laboratory<'e> {
     /// # Errors
     /// [`Error::Setting`] with the nearest name, [`Error::Io`], and the errors of a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
-        if name.ends_with(FILE) {
+        if is_file(name) {
             let path = Path::new(name);
-            let text = bounded::read_configuration(path, MAX_BYTES)?;
+            let text = bounded::read_configuration(path, MAX_BYTES).map_err(|error| match file_of(name) {
+                Some(other) if !path.exists() => missing(place, name, &other),
+                _ => error,
+            })?;
             return self.described(name, &text, path.parent());
         }
         let names = self.experiments.iter().map(|experiment| experiment.name());
         let found = self.experiments.iter().copied().find(|experiment| experiment.name() == name);
-        found.ok_or_else(|| Error::unknown(place, "experiment", name, names))
+        found.ok_or_else(|| match self.files.and_then(|_| file_of(name)) {
+            Some(file) => missing(place, name, &file),
+            None => Error::unknown(place, "experiment", name, names),
+        })
     }
 
     /// Returns the strategy with a name found at `place`.
@@ -177,6 +184,31 @@ impl<'e> Laboratory<'e> {
     pub(crate) fn strategy(&self, name: &str, place: &str) -> Result<&'static dyn StrategyDefinition, Error> {
         known::find(&self.strategies, name, place)
     }
+}
+
+/// Checks if a name is that of a file.
+pub(crate) fn is_file(name: &str) -> bool {
+    name.to_lowercase().ends_with(FILE)
+}
+
+/// Builds the error of a name that is almost that of a file.
+fn missing(place: &str, name: &str, file: &str) -> Error {
+    let why = format!("there is no experiment {}; the file is {}", Quoted(name), Quoted(file));
+    Error::Setting { place: place.into(), key: String::new(), why }
+}
+
+/// Finds the file of an experiment whose name lacks `.toml`, or has other capitals.
+fn file_of(name: &str) -> Option<String> {
+    let path = Path::new(name);
+    let stem = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let wanted = [stem.to_lowercase(), format!("{}{FILE}", stem.to_lowercase())];
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let files = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let found = files.filter(|file| file.to_lowercase().ends_with(FILE) && wanted.contains(&file.to_lowercase()));
+    // The name that differs least: the capitals as given come first.
+    let found = found.min_by_key(|file| (!file.starts_with(stem), file.clone()))?;
+    Some(folder.map_or(found.clone(), |folder| folder.join(&found).display().to_string()))
 }
 
 #[cfg(test)]
@@ -191,6 +223,36 @@ mod tests {
         _: &[&'static dyn StrategyDefinition],
     ) -> Result<Box<dyn Experiment>, Error> {
         Err(Error::Other(format!("{name}, {text}, {folder:?}")))
+    }
+
+    #[test]
+    fn files_are_named_without_extension_and_in_other_capitals() {
+        let files = ExperimentFiles { read, schema: String::new, templates: &[], import: None };
+        let laboratory = Laboratory::new(&[]).with_files(files);
+        let folder = std::env::temp_dir().join(format!("farsa-names-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["follow.toml", "Other.TOML"] {
+            std::fs::write(folder.join(name), "text").unwrap();
+        }
+        let path = |name: &str| folder.join(name).display().to_string();
+        let found = |name: &str| laboratory.experiment(&path(name), "").err().unwrap();
+        for (name, file) in [
+            ("follow", "follow.toml"),
+            ("Follow", "follow.toml"),
+            ("FOLLOW.TOML", "follow.toml"),
+            ("other", "Other.TOML"),
+            ("other.toml", "Other.TOML"),
+        ] {
+            let error = found(name);
+            let wanted = format!("there is no experiment `{}`; the file is `{}`", path(name), path(file));
+            assert_eq!((error.to_string(), error.exit_code()), (wanted, 2));
+        }
+        for name in ["follow.toml", "Other.TOML"] {
+            assert!(found(name).to_string().starts_with(&format!("{}, text", path(name))));
+        }
+        assert!(found("folow").to_string().contains("unknown experiment"));
+        assert!(matches!(found("absent.toml"), Error::Io { .. }));
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     /// A run directory may be untrusted, so its text cannot name files of the current folder.
