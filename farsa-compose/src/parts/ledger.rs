@@ -10,6 +10,7 @@ use farsa_num::Scalar;
 use crate::check::source::Source;
 use crate::document::{Condition, Document, Ending, Trials};
 use crate::parts::behaviour::TermBehaviour;
+use crate::parts::constant_fitness::warning;
 use crate::parts::groups::Groups;
 use crate::parts::tally::Tally;
 use crate::parts::wanted::Wanted;
@@ -32,6 +33,8 @@ pub(crate) struct Ledger {
     most_steps: u32,
     product: bool,
     trials: Trials,
+    /// Doubt about the fitness, if any.
+    pub(crate) warning: Option<String>,
     /// Steps of this trial.
     pub(crate) steps: u32,
     /// Result of the trial.
@@ -83,6 +86,7 @@ impl Ledger {
             most_steps: document.episode.steps,
             product: document.fitness.product,
             trials: document.fitness.trials,
+            warning: warning(document, groups, source),
             steps: 0,
             failed: false,
             succeeded: false,

@@ -11,3 +11,4 @@ mod placements;
 mod protocols;
 mod rules;
 mod steps;
+mod warnings;

@@ -320,6 +320,7 @@ impl<'e> Invocation<'e, '_> {
     /// Starts, continues or skips the replications of a plan, or only the one of a number from 1.
     pub(crate) fn replicate(&self, args: &RunArgs, count: u32, only: Option<u32>) -> Result<Replications, Error> {
         let (_, plan) = self.planned_from_file(args)?;
+        self.warn(&plan.evaluator()?.info().warnings);
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
         let pool = |plan: &Plan<'e>| self.pool(args, plan);
         let which = replications::Selection { count, only };
@@ -355,6 +356,7 @@ impl<'e> Invocation<'e, '_> {
         let (directory, plan) = self.planned(args, file.as_ref())?;
         // A refused run leaves no directory.
         let pool = self.pool(args, &plan)?;
+        self.warn(&plan.evaluator()?.info().warnings);
         let directory = if let Some(directory) = directory {
             self.same_names(args, file.as_ref(), &plan, &directory)?;
             directory

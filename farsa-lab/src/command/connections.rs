@@ -28,6 +28,8 @@ pub(crate) struct Connections {
     trials: usize,
     steps: usize,
     step_seconds: f64,
+    /// Doubts about the experiment.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// An evolved parameter with its values for the smallest and the largest gene.
@@ -125,6 +127,7 @@ impl Connections {
             trials: task.info().trials,
             steps,
             step_seconds,
+            warnings: task.info().warnings,
         })
     }
 

@@ -1,6 +1,7 @@
 //! `farsa new` and `farsa check`: files that describe experiments.
 
 use std::fmt::Write as _;
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 
 use crate::command::arguments::files::{CheckArgs, NewArgs};
@@ -8,6 +9,7 @@ use crate::command::cli::{say, tell};
 use crate::command::connections::Connections;
 use crate::command::invocation::Invocation;
 use crate::error::Error;
+use crate::escaped::escaped;
 use crate::json::pretty;
 use crate::run::laboratory::{FILE, Template};
 use crate::store::replace::create_results;
@@ -39,11 +41,19 @@ impl Invocation<'_, '_> {
         if self.quiet { Ok(()) } else { tell(&next) }
     }
 
+    /// Prints warnings on standard error.
+    pub(super) fn warn(&self, warnings: &[String]) {
+        for warning in warnings.iter().filter(|_| !self.quiet && !self.exchange.is_follower()) {
+            let _ = writeln!(io::stderr(), "warning: {}", escaped(warning));
+        }
+    }
+
     /// Checks an experiment, and lists or draws its connections.
     pub(super) fn check(&self, args: &CheckArgs) -> Result<(), Error> {
         let plan = args.variant.plan(self.laboratory.experiment(&args.experiment, "")?)?;
         plan.strategy()?;
         let connections = Connections::new(&plan)?;
+        self.warn(&connections.warnings);
         if let Some(path) = &args.graph {
             create_results(&[(path.clone(), connections.svg())])?;
         }

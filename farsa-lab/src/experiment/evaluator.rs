@@ -66,6 +66,8 @@ pub struct TaskInfo {
     ///
     /// [`Interventions::applied`]: crate::advanced::Interventions::applied
     pub anatomy: Option<Anatomy>,
+    /// Doubts about the task under its settings, one sentence each, such as a fitness that never differs. By default none.
+    pub warnings: Vec<String>,
 }
 
 impl TaskInfo {
@@ -86,6 +88,7 @@ impl TaskInfo {
             observations: 0,
             protocols: Vec::new(),
             anatomy: None,
+            warnings: Vec::new(),
         }
     }
 

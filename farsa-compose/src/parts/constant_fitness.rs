@@ -1,0 +1,70 @@
+//! Warning about a fitness that is the same for all individuals.
+
+use crate::check::source::Source;
+use crate::document::{Document, MotorKind, ObjectKind, RewardKind, SensorKind};
+use crate::parts::groups::Groups;
+
+/// Describes the fitness of a document if it has one value for all individuals.
+pub(crate) fn warning(document: &Document, groups: &Groups, source: &Source) -> Option<String> {
+    let mut paid = document.reward.iter().enumerate().filter(|(_, term)| term.weight != 0.0).peekable();
+    if paid.peek().is_none() {
+        let place = source.of("/reward/0/weight");
+        return Some(format!("{place}: no term has a weight, so the fitness of all individuals is 0"));
+    }
+    if paid.all(|(number, _)| is_constant(number, document, groups, source)) {
+        let place = source.of("/reward/0");
+        return Some(format!("{place}: no term with a weight can differ, so all individuals have the same fitness"));
+    }
+    None
+}
+
+/// Checks if a term has the same total in each trial.
+fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Source) -> bool {
+    let term = &document.reward[number];
+    let ends_early = !document.episode.ends.is_empty() || !document.end.is_empty() || !document.failure.is_empty();
+    let differs = |other: &String| {
+        let other = source.names.terms[..number].iter().position(|name| name == other);
+        other.is_none_or(|other| !is_constant(other, document, groups, source))
+    };
+    if ends_early || term.during.as_ref().is_some_and(differs) {
+        return false;
+    }
+    if term.clip.is_some_and(|[low, high]| low == high) {
+        return true;
+    }
+    let alone = groups.robots() == 1;
+    let foraging = document.foraging.as_ref();
+    match &term.kind {
+        RewardKind::Steps {} | RewardKind::Time {} | RewardKind::TimeLeft { .. } => true,
+        RewardKind::NearOthers {}
+        | RewardKind::Dispersion {}
+        | RewardKind::Clusters {}
+        | RewardKind::LargestCluster {} => alone,
+        RewardKind::Held {} => !pulls(document),
+        RewardKind::Food {} | RewardKind::CarriedFood {} => foraging.is_some_and(|foraging| foraging.cells == 0),
+        RewardKind::LostFood {} => foraging.is_some_and(|foraging| foraging.cells == 0 || foraging.cost == 0.0),
+        RewardKind::Deaths {} | RewardKind::Energy {} | RewardKind::Alive {} => {
+            foraging.is_some_and(|foraging| foraging.cost == 0.0)
+        }
+        RewardKind::Moved { object } => stands(object, document),
+        RewardKind::Sensor { sensor } => {
+            let place = source.names.sensors.iter().position(|(name, _)| name == sensor);
+            let sensor = place.and_then(|place| document.sensors.get(place));
+            let constant = |kind: &SensorKind| matches!(kind, SensorKind::Constant { .. });
+            sensor.is_some_and(|sensor| sensor.wrappers.is_empty() && constant(&sensor.kind))
+        }
+        _ => false,
+    }
+}
+
+/// Checks if robots have attachment devices.
+fn pulls(document: &Document) -> bool {
+    document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
+}
+
+/// Checks if a thing stays at its place in a trial.
+fn stands(name: &str, document: &Document) -> bool {
+    let movable = |kind: &ObjectKind| matches!(kind, ObjectKind::Block { .. } | ObjectKind::Ball { .. });
+    let object = document.objects.iter().find(|object| object.name == name);
+    object.is_some_and(|object| !movable(&object.kind) && !pulls(document))
+}
