@@ -56,8 +56,8 @@ pub struct ComposedExperiment {
     name: &'static str,
     summary: &'static str,
     conditions: &'static [&'static str],
-    /// Settings that differ in each condition.
-    changes: Vec<Vec<(String, SettingValue)>>,
+    /// Settings that differ in each condition, with their places.
+    changes: Vec<Vec<Change>>,
     strategy: &'static dyn StrategyDefinition,
     /// Settings of the strategy, with the defaults of the file.
     strategy_settings: Vec<Setting>,
@@ -357,14 +357,16 @@ fn strategy_settings(
             let path = format!("/{section}/{name}");
             let setting = settings.find(&source.of(&path), &format!("{section}.{name}"))?;
             let default = setting.with_default(setting_value(value, &path, source)?);
-            changed.push(default.map_err(|why| source.wrong(&path, why))?);
+            changed.push(default.map_err(|why| source.wrong(&path, why))?.at(&source.of(&path)));
         }
     }
     Ok(changed)
 }
 
 /// Names of conditions, with the settings that each changes.
-type Conditions = (Vec<&'static str>, Vec<Vec<(String, SettingValue)>>);
+type Conditions = (Vec<&'static str>, Vec<Vec<Change>>);
+/// Key and value of a changed setting, and its place.
+type Change = (String, SettingValue, String);
 
 /// Reads the conditions of a document, which change settings of a table.
 fn conditions(document: &Document, table: &[Setting], source: &Source) -> Result<Conditions, Error> {
@@ -377,7 +379,7 @@ fn conditions(document: &Document, table: &[Setting], source: &Source) -> Result
         let change = |(key, value): (&String, &Value)| {
             let path = format!("/conditions/{index}/settings/{key}");
             settings.set(&source.of(&path), key, setting_value(value, &path, source)?)?;
-            Ok((key.clone(), settings.get(key)?.clone()))
+            Ok((key.clone(), settings.get(key)?.clone(), source.of(&path)))
         };
         condition.settings.iter().map(change).collect::<Result<Vec<_>, Error>>()
     });
@@ -407,14 +409,19 @@ impl Experiment for ComposedExperiment {
         let place = self.conditions.iter().position(|name| *name == condition);
         let changes = place.map_or(&[][..], |place| &self.changes[place]);
         let changed = |setting: &Setting| {
-            let change = changes.iter().find(|(key, _)| key == setting.key());
-            change.and_then(|(_, value)| setting.with_default(value.clone()).ok()).unwrap_or_else(|| setting.clone())
+            let change = changes.iter().find(|(key, ..)| key == setting.key());
+            let changed = |(_, value, place): &Change| Some(setting.with_default(value.clone()).ok()?.at(place));
+            change.and_then(changed).unwrap_or_else(|| setting.clone())
         };
         settings.chain(&self.strategy_settings).map(changed).collect()
     }
 
     fn definition(&self) -> Option<&str> {
         Some(&self.text)
+    }
+
+    fn strategy_place(&self) -> String {
+        self.source.of("/strategy/name")
     }
 
     fn gene_bits(&self) -> u32 {

@@ -54,11 +54,21 @@ pub struct Setting {
     unit: String,
     source: Source,
     doc: String,
+    /// Place of the default in a file, or empty.
+    place: String,
 }
 
 impl Setting {
     fn new(key: &str, default: Value, allowed: Allowed) -> Self {
-        Self { key: key.into(), default, allowed, unit: String::new(), source: Source::default(), doc: String::new() }
+        Self {
+            key: key.into(),
+            default,
+            allowed,
+            unit: String::new(),
+            source: Source::default(),
+            doc: String::new(),
+            place: String::new(),
+        }
     }
 
     /// Creates a setting for a real number. Both limits are included.
@@ -119,6 +129,12 @@ impl Setting {
         self
     }
 
+    /// Sets the place of the default in a file, for errors about it, for example `my.toml line 3`.
+    pub fn at(mut self, place: &str) -> Self {
+        self.place = place.into();
+        self
+    }
+
     /// Replaces the default. This is useful if an experiment has a better default for a setting of a strategy.
     ///
     /// # Errors
@@ -145,6 +161,11 @@ impl Setting {
     /// Gets the origin of the default.
     pub fn source(&self) -> Source {
         self.source
+    }
+
+    /// Gets the place of the default in a file. This is empty for other defaults.
+    pub fn place(&self) -> &str {
+        &self.place
     }
 
     /// Gets the documentation.

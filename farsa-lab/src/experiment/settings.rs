@@ -72,6 +72,12 @@ impl Settings {
         })
     }
 
+    /// Gets the place of a value, if it is a default from a file. Otherwise this is empty.
+    pub(crate) fn place(&self, key: &str) -> &str {
+        let setting = self.table.iter().find(|setting| setting.key() == key);
+        setting.filter(|setting| self.values.get(key) == Some(setting.default_value())).map_or("", Setting::place)
+    }
+
     /// Checks that there is a section of this name, or a section within it.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ use crate::strategy::opponents::HallOfFame;
 /// Creates the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let mut strategy = plan.strategy()?;
-    let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.definition().name()));
+    let refused = |error: EvoError| Error::Usage(format!("{}: {error}", plan.definition().name()));
     strategy.record().map_err(refused)?;
     let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
     let state = strategy.snapshot().map(|strategy| strategy.save());

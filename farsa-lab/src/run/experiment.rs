@@ -64,6 +64,11 @@ pub trait Experiment: Sync {
         None
     }
 
+    /// Place at which a file chooses the strategy, for errors about it, for example `my.toml line 3`. By default empty.
+    fn strategy_place(&self) -> String {
+        String::new()
+    }
+
     /// Number of bits of each gene, from 1 to 16. This only matters for strategies with integer genes.
     fn gene_bits(&self) -> u32 {
         16

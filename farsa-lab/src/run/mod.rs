@@ -69,6 +69,8 @@ pub(crate) mod text_table;
 pub(crate) mod worker;
 /// Choice of world, where an experiment offers one.
 pub(crate) mod world_choice;
+/// Errors of a plan that cannot begin.
+mod wrong_configuration;
 
 pub use experiment::{Experiment, SimpleExperiment};
 pub use imported_file::{ImportedFile, LeftOut};

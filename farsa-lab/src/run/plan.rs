@@ -137,7 +137,7 @@ impl<'e> Plan<'e> {
         if !self.definition().normalises_observations(&self.settings) {
             return Ok(None);
         }
-        let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
+        let task = self.prepared(&self.settings_with(2)?)?;
         let (name, populations) = (self.experiment.name(), task.info().populations.len());
         match (populations, task.info().observations) {
             (1, 0) => Err(Error::setting(NORMALISE, format!("{name} does not say what its controllers observe"))),
@@ -151,11 +151,11 @@ impl<'e> Plan<'e> {
     /// Starts the strategy at its first generation.
     ///
     /// # Errors
-    /// The errors of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy with other populations or genes than the
+    /// [`Error::Setting`] and [`Error::Usage`] for a strategy that does not start or has other populations or genes than the
     /// experiment's.
     pub(crate) fn strategy(&self) -> Result<AnyStrategy, Error> {
         self.no_observations()?;
-        let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
+        let task = self.prepared(&self.settings_with(2)?)?;
         let TaskInfo { populations, parameters, trials, .. } = task.info();
         let (populations, genes) = (populations.len(), parameters.len());
         let (objectives, ranges) = task.behavior().map_or((1, Vec::new()), |behaviour| {
@@ -179,21 +179,17 @@ impl<'e> Plan<'e> {
             evaluator: &|| self.evaluator(),
             limits: self.limits,
         };
-        let strategy = self.definition().start(&start).map_err(|error| match error {
-            Error::Other(why) => Error::Other(format!("{experiment}: {why}")),
-            Error::Usage(why) => Error::Usage(format!("{name}: {why}")),
-            other => other,
-        })?;
+        let strategy = self.definition().start(&start).map_err(|error| self.of_strategy(error))?;
         let (groups, length) = (strategy.populations(), strategy.genes());
         if (groups, length) != (populations, genes) {
-            return Err(Error::Other(format!(
+            return Err(self.unfit(format!(
                 "the strategy `{name}` has {groups} populations of {length} genes where {experiment} has {populations} of {genes}"
             )));
         }
         let wanted = strategy.score_shape();
         if let Some(opponents) = strategy.opponents() {
             if wanted != ScoreShape::new(1 + opponents, 0) || !(1..=trials).contains(&opponents) {
-                return Err(Error::Other(format!(
+                return Err(self.unfit(format!(
                     "the strategy `{name}` wants {wanted} of {opponents} opponents where {experiment} has {trials} trials"
                 )));
             }
@@ -201,9 +197,7 @@ impl<'e> Plan<'e> {
         }
         if wanted.objectives > objectives || ![0, ranges.len()].contains(&wanted.measures) {
             let available = ScoreShape::new(objectives, ranges.len());
-            return Err(Error::Other(format!(
-                "the strategy `{name}` wants {wanted} where {experiment} has {available}"
-            )));
+            return Err(self.unfit(format!("the strategy `{name}` wants {wanted} where {experiment} has {available}")));
         }
         Ok(strategy)
     }
@@ -215,7 +209,7 @@ impl<'e> Plan<'e> {
 
     /// Prepares the experiment for one thread.
     pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
-        self.experiment.prepare(&self.condition, &self.settings_of_trials()?)
+        self.prepared(&self.settings_of_trials()?)
     }
 
     /// Returns the settings of trials. A population size of 0 is replaced by the size that the strategy chooses, because an

@@ -41,7 +41,11 @@ struct Maker<'e> {
 
 impl Maker<'_> {
     fn make(&self) -> Result<Box<dyn Evaluator>, Error> {
-        let mut evaluator = self.experiment.prepare(&self.condition, &self.settings)?;
+        let prepared = self.experiment.prepare(&self.condition, &self.settings);
+        let mut evaluator = prepared.map_err(|error| match error {
+            Error::Other(why) => Error::Usage(why),
+            other => other,
+        })?;
         if let Some(in_lanes) = evaluator.in_lanes() {
             in_lanes.use_lanes(self.lanes)?;
         }

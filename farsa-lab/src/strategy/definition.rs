@@ -137,18 +137,32 @@ impl StrategyStart<'_> {
     /// The closure `search` builds the strategy of each population from a seed.
     ///
     /// # Errors
-    /// If the closure fails, this returns [`Error::Usage`] with the text of its [`EvoError`].
+    /// If the closure fails, this returns the text of its [`EvoError`] as [`Error::Setting`], or as
+    /// [`Error::Usage`] if it is about no setting.
     pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            AnyStrategy::from_words(search(self.seed).map_err(|error| refused(&error))?)
+            AnyStrategy::from_words(search(self.seed).map_err(|error| self.refused(&error))?)
         } else {
             AnyStrategy::from_words(
-                Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?,
+                Populations::new(self.populations, self.seed, search).map_err(|error| self.refused(&error))?,
             )
         })
+    }
+
+    /// Converts an error about the values of the settings. It has the key of a value that is a setting.
+    fn refused(&self, error: &EvoError) -> Error {
+        let (EvoError::OutOfRange { field, .. } | EvoError::Config { field, .. }) = error else {
+            return Error::Usage(error.to_string());
+        };
+        let of_strategy = |key: &&str| key.starts_with("evolution.") || key.starts_with("strategy.");
+        let mut keys = self.settings.table().iter().map(Setting::key).filter(of_strategy);
+        match keys.find(|key| key.rsplit('.').next() == Some(field)) {
+            Some(key) => Error::setting(key, error),
+            None => Error::Usage(error.to_string()),
+        }
     }
 
     /// Creates a search over real numbers.
@@ -156,24 +170,20 @@ impl StrategyStart<'_> {
     /// The closure `search` builds the strategy of each population from a seed.
     ///
     /// # Errors
-    /// If the closure fails, this returns [`Error::Usage`] with the text of its [`EvoError`].
+    /// If the closure fails, this returns the text of its [`EvoError`] as [`Error::Setting`], or as
+    /// [`Error::Usage`] if it is about no setting.
     pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
         S: Strategy<f64> + Snapshot + 'static,
     {
         Ok(if self.populations == 1 {
-            AnyStrategy::from_reals(search(self.seed).map_err(|error| refused(&error))?)
+            AnyStrategy::from_reals(search(self.seed).map_err(|error| self.refused(&error))?)
         } else {
             AnyStrategy::from_reals(
-                Populations::new(self.populations, self.seed, search).map_err(|error| refused(&error))?,
+                Populations::new(self.populations, self.seed, search).map_err(|error| self.refused(&error))?,
             )
         })
     }
-}
-
-/// Converts an error about the values of a strategy's settings.
-fn refused(error: &EvoError) -> Error {
-    Error::Usage(error.to_string())
 }
 
 /// A table with numbers of a strategy for each generation.
