@@ -4,6 +4,8 @@ import json
 import re
 import subprocess
 
+# A function up to its brace. Lengths of arrays have semicolons.
+HEAD = re.compile(r"\bfn \w+(?:[^{;\[]|\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\{")
 HIDDEN = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])'")
 # The number of the mutant that is taken, 0 for none.
 SWITCH = """
@@ -44,7 +46,7 @@ def body(text, start, inside):
     A constant function cannot ask at run time, and the branches of the other are of two types.
     """
     code = hidden(text)
-    head = re.compile(r"\bfn \w+[^{;]*\{").search(code, start)
+    head = HEAD.search(code, start)
     if not head or "-> impl" in head.group(0):
         return None
     if re.search(r"\bconst\b[^)]*$", code[start:head.start()]):
