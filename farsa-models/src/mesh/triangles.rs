@@ -36,40 +36,57 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// Reads a binary STL if its size is that of its count of triangles, else text if it begins with `solid`.
     fn from_stl(bytes: &[u8]) -> Result<Self, String> {
         let count = bytes.get(80..84).and_then(|four| Some(u32::from_le_bytes(four.try_into().ok()?) as usize));
-        if let Some(count) = count.filter(|count| bytes.len() >= 84 && (bytes.len() - 84) / 50 >= *count) {
-            // Text that happens to announce no more triangles than it has room for is text all the same.
-            if !(bytes.starts_with(b"solid") && bytes.windows(5).take(4096).any(|window| window == b"facet")) {
-                let mut mesh = Self::default();
-                for facet in bytes[84..].chunks_exact(50).take(count) {
-                    let mut corners = facet[12..48]
-                        .chunks_exact(4)
-                        .map(|four| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]])));
-                    let mut corner = || [(); 3].map(|()| corners.next().unwrap_or(f64::NAN));
-                    mesh.triangle([corner(), corner(), corner()]);
-                }
-                return Ok(mesh);
-            }
+        let room = bytes.len().saturating_sub(84) / 50;
+        if count.is_some_and(|count| count == room && (bytes.len() - 84) % 50 == 0) {
+            return Ok(Self::from_binary_stl(bytes));
         }
-        let text = core::str::from_utf8(bytes).map_err(|_| "a binary STL shorter than it says".to_string())?;
-        if !text.trim_start().starts_with("solid") {
-            return Err("no STL: neither `solid` nor a count of triangles".into());
+        let begin = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+        let solid = begin.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+        let text = if solid { core::str::from_utf8(begin).ok() } else { None };
+        match (text, count) {
+            (Some(text), _) => Self::from_text_stl(text),
+            // Some programs append to the triangles.
+            (None, Some(count)) if count <= room => Ok(Self::from_binary_stl(bytes)),
+            _ if solid => Err("a binary STL shorter than it says".into()),
+            _ => Err("no STL: neither `solid` nor a count of triangles".into()),
         }
+    }
+
+    fn from_binary_stl(bytes: &[u8]) -> Self {
+        let mut mesh = Self::default();
+        let count = bytes.get(80..84).and_then(|four| Some(u32::from_le_bytes(four.try_into().ok()?) as usize));
+        for facet in bytes[84..].chunks_exact(50).take(count.unwrap_or(0)) {
+            let mut corners = facet[12..48]
+                .chunks_exact(4)
+                .map(|four| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]])));
+            let mut corner = || [(); 3].map(|()| corners.next().unwrap_or(f64::NAN));
+            mesh.triangle([corner(), corner(), corner()]);
+        }
+        mesh
+    }
+
+    fn from_text_stl(text: &str) -> Result<Self, String> {
         let mut mesh = Self::default();
         let mut corners = Vec::new();
         for (i, line) in text.lines().enumerate() {
             let mut words = line.split_whitespace();
-            match words.next() {
-                Some("vertex") => corners.push(point(words, i)?),
-                Some("endfacet") => match corners.as_slice() {
-                    [a, b, c] => {
-                        mesh.triangle([*a, *b, *c]);
-                        corners.clear();
-                    }
-                    _ => return Err(format!("line {}: a facet of {} points", i + 1, corners.len())),
-                },
-                _ => {}
+            while let Some(word) = words.next() {
+                match word.to_ascii_lowercase().as_str() {
+                    // A name follows.
+                    "solid" | "endsolid" => break,
+                    "vertex" => corners.push(point(words.by_ref(), i)?),
+                    "endfacet" => match corners.as_slice() {
+                        [a, b, c] => {
+                            mesh.triangle([*a, *b, *c]);
+                            corners.clear();
+                        }
+                        _ => return Err(format!("line {}: a facet of {} points", i + 1, corners.len())),
+                    },
+                    _ => {}
+                }
             }
         }
         Ok(mesh)
@@ -304,10 +321,18 @@ mod tests {
             text += "endloop\nendfacet\n";
         }
         let shift = [1.0, -2.0, 3.0];
+        // The size decides, not the header.
+        let mut headed = binary(&mesh);
+        headed[..22].copy_from_slice(b"solid facet of a part\n");
+        let stl = |bytes: &[u8]| Mesh::parse("b.STL", bytes).expect("an STL");
         for mesh in [
             mesh.clone(),
             Mesh::parse("b.stl", &binary(&mesh)).expect("an STL"),
-            Mesh::parse("b.STL", text.as_bytes()).expect("an STL"),
+            stl(&headed),
+            stl(&[&binary(&mesh)[..], b"a remark"].concat()),
+            stl(text.as_bytes()),
+            stl(format!("\u{feff} \r\n{}", text.to_uppercase().replace('\n', "\r\n")).as_bytes()),
+            stl(text.replace("\n ", " ").replace("\nendloop\n", " endloop ").as_bytes()),
         ] {
             let solid = mesh.clone().map(|p| [0, 1, 2].map(|k| p[k] + shift[k])).solid(2000.0).expect("a volume");
             assert!((solid.mass - ours.mass).abs() < 1e-12 * ours.mass, "{solid:?}");

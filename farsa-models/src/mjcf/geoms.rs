@@ -9,6 +9,7 @@ use farsa_body::robot::Shape;
 use crate::bounds::MAX_SIZE;
 use crate::context::Context;
 use crate::error::{ReadError, repeated};
+use crate::files::NamedFile;
 use crate::mesh::principal_axes::rotation_to;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
@@ -93,10 +94,9 @@ impl MeshAsset<'_, '_> {
         let mesh = if let Some(file) = element.attribute("file") {
             let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
             let file = if compiler.strip_path { last } else { file };
-            let folder = compiler.mesh_folder.trim_end_matches('/');
-            let path = if folder.is_empty() { file.into() } else { format!("{folder}/{file}") };
-            let bytes = context.files.content(&place, &path)?;
-            Mesh::parse(&path, &bytes).map_err(|why| ReadError::Mesh { place, path, why })?
+            let named = NamedFile { name: file, assets: &compiler.mesh_folder, beside: element.folder() };
+            let bytes = context.files.content(&place, &named)?;
+            Mesh::parse(file, &bytes).map_err(|why| ReadError::Mesh { place, path: file.into(), why })?
         } else {
             let limit = context.options.limits.bytes;
             let numbers = |name| Ok::<_, ReadError>(element.list(name, 3, limit)?.unwrap_or_default());

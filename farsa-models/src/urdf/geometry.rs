@@ -7,6 +7,7 @@ use farsa_num::sin_cos;
 use crate::bounds::{MAX_SIZE, has_size};
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
+use crate::files::NamedFile;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::options::Meshes;
@@ -124,7 +125,8 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
             }
             let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
             let place = shape.place();
-            let mesh = Mesh::parse(name, &context.files.content(&place, name)?);
+            let mesh =
+                Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", beside: None })?);
             let fit = mesh.and_then(|mesh| MeshFit::new(&mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]))));
             Solid::Mesh(fit.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?)
         }

@@ -1,5 +1,7 @@
 //! URDF, the format of ROS: [`write`](write()) makes it. [`Imported`](crate::Imported) reads it.
 
+/// Elements that a URDF does not have.
+mod elements;
 /// Places and shapes in elements of a file.
 mod geometry;
 /// From a file's links and joints to a robot.

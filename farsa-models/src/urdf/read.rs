@@ -12,6 +12,7 @@ use crate::context::Context;
 use crate::error::{ReadError, repeated};
 use crate::frame::Frame;
 use crate::repair::repair_masses;
+use crate::urdf::elements::{NOTED, check_children, check_processed};
 use crate::urdf::geometry::{Placed, joined, origin, solid};
 use crate::urdf::visuals::{colors, visuals};
 use crate::vector::norm;
@@ -19,13 +20,6 @@ use crate::xml::tree::{Element, Tree};
 
 /// Name of a root link that is the world itself.
 const WORLD: &str = "world";
-
-/// Why elements of a URDF are not read.
-const NOTED: [(&str, &str); 3] = [
-    ("material", "only for show"),
-    ("transmission", "joints with an effort limit have a motor each instead"),
-    ("gazebo", "another simulator's"),
-];
 
 /// Joint that carries each link, and the order in which links are made.
 struct Links<'t> {
@@ -39,7 +33,8 @@ struct Links<'t> {
 pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
     let root = tree.root();
     root.check_open(&["name", "version"], &mut context.warnings)?;
-    root.check_children(&["link", "joint", "material"], &NOTED, &mut context.warnings)?;
+    check_processed(root)?;
+    check_children(root, &["link", "joint", "material"], &NOTED, context)?;
     let colors = colors(root);
     let links = Links::from_model(root)?;
     let order = links.order()?;
@@ -183,11 +178,11 @@ fn twice(what: &str, second: &Element<'_>, first: &Element<'_>) -> ReadError {
 /// Returns a link's mass in its frame, and whether the file has one.
 fn inertial(link: Element<'_>, context: &mut Context<'_>) -> Result<(MassProperties, bool), ReadError> {
     link.check_open(&["name"], &mut context.warnings)?;
-    link.check_children(&["inertial", "collision", "visual"], &NOTED, &mut context.warnings)?;
+    check_children(link, &["inertial", "collision", "visual"], &NOTED, context)?;
     let Some(inertial) = link.one("inertial")? else {
         return Ok((MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] }, false));
     };
-    inertial.check_children(&["origin", "mass", "inertia"], &[], &mut context.warnings)?;
+    check_children(inertial, &["origin", "mass", "inertia"], &[], context)?;
     let element = inertial.one("mass")?.ok_or_else(|| inertial.missing("mass"))?;
     element.check_open(&["value"], &mut context.warnings)?;
     let mass = element.number("value")?.ok_or_else(|| element.missing("value"))?;
@@ -214,10 +209,10 @@ fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadE
     let ignored = [
         ("mimic", "joints do not follow each other: it moves on its own"),
         ("calibration", "of a real robot"),
-        ("safety_controller", "of a real robot"),
+        ("safety_controller hardwareInterface", "of a real robot"),
     ];
     let read = ["origin", "parent", "child", "axis", "limit", "dynamics"];
-    element.check_children(&read, &ignored, &mut context.warnings)?;
+    check_children(element, &read, &ignored, context)?;
     let placement = origin(element, context)?;
     let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
     let kind = element.word("type", &kinds)?.ok_or_else(|| element.missing("type"))?;
@@ -300,7 +295,7 @@ fn collisions(
     let mut solids: Vec<Placed> = Vec::new();
     for collision in link.all("collision") {
         collision.check_open(&["name"], &mut context.warnings)?;
-        collision.check_children(&["origin", "geometry"], &NOTED, &mut context.warnings)?;
+        check_children(collision, &["origin", "geometry"], &NOTED, context)?;
         let placement = origin(collision, context)?;
         let geometry = collision.one("geometry")?.ok_or_else(|| collision.missing("geometry"))?;
         if let Some(solid) = solid(geometry, context)? {

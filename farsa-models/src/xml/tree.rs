@@ -1,17 +1,20 @@
 //! A model's elements as a tree, included files in their places, and how to ask them for names and numbers.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, ParsingOptions};
 
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation, nearest, repeated};
+use crate::files::NamedFile;
 use crate::warnings::Warnings;
 use crate::xml::check::check;
 
 /// Elements of a model, the root first.
 pub(crate) struct Tree {
     files: Vec<String>,
+    /// Folders of the files. The model's own is `None`.
+    folders: Vec<Option<PathBuf>>,
     nodes: Vec<Node>,
 }
 
@@ -33,8 +36,8 @@ pub(crate) struct Element<'t> {
 impl Tree {
     /// Parses a model and, if it is MJCF, the files that it includes.
     pub(crate) fn parse(file: &str, text: &str, context: &mut Context<'_>) -> Result<Self, ReadError> {
-        let mut tree = Self { files: Vec::new(), nodes: Vec::new() };
-        let root = tree.add(file, text, context)?;
+        let mut tree = Self { files: Vec::new(), folders: Vec::new(), nodes: Vec::new() };
+        let root = tree.add(file, None, text, context)?;
         let mut included: Vec<(PathBuf, usize)> = Vec::new();
         if tree.nodes[root].tag == "mujoco" {
             tree.include(root, context, &mut included)?;
@@ -43,7 +46,13 @@ impl Tree {
     }
 
     /// Appends the elements of a text and returns the root's index.
-    fn add(&mut self, file: &str, text: &str, context: &mut Context<'_>) -> Result<usize, ReadError> {
+    fn add(
+        &mut self,
+        file: &str,
+        folder: Option<&Path>,
+        text: &str,
+        context: &mut Context<'_>,
+    ) -> Result<usize, ReadError> {
         let limits = &context.options.limits;
         check(file, text, &mut context.elements, limits)?;
         // Elements have been counted. The rest are comments and the text between them.
@@ -60,6 +69,7 @@ impl Tree {
         let line = |at: usize| 1 + starts.partition_point(|start| *start < at);
         let number = self.files.len();
         self.files.push(file.into());
+        self.folders.push(folder.map(Path::to_owned));
         let root = self.nodes.len();
         let space = document.root_element().tag_name().namespace();
         // Document order: parents come before their children.
@@ -68,6 +78,7 @@ impl Tree {
             let name = node.tag_name();
             let prefixed = |space: Option<&str>, name: &str| match space.map(|uri| node.lookup_prefix(uri)) {
                 None => name.to_owned(),
+                Some(_) if space.is_some_and(|uri| uri.contains("xacro")) => format!("xacro:{name}"),
                 Some(prefix) => format!("{}:{name}", prefix.unwrap_or("other")),
             };
             let tag = prefixed(name.namespace().filter(|own| Some(*own) != space), name.name());
@@ -108,12 +119,13 @@ impl Tree {
                 let place = element.place();
                 element.check(&["file"], &[], &mut context.warnings)?;
                 let file = element.needed("file")?.to_owned();
-                let (path, text) = context.files.text(&place, &file)?;
+                let named = NamedFile { name: &file, assets: "", beside: element.folder() };
+                let (path, text) = context.files.text(&place, &named)?;
                 if let Some((_, line)) = included.iter().find(|(other, _)| *other == path) {
                     return Err(repeated(place, "include of", &file, *line));
                 }
+                let root = self.add(&context.files.label(&path), path.parent(), &text, context)?;
                 included.push((path, place.line));
-                let root = self.add(&file, &text, context)?;
                 let element = self.element(root);
                 if !["mujoco", "mujocoinclude"].contains(&element.tag()) {
                     return Err(element.unknown("root of an included file", element.tag(), ["mujocoinclude"]));
@@ -147,6 +159,15 @@ impl<'t> Element<'t> {
 
     pub(crate) fn place(&self) -> SourceLocation {
         SourceLocation { file: self.tree.files[self.node().file].clone(), line: self.node().line }
+    }
+
+    /// Folder of the included file that contains the element, `None` for the model itself.
+    pub(crate) fn folder(&self) -> Option<&'t Path> {
+        self.tree.folders[self.node().file].as_deref()
+    }
+
+    pub(crate) fn attributes(&self) -> &'t [(String, String)] {
+        &self.node().attributes
     }
 
     pub(crate) fn children(&self) -> impl Iterator<Item = Self> + use<'t> {

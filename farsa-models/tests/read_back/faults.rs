@@ -27,6 +27,38 @@ fn hinge(name: &str, parent: &str, child: &str) -> String {
     )
 }
 
+/// What would add or change parts is refused, other programs' notes are listed.
+#[test]
+fn unprocessed_and_misplaced_elements_of_a_urdf_are_refused() {
+    let processed = "is not processed; `xacro FILE` writes the URDF to read";
+    let spaces =
+        "xmlns:xacro=\"http://www.ros.org/wiki/xacro\" xmlns:x=\"http://ros.org/wiki/xacro\" xmlns:d=\"http://d\"";
+    let text = |rest: &str| {
+        urdf(&(hinge("j", "a", "b") + &hinge("k", "b", "c") + rest)).replace("<robot", &format!("<robot {spaces}"))
+    };
+    for (part, expected) in [
+        ("<xacro:leg name=\"left\"/>", format!("text line 7: xacro:leg `left`: {processed}")),
+        ("<x:include filename=\"a\"/>", format!("text line 7: xacro:include: {processed}")),
+        (
+            "<material name=\"m\"/><link name=\"${side}_leg\"/>",
+            format!("text line 7: link `${{side}}_leg`: name \"${{side}}_leg\" {processed}"),
+        ),
+        ("<leg side=\"1\"/>", "text line 7: unknown element of robot `leg`; the nearest is `link`".into()),
+        ("<d:joint name=\"l\"/>", "text line 7: unknown element of robot `d:joint`; the nearest is `joint`".into()),
+        ("<mass value=\"1\"/>", "text line 7: unknown element of robot `mass`; the nearest is `link`".into()),
+    ] {
+        assert_eq!(message(&text(part)), expected);
+    }
+    let misplaced = text("").replacen("<inertial>", "<xacro:inertia mass=\"1\"/><inertial>", 1);
+    assert_eq!(message(&misplaced), format!("text line 2: xacro:inertia: {processed}"));
+    let misplaced = text("").replacen("<inertial>", "<mass value=\"1\"/><inertial>", 1);
+    assert_eq!(message(&misplaced), "text line 2: unknown element of link `mass`; the nearest is `visual`");
+    let noted = text("<gazebo><xacro:a/><b c=\"${d}\"/></gazebo><ros2_control name=\"$(arg a)\"/>");
+    let noted = noted.replacen("<inertial>", "<contact/><d:note/><inertial>", 1);
+    let reading = read(&noted).unwrap();
+    assert_eq!(reading.warnings.len(), 5, "{:?}", reading.warnings);
+}
+
 #[test]
 fn faults_of_a_urdf_are_told_with_place_and_nearest_name() {
     let sound = hinge("j", "a", "b") + &hinge("k", "b", "c");

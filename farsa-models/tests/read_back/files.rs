@@ -40,9 +40,12 @@ fn files_outside_are_not_read() {
         ("../secret.obj", "leads out of the folder that may be read"),
         ("../nothing.obj", "leads out of the folder that may be read"),
         ("meshes/../../secret.obj", "leads out of the folder that may be read"),
-        (absolute.as_str(), "is no path relative to the model's folder"),
+        (absolute.as_str(), "leads out of the folder that may be read"),
+        ("/nowhere/none.obj", "leads out of the folder that may be read"),
         ("meshes/none.obj", "is not there"),
-        ("file:///a.obj", "is an address; only files are read"),
+        ("file:///a.obj", "leads out of the folder that may be read"),
+        ("file://meshes/none.obj", "is not there"),
+        ("https://a.b/a.obj", "is an address; only files are read"),
         ("package://p/secret.obj", "names a package, and no folder with packages was given"),
     ] {
         let error = attempt(file, &strict).unwrap_err();
@@ -96,6 +99,91 @@ fn included_files_stand_where_they_are_named() {
     fs::write(folder.join("model/leg.xml"), "<mujoco>\n<join/></mujoco>").unwrap();
     let error = Imported::from_file(&model, &ReadOptions::default()).unwrap_err().to_string();
     assert_eq!(error, "leg.xml line 2: unknown element of body `join`; the nearest is `joint`");
+}
+
+/// MuJoCo 4.0.0 reads each of these includes from an absolute path, and the mass is that of its tetrahedron, except
+/// for the folder `meshdir` of an included file, which it does not find.
+#[test]
+fn files_of_an_included_file_are_next_to_it() {
+    let folder = folder("beside").canonicalize().unwrap();
+    let model = folder.join("model/robot.xml");
+    let body = "<worldbody><body><joint/><geom type='mesh' mesh='m'/></body></worldbody>";
+    let asset = "<mujocoinclude><asset><mesh name='m' file='a.obj'/></asset></mujocoinclude>";
+    let chain = "<mujocoinclude><include file='c.xml'/></mujocoinclude>";
+    fs::create_dir_all(folder.join("model/parts/meshes")).unwrap();
+    for (main, mesh, files) in [
+        ("<include file='parts/c.xml'/>", "parts/a.obj", &[("parts/c.xml", asset)][..]),
+        // The model's own folder comes first.
+        ("<include file='parts/c.xml'/>", "a.obj", &[("parts/c.xml", asset), ("parts/a.obj", "")]),
+        ("<include file='parts/b.xml'/>", "parts/a.obj", &[("parts/b.xml", chain), ("parts/c.xml", asset)]),
+        ("<include file='parts/b.xml'/>", "a.obj", &[("parts/b.xml", chain), ("c.xml", asset), ("parts/c.xml", "<")]),
+        ("<compiler meshdir='meshes'/><include file='parts/c.xml'/>", "parts/a.obj", &[("parts/c.xml", asset)]),
+        ("<compiler assetdir='meshes/'/><include file='parts/c.xml'/>", "meshes/a.obj", &[("parts/c.xml", asset)]),
+        ("<compiler meshdir='meshes'/><include file='parts/c.xml'/>", "parts/meshes/a.obj", &[("parts/c.xml", asset)]),
+    ] {
+        for file in
+            ["a.obj", "meshes/a.obj", "parts/a.obj", "parts/meshes/a.obj", "c.xml", "parts/c.xml", "parts/b.xml"]
+        {
+            let _ = fs::remove_file(folder.join("model").join(file));
+        }
+        for (file, text) in files {
+            fs::write(folder.join("model").join(file), text).unwrap();
+        }
+        fs::write(folder.join("model").join(mesh), TETRAHEDRON).unwrap();
+        fs::write(&model, format!("<mujoco>{main}{body}</mujoco>")).unwrap();
+        let reading =
+            Imported::from_file(&model, &ReadOptions::default()).unwrap_or_else(|error| panic!("{mesh}: {error}"));
+        assert!((reading.robot.segments[0].mass - 1000.0 / 6.0).abs() < 1e-9, "{mesh}");
+    }
+    fs::write(folder.join("model/parts/c.xml"), "<mujocoinclude><worldbody>\n<geoms/></worldbody></mujocoinclude>")
+        .unwrap();
+    fs::write(&model, "<mujoco><include file='parts/c.xml'/></mujoco>").unwrap();
+    let error = Imported::from_file(&model, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("parts/c.xml line 2: unknown element"), "{error}");
+}
+
+#[test]
+fn absolute_paths_and_addresses_below_the_root_are_read() {
+    let folder = folder("absolute");
+    fs::create_dir_all(folder.join("arm description/urdf")).unwrap();
+    fs::create_dir_all(folder.join("arm description/meshes")).unwrap();
+    fs::write(folder.join("arm description/meshes/a.obj"), TETRAHEDRON).unwrap();
+    let at = folder.display().to_string();
+    let options = ReadOptions { root: Some(folder.clone()), ..ReadOptions::default() };
+    let urdf = folder.join("arm description/urdf/arm.urdf");
+    let collision = |file: &str| {
+        let geometry = format!("<geometry><mesh filename='{file}'/></geometry>");
+        format!("<robot name='r'><link name='a'><collision>{geometry}</collision></link></robot>")
+    };
+    for file in [
+        format!("{at}/arm description/meshes/a.obj"),
+        format!("{at}/arm description/urdf/../meshes/./a.obj"),
+        format!("file://{at}/arm%20description/meshes/a.obj"),
+        format!("file://localhost{at}/arm description/meshes/a.obj"),
+        "file://../meshes/a.obj".into(),
+        "package://arm description/meshes/a.obj".into(),
+        "model://arm description/meshes/a.obj".into(),
+        "..\\meshes\\a.obj".into(),
+    ] {
+        fs::write(&urdf, collision(&file)).unwrap();
+        let reading = Imported::from_file(&urdf, &options).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert_eq!(reading.robot.colliders.len(), 1, "{file}");
+        assert!(Imported::from_file(&urdf, &ReadOptions::default()).is_err(), "{file}: without the root");
+    }
+    let mjcf = folder.join("arm description/urdf/arm.xml");
+    for (meshes, file) in [
+        (format!("{at}/arm description/meshes"), "a.obj"),
+        (format!("{at}/arm description/meshes/"), "a.obj"),
+        (format!("file://{at}/arm%20description/meshes"), "a.obj"),
+        ("package://arm description/meshes".into(), "a.obj"),
+        ("nowhere".into(), &format!("{at}/arm description/meshes/a.obj")),
+    ] {
+        let asset = format!("<compiler meshdir='{meshes}'/><asset><mesh name='m' file='{file}'/></asset>");
+        let body = "<worldbody><body><joint/><geom type='mesh' mesh='m'/></body></worldbody>";
+        fs::write(&mjcf, format!("<mujoco>{asset}{body}</mujoco>")).unwrap();
+        let reading = Imported::from_file(&mjcf, &options).unwrap_or_else(|error| panic!("{meshes}: {error}"));
+        assert!((reading.robot.segments[0].mass - 1000.0 / 6.0).abs() < 1e-9, "{meshes}");
+    }
 }
 
 /// Opens a pipe into which a thread writes the text as far as it is read. The thread waits for a reader and ends with
