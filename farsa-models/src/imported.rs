@@ -43,7 +43,8 @@ use crate::xml::tree::Tree;
 ///   masses are still computed from the true shapes.
 /// - *Meshes* (STL, OBJ) become a ball, a capsule or a box that contains all points, whichever has the least volume.
 ///   Capsule and box use either the axes of the mesh or the principal axes of its surface. Meshes that cannot touch
-///   anything are left out.
+///   anything are left out. Masses of an MJCF's meshes follow its attribute `inertia`, and a primitive with a mesh has
+///   MuJoCo's sizes. Concave faces of an OBJ are covered once, whereas MuJoCo divides some of them wrongly.
 /// - *Visuals* of a URDF become [`Visual`](farsa_body::robot::Visual)s, except for links with a mesh. Geoms of an MJCF
 ///   also become visuals if they are in group 1 or 2 and cannot touch anything. Textures are ignored. Colors of other
 ///   geoms are listed as warnings, since cameras do not see visuals.

@@ -20,6 +20,8 @@ pub mod mjcf;
 mod options;
 /// Masses that no body can have.
 mod repair;
+/// Models as texts that name no other file.
+mod self_contained;
 pub mod urdf;
 /// Products and lengths of vectors.
 mod vector;
@@ -32,4 +34,5 @@ pub use error::{ReadError, SourceLocation};
 pub use frame::Frame;
 pub use imported::Imported;
 pub use options::{Limits, Meshes, ReadOptions, Repair};
+pub use self_contained::self_contained;
 pub use warnings::Warning;

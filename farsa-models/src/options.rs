@@ -85,9 +85,11 @@ pub struct Repair {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReadOptions {
-    /// Folder that must contain all files used by the model. If this is `None`, the folder of the model is used.
+    /// Folder that must contain all files used by the model. If this is `None`, the folder of the model is used. Absolute
+    /// paths and `file://` are allowed below it.
     pub root: Option<PathBuf>,
-    /// Folders with packages, for paths like `package://name/...`. Each of them is searched for a folder `name`.
+    /// Folders with packages, for paths like `package://name/...`. Each of them is searched for a folder `name`, and after
+    /// them the folders from the model's up to the root.
     pub packages: Vec<PathBuf>,
     /// Lets the root of a URDF move freely instead of fixing it in the world. This has no effect on a root with the name
     /// `world`, which always is the world.

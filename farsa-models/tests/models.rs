@@ -9,7 +9,7 @@ use farsa_body::Pose;
 use farsa_body::kinematics::KinematicTree;
 use farsa_body::robot::Robot;
 use farsa_models::mjcf::{self, MjcfOptions};
-use farsa_models::{Imported, Meshes, ReadOptions, Repair, urdf};
+use farsa_models::{Imported, Meshes, ReadOptions, Repair, self_contained, urdf};
 use serde_json::Value;
 
 /// The tolerance of a body's pose against the other program [m, and parts of the unit quaternion].
@@ -115,6 +115,25 @@ fn places(name: &str, model: &Value, reading: &Imported, worst: &mut f64) -> usi
     compared
 }
 
+/// The text without files has the same robot, to rounding.
+fn without_files(path: &Path, options: &ReadOptions, robot: &Robot) {
+    let name = path.display();
+    let text = self_contained(path, options).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let alone = ReadOptions { packages: Vec::new(), meshes: Meshes::Leave, ..options.clone() };
+    let again = Imported::from_text(&text, &alone).unwrap_or_else(|error| panic!("{name}: {error}")).robot;
+    assert_eq!(again.colliders.len(), robot.colliders.len(), "{name}");
+    for (a, b) in again.colliders.iter().zip(&robot.colliders) {
+        assert_eq!((&a.name, a.body), (&b.name, b.body), "{name}");
+        let far = (0..3).map(|k| (a.placement.position[k] - b.placement.position[k]).abs()).fold(0.0, f64::max);
+        assert!(far < 1e-9, "{name}: {a:?} {b:?}");
+    }
+    assert_eq!(again.segments.len(), robot.segments.len(), "{name}");
+    for (a, b) in again.segments.iter().zip(&robot.segments) {
+        let difference = (a.mass - b.mass).abs() + (0..6).map(|k| (a.inertia[k] - b.inertia[k]).abs()).sum::<f64>();
+        assert!(difference <= 1e-12 * b.mass.max(1.0) && a.joint == b.joint, "{name}: {a:?} {b:?}");
+    }
+}
+
 #[test]
 #[ignore = "reads models that are fetched: ./ci test"]
 fn models_of_others_are_what_other_programs_read_in_them() {
@@ -136,6 +155,9 @@ fn models_of_others_are_what_other_programs_read_in_them() {
         joints(name, model, &reading.robot, &mut worst_number);
         if model["bodies"].is_object() {
             masses(name, model, &reading, &mut worst_number);
+        }
+        if options.meshes == Meshes::Fit {
+            without_files(&folder.join(name), &options, &reading.robot);
         }
         // The result can be written, and read again.
         for text in

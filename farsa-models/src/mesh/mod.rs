@@ -1,5 +1,13 @@
 //! Meshes, and the shapes that replace them.
 
+/// Primitives that MuJoCo fits to a mesh.
+pub(crate) mod fitted;
+/// Convex hulls of points.
+pub(crate) mod hull;
+/// Masses of meshes by MuJoCo's rules.
+pub(crate) mod mass;
+/// Triangles of polygons.
+pub(crate) mod polygon;
 /// Principal moments and axes of an inertia, and rotations from axes.
 pub(crate) mod principal_axes;
 /// Solids of a file, the shapes that replace them, and their masses.

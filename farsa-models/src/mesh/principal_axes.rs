@@ -1,5 +1,7 @@
 //! Principal axes of a symmetric matrix, and rotations from axes.
 
+use farsa_body::Pose;
+use farsa_body::robot::MassProperties;
 use farsa_num::Scalar;
 
 use crate::vector::{cross, norm};
@@ -47,6 +49,59 @@ pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [
     ([m[0][0], m[1][1], m[2][2]], rotation_of_axes(axes))
 }
 
+/// Moments of a symmetric matrix from the largest on, and the rotation [x, y, z, w] to their axes.
+///
+/// MuJoCo's `mjuu_eig3`, with its bounds: an absolute 1e-12 leaves a small mesh at an angle to its axes, and equal moments
+/// have the same axes here and there.
+pub(crate) fn sorted_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [f64; 4]) {
+    const LEAST: f64 = 1e-12;
+    let given = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [xx, yy, zz, xy, xz, yz] };
+    let mut turn = Pose::<f64>::identity();
+    let mut moments = [xx, yy, zz];
+    for _ in 0..500 {
+        let [x, y, z, w] = turn.rotation;
+        let back = Pose { position: [0.0; 3], rotation: [-x, -y, -z, w] };
+        let [a, b, c, ab, ac, bc] = given.placed(&back).inertia;
+        moments = [a, b, c];
+        let (row, column, off) = if ab.abs() > ac.abs() && ab.abs() > bc.abs() {
+            (0, 1, ab)
+        } else if ac.abs() > bc.abs() {
+            (0, 2, ac)
+        } else {
+            (1, 2, bc)
+        };
+        if off.abs() < LEAST {
+            break;
+        }
+        let tau = (moments[column] - moments[row]) / (2.0 * off);
+        let t = if tau >= 0.0 { 1.0 } else { -1.0 } / (tau.abs() + Scalar::sqrt(1.0 + tau * tau));
+        let cosine = 1.0 / Scalar::sqrt(1.0 + t * t);
+        if cosine.is_nan() || cosine > 1.0 - LEAST {
+            break;
+        }
+        let axis = 3 - row - column;
+        let sine = Scalar::sqrt(0.5 - 0.5 * cosine);
+        let mut q = [0.0; 4];
+        q[axis] = if (tau >= 0.0) == (axis == 1) { sine } else { -sine };
+        q[3] = Scalar::sqrt(1.0 - sine * sine);
+        turn = normal(&turn.compose(&Pose { position: [0.0; 3], rotation: q }));
+    }
+    for lead in [0, 1, 0] {
+        if moments[lead] + LEAST < moments[lead + 1] {
+            moments.swap(lead, lead + 1);
+            let mut q = [0.0, 0.0, 0.0, Scalar::sqrt(0.5)];
+            q[(lead + 2) % 3] = q[3];
+            turn = normal(&turn.compose(&Pose { position: [0.0; 3], rotation: q }));
+        }
+    }
+    (moments, turn.rotation)
+}
+
+fn normal(turn: &Pose<f64>) -> Pose<f64> {
+    let n = norm(&turn.rotation);
+    Pose { position: [0.0; 3], rotation: turn.rotation.map(|x| x / n) }
+}
+
 /// Computes the rotation [x, y, z, w] that takes x, y and z to these perpendicular unit vectors.
 pub(crate) fn rotation_of_axes([x, y, z]: [[f64; 3]; 3]) -> [f64; 4] {
     let trace = x[0] + y[1] + z[2];
@@ -76,7 +131,6 @@ pub(crate) fn rotation_to(direction: [f64; 3]) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::Pose;
     use proptest::prelude::*;
 
     proptest! {

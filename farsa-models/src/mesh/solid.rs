@@ -4,6 +4,7 @@ use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};
 
 use crate::bounds::{MAX_SIZE, has_size};
+use crate::mesh::mass::MeshInertia;
 use crate::mesh::triangles::{Mesh, z_to_axis};
 
 /// Shape that replaces a mesh.
@@ -12,18 +13,18 @@ pub(crate) struct MeshFit {
     /// Shape that holds all points, and its place.
     shape: Shape,
     place: Pose<f64>,
-    /// Solid of density 1 within the triangles, if they make one.
-    solid: Option<MassProperties>,
+    /// Mass of density 1, or the reason for its absence.
+    pub(crate) mass: Result<MassProperties, &'static str>,
 }
 
 impl MeshFit {
     /// Fits a shape to a mesh, or returns the reason why none fits.
-    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
+    pub(crate) fn new(mesh: &Mesh, rule: MeshInertia) -> Result<Self, String> {
         let (shape, place) = mesh.fitted();
         if !has_size(&shape) {
             return Err(format!("what holds it has sizes that are not below {MAX_SIZE:e}: {shape:?}"));
         }
-        Ok(Self { shape, place, solid: mesh.solid(1.0) })
+        Ok(Self { shape, place, mass: mesh.mass(rule) })
     }
 }
 
@@ -85,7 +86,7 @@ impl Solid {
             Self::Native(Shape::Plane) => 0.0,
             Self::Cylinder { radius, half_length } => 2.0 * pi * radius * radius * half_length,
             Self::Ellipsoid([a, b, c]) => 4.0 / 3.0 * pi * a * b * c,
-            Self::Mesh(mesh) => mesh.solid.map_or_else(|| Self::Native(mesh.shape).volume(), |solid| solid.mass),
+            Self::Mesh(mesh) => mesh.mass.map_or_else(|_| Self::Native(mesh.shape).volume(), |solid| solid.mass),
         }
     }
 
@@ -99,7 +100,7 @@ impl Solid {
                 let [a, b, c] = axes.map(|x| x * x * mass / 5.0);
                 MassProperties { mass, centre: [0.0; 3], inertia: [b + c, a + c, a + b, 0.0, 0.0, 0.0] }
             }
-            Self::Mesh(MeshFit { solid: Some(solid), .. }) => scaled(solid, mass / solid.mass),
+            Self::Mesh(MeshFit { mass: Ok(solid), .. }) => scaled(solid, mass / solid.mass),
             Self::Mesh(MeshFit { shape, place, .. }) => MassProperties::from_shape(shape, mass).placed(place),
         }
     }

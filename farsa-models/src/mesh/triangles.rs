@@ -1,12 +1,13 @@
 //! Triangle meshes: their files, the shape that holds one, its mass.
 
 use farsa_body::Pose;
-use farsa_body::robot::{MassProperties, Shape};
+use farsa_body::robot::Shape;
 use farsa_num::Scalar;
 
 use crate::bounds::MAX_SIZE;
+use crate::mesh::polygon;
 use crate::mesh::principal_axes::principal_axes;
-use crate::vector::{cross, dot, norm, sub};
+use crate::vector::{norm, sub};
 
 /// No shape is thinner [m].
 const THINNEST: f64 = 1e-6;
@@ -40,7 +41,7 @@ impl Mesh {
     fn from_stl(bytes: &[u8]) -> Result<Self, String> {
         let count = bytes.get(80..84).and_then(|four| Some(u32::from_le_bytes(four.try_into().ok()?) as usize));
         let room = bytes.len().saturating_sub(84) / 50;
-        if count.is_some_and(|count| count == room && (bytes.len() - 84) % 50 == 0) {
+        if count.is_some_and(|count| count == room && (bytes.len() - 84).is_multiple_of(50)) {
             return Ok(Self::from_binary_stl(bytes));
         }
         let begin = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
@@ -119,14 +120,21 @@ impl Mesh {
                     };
                     let face: Option<Vec<usize>> = words.map(corner).collect();
                     let face = face.ok_or_else(|| format!("line {}: a face with a point that is not there", i + 1))?;
-                    if let [first, rest @ ..] = face.as_slice() {
-                        mesh.triangles.extend(rest.windows(2).map(|two| [*first, two[0], two[1]]));
-                    }
+                    let triangles = polygon::triangles(&mesh.points, &face);
+                    mesh.triangles.extend(
+                        triangles.ok_or_else(|| format!("line {}: a concave face of more than 500 corners", i + 1))?,
+                    );
                 }
                 _ => {}
             }
         }
         Ok(mesh)
+    }
+
+    /// Swaps two corners of every triangle, after a reflection.
+    pub(crate) fn turned_inside_out(mut self) -> Self {
+        self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        self
     }
 
     /// Changes every point of the mesh.
@@ -143,7 +151,7 @@ impl Mesh {
     /// triangles), the capsule along the longest edge of the box. Both have the center of the box, but the capsule's
     /// ends move inwards as far as the points permit. The first of equal ones wins: own axes, box.
     pub(crate) fn fitted(&self) -> (Shape, Pose<f64>) {
-        let mut spread = self.surface();
+        let mut spread = self.surface_about_middle();
         if spread.iter().all(|x| *x == 0.0) {
             let n = self.points.len().max(1) as f64;
             let mean = self.points.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p[k] / n));
@@ -153,25 +161,6 @@ impl Mesh {
         let turned = self.fitted_along(Pose { position: [0.0; 3], rotation: principal_axes(spread).1 });
         let (_, shape, place) = if turned.0 < aligned.0 * (1.0 - 1e-9) { turned } else { aligned };
         (shape, place)
-    }
-
-    /// Computes the second moment of the surface about its middle [xx, yy, zz, xy, xz, yz, m4].
-    fn surface(&self) -> [f64; 6] {
-        let (mut area, mut middle) = (0.0, [0.0; 3]);
-        for [a, b, c] in self.corners() {
-            let part = norm(&cross(sub(b, a), sub(c, a))) / 2.0;
-            area += part;
-            middle = [0, 1, 2].map(|k| middle[k] + part * (a[k] + b[k] + c[k]) / 3.0);
-        }
-        if area <= 0.0 {
-            return [0.0; 6];
-        }
-        let middle = middle.map(|x| x / area);
-        self.corners().fold([0.0; 6], |sum, corners| {
-            let [a, b, c] = corners.map(|corner| sub(corner, middle));
-            let part = norm(&cross(sub(b, a), sub(c, a))) / 24.0;
-            [a, b, c, [0, 1, 2].map(|k| a[k] + b[k] + c[k])].iter().fold(sum, |sum, v| add(sum, squares(*v), part))
-        })
     }
 
     /// The smallest shape along the axes of a frame, and its volume.
@@ -210,45 +199,8 @@ impl Mesh {
         best
     }
 
-    /// Computes the mass properties of a solid of this `density` [kg/m3]. `None` unless the triangles make a volume.
-    ///
-    /// MuJoCo's default: a sum over tetrahedra, none of them negative, from an apex within to each triangle. The apex
-    /// is first the middle of the surface, then the center of mass found with it. The sum is exact for a solid that is
-    /// visible from the apex in full, and too heavy for other meshes. It ignores the direction of triangles.
-    pub(crate) fn solid(&self, density: f64) -> Option<MassProperties> {
-        let (mut area, mut apex) = (0.0, [0.0; 3]);
-        for [a, b, c] in self.corners() {
-            let part = norm(&cross(sub(b, a), sub(c, a)));
-            area += part;
-            apex = [0, 1, 2].map(|k| apex[k] + part * (a[k] + b[k] + c[k]) / 3.0);
-        }
-        let apex = apex.map(|x| x / area);
-        let (volume, moment, _) = self.moments(apex);
-        let centre = [0, 1, 2].map(|k| apex[k] + moment[k] / volume);
-        let (volume, _, second) = self.moments(centre);
-        let [xx, yy, zz, xy, xz, yz] = second.map(|x| x * density);
-        let inertia = [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz];
-        let solid = MassProperties { mass: volume * density, centre, inertia };
-        (volume > 0.0 && solid.is_physical(true)).then_some(solid)
-    }
-
-    fn corners(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         self.triangles.iter().map(|corners| corners.map(|i| self.points.get(i).copied().unwrap_or_default()))
-    }
-
-    /// Volume, its first and second moments [xx, yy, zz, xy, xz, yz] about an apex.
-    fn moments(&self, apex: [f64; 3]) -> (f64, [f64; 3], [f64; 6]) {
-        let (mut volume, mut first, mut second) = (0.0, [0.0; 3], [0.0; 6]);
-        for corners in self.corners() {
-            let [a, b, c] = corners.map(|corner| sub(corner, apex));
-            let part = dot(a, cross(b, c)).abs() / 6.0;
-            volume += part;
-            let sum = [0, 1, 2].map(|k| a[k] + b[k] + c[k]);
-            first = [0, 1, 2].map(|k| first[k] + part * sum[k] / 4.0);
-            // The integral of the products over a tetrahedron with one corner at the origin.
-            second = [a, b, c, sum].iter().fold(second, |second, v| add(second, squares(*v), part / 20.0));
-        }
-        (volume, first, second)
     }
 }
 
@@ -258,11 +210,11 @@ pub(crate) fn z_to_axis(axis: usize) -> [f64; 4] {
 }
 
 /// Computes the products of a vector's parts [xx, yy, zz, xy, xz, yz].
-fn squares([x, y, z]: [f64; 3]) -> [f64; 6] {
+pub(crate) fn squares([x, y, z]: [f64; 3]) -> [f64; 6] {
     [x * x, y * y, z * z, x * y, x * z, y * z]
 }
 
-fn add(mut sum: [f64; 6], more: [f64; 6], by: f64) -> [f64; 6] {
+pub(crate) fn add(mut sum: [f64; 6], more: [f64; 6], by: f64) -> [f64; 6] {
     for (to, from) in sum.iter_mut().zip(more) {
         *to += by * from;
     }
@@ -280,6 +232,9 @@ fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<[f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::mass::MeshInertia;
+    use crate::mesh::solid::scaled;
+    use farsa_body::robot::MassProperties;
     use proptest::prelude::*;
     use std::fmt::Write as _;
 
@@ -334,7 +289,8 @@ mod tests {
             stl(format!("\u{feff} \r\n{}", text.to_uppercase().replace('\n', "\r\n")).as_bytes()),
             stl(text.replace("\n ", " ").replace("\nendloop\n", " endloop ").as_bytes()),
         ] {
-            let solid = mesh.clone().map(|p| [0, 1, 2].map(|k| p[k] + shift[k])).solid(2000.0).expect("a volume");
+            let solid = mesh.clone().map(|p| [0, 1, 2].map(|k| p[k] + shift[k])).mass(MeshInertia::Legacy);
+            let solid = scaled(&solid.expect("a volume"), 2000.0);
             assert!((solid.mass - ours.mass).abs() < 1e-12 * ours.mass, "{solid:?}");
             assert!(
                 (0..6).all(|k| (solid.inertia[k] - ours.inertia[k]).abs() < 1e-11 * ours.mass),
@@ -389,7 +345,7 @@ mod tests {
         ] {
             assert!(Mesh::parse(name, bytes).is_err(), "{name}");
         }
-        assert_eq!(Mesh { points: vec![[1.0; 3]], triangles: vec![] }.solid(1.0), None);
+        assert!(Mesh { points: vec![[1.0; 3]], triangles: vec![[0, 0, 0]] }.mass(MeshInertia::Legacy).is_err());
         let (shape, _) = Mesh { points: vec![[1.0; 3]], triangles: vec![] }.fitted();
         assert!(matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }), "{shape:?}");
     }

@@ -29,6 +29,8 @@ pub(crate) struct Compiler {
     pub(crate) repair: Repair,
     pub(crate) total_mass: f64,
     pub(crate) mesh_folder: String,
+    /// Fits primitives around the points of a mesh instead of to its moments.
+    pub(crate) fit_around: bool,
     pub(crate) strip_path: bool,
 }
 
@@ -43,6 +45,7 @@ impl Compiler {
             repair: Repair::default(),
             total_mass: -1.0,
             mesh_folder: String::new(),
+            fit_around: false,
             strip_path: false,
         };
         for element in model.all("compiler") {
@@ -72,6 +75,7 @@ impl Compiler {
             "assetdir",
             "strippath",
             "fusestatic",
+            "fitaabb",
         ];
         let ignored = [
             ("texturedir discardvisual passthrough", SHOW),
@@ -79,7 +83,6 @@ impl Compiler {
                 "alignfree conflict usethread saveinertial savecompiled savecanonical convexhull exactmeshinertia",
                 MUJOCO,
             ),
-            ("fitaabb", "meshes are fitted by rules of our own"),
         ];
         element.check(&read, &ignored, &mut context.warnings)?;
         let truth = |name| Ok::<_, ReadError>(element.word(name, &["true", "false"])?.map(|word| word == "true"));
@@ -111,6 +114,7 @@ impl Compiler {
         if let Some(folder) = element.attribute("meshdir").or_else(|| element.attribute("assetdir")) {
             self.mesh_folder = folder.into();
         }
+        self.fit_around = truth("fitaabb")?.unwrap_or(self.fit_around);
         self.strip_path = truth("strippath")?.unwrap_or(self.strip_path);
         if truth("fusestatic")? == Some(true) {
             context.warnings.add(element.place(), "compiler `fusestatic`", "fixed bodies stay segments");

@@ -10,6 +10,8 @@ use crate::bounds::MAX_SIZE;
 use crate::context::Context;
 use crate::error::{ReadError, repeated};
 use crate::files::NamedFile;
+use crate::mesh::fitted::Boxes;
+use crate::mesh::mass::MeshInertia;
 use crate::mesh::principal_axes::rotation_to;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
@@ -28,7 +30,7 @@ pub(crate) struct MeshAssets<'t, 'c> {
 /// A mesh, which is read when the first geom requests it.
 struct MeshAsset<'t, 'c> {
     classed: Classed<'t, 'c>,
-    fit: Cell<Option<MeshFit>>,
+    fit: Cell<Option<(MeshFit, Option<Boxes>)>>,
 }
 
 impl<'t, 'c> MeshAssets<'t, 'c> {
@@ -43,10 +45,10 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
                 [("texture material", SHOW), ("hfield skin model", "height fields and skins are not described")];
             asset.check_children(&["mesh"], &ignored, warnings)?;
             for element in asset.all("mesh") {
-                let read = ["name", "class", "file", "scale", "vertex", "face", "refpos", "refquat"];
+                let read = ["name", "class", "file", "scale", "vertex", "face", "refpos", "refquat", "inertia"];
                 let ignored = [
                     ("material normal texcoord smoothnormal content_type", SHOW),
-                    ("maxhullvert inertia builtin params", "meshes are fitted by rules of our own"),
+                    ("maxhullvert builtin params", "meshes are fitted by rules of our own"),
                 ];
                 element.check(&read, &ignored, warnings)?;
                 let file = element.attribute("file").map(|file| {
@@ -71,7 +73,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
         name: &str,
         compiler: &Compiler,
         context: &mut Context<'_>,
-    ) -> Result<MeshFit, ReadError> {
+    ) -> Result<(MeshFit, Option<Boxes>), ReadError> {
         let known = self.all.get(name);
         let asset = known.ok_or_else(|| geom.unknown("mesh", name, self.all.keys().map(String::as_str)))?;
         if let Some(fit) = asset.fit.get() {
@@ -79,9 +81,11 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
         }
         let mesh = asset.load(compiler, context)?;
         let place = asset.classed.element.place();
-        let fit = MeshFit::new(&mesh).map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
-        asset.fit.set(Some(fit));
-        Ok(fit)
+        let rule = MeshInertia::from_word(asset.classed.word("inertia", &MeshInertia::WORDS)?);
+        let fit = MeshFit::new(&mesh, rule).map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
+        let both = (fit, fit.mass.ok().map(|mass| Boxes::new(&mesh, &mass)));
+        asset.fit.set(Some(both));
+        Ok(both)
     }
 }
 
@@ -122,6 +126,8 @@ impl MeshAsset<'_, '_> {
             _ => Pose::at(from),
         };
         let scale = classed.array::<3>("scale")?.unwrap_or([1.0; 3]);
+        let reflected = scale[0] * scale[1] * scale[2] < 0.0;
+        let mesh = if reflected { mesh.turned_inside_out() } else { mesh };
         Ok(mesh.map(|point| {
             let point = turn.transform_back(point);
             [0, 1, 2].map(|k| point[k] * scale[k])
@@ -144,6 +150,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
             "group",
             "rgba",
             "shellinertia",
+            "fitscale",
             "contype",
             "conaffinity",
             "condim",
@@ -161,7 +168,6 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
         ("hfield", "height fields are not described"),
         ("margin gap adhesion surfacevel", "contacts begin where surfaces meet, and do not pull or move"),
         ("fluidshape fluidcoef", "a description has no fluid"),
-        ("fitscale", "meshes are fitted by rules of our own"),
     ];
     element.check(&read, &ignored, warnings)
 }
@@ -191,15 +197,27 @@ pub(crate) fn geom<'t>(
         None if kind == "mesh" => return Err(element.missing("mesh")),
         None => None,
     };
-    if let Some(mesh) = mesh {
-        if kind != "mesh" {
-            context.warnings.add(element.place(), format!("geom {kind} around a mesh"), "fitted by rules of our own");
+    let mut fitted = None;
+    match mesh {
+        Some((mesh, _)) if kind == "mesh" => return Ok(Some((Solid::Mesh(mesh), within.compose(&pose)))),
+        Some(_) if kind == "plane" => return Err(element.unsupported("a plane is not fitted to a mesh")),
+        Some((mesh, boxes)) => {
+            let path = classed.text("mesh").unwrap_or_default().to_owned();
+            let why = mesh.mass.err().unwrap_or_default().to_owned();
+            let boxes = boxes.ok_or_else(|| ReadError::Mesh { place: element.place(), path, why })?;
+            let scale = classed.number("fitscale")?.unwrap_or(1.0);
+            let (sizes, place) = boxes.primitive(kind, compiler.fit_around, scale);
+            fitted = Some(sizes);
+            pose = pose.compose(&place);
         }
-        return Ok(Some((Solid::Mesh(mesh), within.compose(&pose))));
+        None => {}
     }
-    let mut sizes = classed.list("size", 1, 3)?.unwrap_or_default();
+    let is_fitted = fitted.is_some();
+    let mut sizes = fitted.map_or_else(|| Ok(classed.list("size", 1, 3)?.unwrap_or_default()), Ok::<_, ReadError>)?;
     let source = classed.source("size").unwrap_or(element);
-    if let Some([a, b, c, d, e, f]) = classed.array::<6>("fromto")?.filter(|_| !["sphere", "plane"].contains(&kind)) {
+    if let Some([a, b, c, d, e, f]) =
+        classed.array::<6>("fromto")?.filter(|_| !is_fitted && !["sphere", "plane"].contains(&kind))
+    {
         // MuJoCo turns z from the second point to the first. It matters for boxes, whose x and y follow from the turn.
         let along = [a - d, b - e, c - f];
         let length = norm(&along);
@@ -232,7 +250,7 @@ pub(crate) fn geom<'t>(
     // A capsule without length is a ball.
     let least = if kind == "capsule" { 1 } else { needed };
     if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < MAX_SIZE) {
-        let text = source.attribute("size").unwrap_or_default();
+        let text = source.attribute("size").unwrap_or("fitted to the mesh");
         return Err(source.wrong("size", text, format!("but must be positive, below {MAX_SIZE:e}")));
     }
     let solid = match kind {

@@ -5,7 +5,7 @@ use farsa_body::robot::{MassProperties, Shape};
 
 use crate::context::Context;
 use crate::error::{ReadError, repeated};
-use crate::mesh::solid::Solid;
+use crate::mesh::solid::{MeshFit, Solid};
 use crate::mjcf::classes::Classes;
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
 use crate::mjcf::geoms::{MeshAssets, geom};
@@ -49,6 +49,10 @@ pub(crate) fn body_mass<'t>(
                 }
                 match geom(&classed, within, compiler, meshes, context)? {
                     None | Some((Solid::Native(Shape::Plane), _)) => {}
+                    Some((Solid::Mesh(MeshFit { mass: Err(why), .. }), _)) => {
+                        let path = classed.text("mesh").unwrap_or_default().to_owned();
+                        return Err(ReadError::Mesh { place: element.place(), path, why: why.into() });
+                    }
                     Some((solid, at)) => sum = sum.with(&solid.mass_properties(mass, density).placed(&at)),
                 }
             }

@@ -41,7 +41,11 @@ mod surface;
 /// Inverse weights of bodies, to which contact parameters are relative.
 mod inverse_weight;
 
+/// Shapes instead of meshes.
+mod without_meshes;
+
 /// From a robot to the text of a file.
 mod write;
 
+pub(crate) use without_meshes::without_meshes;
 pub use write::{Keyframe, MjcfOptions, write};

@@ -335,15 +335,20 @@ fn geoms(colliders: &[&Collider], visuals: &[&Visual], out: &mut Lines) {
     }
 }
 
-/// A geom of a shape, with the attributes of its name and group.
-fn geom(shape: &Visual, name: &str, group: &str) -> String {
-    let (kind, size) = match shape.shape {
+/// Type and sizes of a shape.
+pub(super) fn kind_and_sizes(shape: &Shape) -> (&'static str, Vec<f64>) {
+    match *shape {
         Shape::Sphere { radius } => ("sphere", vec![radius]),
         Shape::Capsule { radius, half_length } => ("capsule", vec![radius, half_length]),
         Shape::Box { half } => ("box", half.to_vec()),
         // Infinite. The third number is the distance of the lines drawn on it.
         Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
-    };
+    }
+}
+
+/// A geom of a shape, with the attributes of its name and group.
+fn geom(shape: &Visual, name: &str, group: &str) -> String {
+    let (kind, size) = kind_and_sizes(&shape.shape);
     let at = placed(&shape.placement);
     let color = shape.color.map_or_else(String::new, |color| format!(" rgba=\"{} 1.0\"", numbers(&color)));
     format!("<geom{name} type=\"{kind}\" size=\"{}\"{at}{group}{color}/>", numbers(&size))

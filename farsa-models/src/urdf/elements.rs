@@ -39,7 +39,7 @@ const PARTS: [&str; 18] = [
     "mesh",
 ];
 
-/// Checks the elements within one. Those that would make another robot are refused, others are listed.
+/// Checks the elements within one. It refuses those that would make another robot and lists the others.
 pub(super) fn check_children(
     within: Element<'_>,
     read: &[&str],
@@ -62,7 +62,7 @@ pub(super) fn check_processed(root: Element<'_>) -> Result<(), ReadError> {
         if element.tag().starts_with("xacro:") {
             return Err(element.unsupported(why));
         }
-        // Other programs have expressions of their own.
+        // Elements of other programs may contain any text.
         if NOTED.iter().any(|(names, _)| names.split(' ').any(|name| name == element.tag())) {
             continue;
         }

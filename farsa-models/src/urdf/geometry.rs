@@ -8,6 +8,7 @@ use crate::bounds::{MAX_SIZE, has_size};
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
 use crate::files::NamedFile;
+use crate::mesh::mass::MeshInertia;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::options::Meshes;
@@ -127,7 +128,11 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
             let place = shape.place();
             let mesh =
                 Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", beside: None })?);
-            let fit = mesh.and_then(|mesh| MeshFit::new(&mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]))));
+            let fit = mesh.and_then(|mesh| {
+                let scaled = mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]));
+                // Its link has the mass.
+                MeshFit::new(&scaled, MeshInertia::Legacy)
+            });
             Solid::Mesh(fit.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?)
         }
         other => return Err(shape.unknown("shape", other, kinds)),

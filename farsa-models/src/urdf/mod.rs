@@ -8,7 +8,10 @@ mod geometry;
 pub(crate) mod read;
 /// Visuals of links.
 mod visuals;
+/// Shapes instead of meshes.
+mod without_meshes;
 /// From a robot to the text of a file.
 mod write;
 
+pub(crate) use without_meshes::without_meshes;
 pub use write::write;

@@ -153,7 +153,7 @@ fn efforts(robot: &Robot) -> Vec<f64> {
 }
 
 /// The elements of one shape, of kind `collision` or `visual`, with a name or without.
-fn shapes(out: &mut Lines, shape: &Visual, name: Option<&str>, kind: &str) {
+pub(super) fn shapes(out: &mut Lines, shape: &Visual, name: Option<&str>, kind: &str) {
     let mut element = |end: &str, along: f64, geometry: &str| {
         let placement = shape.placement.compose(&Pose::at([0.0, 0.0, along]));
         let name = name.map_or_else(String::new, |name| format!(" name={}", quoted(&format!("{name}{end}"))));

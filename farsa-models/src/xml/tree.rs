@@ -142,6 +142,11 @@ impl Tree {
         Element { tree: self, index }
     }
 
+    /// Checks whether the model includes other files.
+    pub(crate) fn has_includes(&self) -> bool {
+        self.files.len() > 1
+    }
+
     /// Gets the model's element.
     pub(crate) fn root(&self) -> Element<'_> {
         self.element(0)
@@ -164,6 +169,11 @@ impl<'t> Element<'t> {
     /// Folder of the included file that contains the element, `None` for the model itself.
     pub(crate) fn folder(&self) -> Option<&'t Path> {
         self.tree.folders[self.node().file].as_deref()
+    }
+
+    /// Index of the element in its tree.
+    pub(crate) fn index(&self) -> usize {
+        self.index
     }
 
     pub(crate) fn attributes(&self) -> &'t [(String, String)] {

@@ -27,7 +27,7 @@ fn hinge(name: &str, parent: &str, child: &str) -> String {
     )
 }
 
-/// What would add or change parts is refused, other programs' notes are listed.
+/// Elements that would add or change parts are refused, other programs' notes are listed.
 #[test]
 fn unprocessed_and_misplaced_elements_of_a_urdf_are_refused() {
     let processed = "is not processed; `xacro FILE` writes the URDF to read";

@@ -98,7 +98,7 @@ fn a_mesh_is_read_once() {
         text
     });
     let geoms = "<geom type='mesh' mesh='m'/>".repeat(1000);
-    let asset = format!("<asset><mesh name='m' vertex='{points}' face='0 1 2'/></asset>");
+    let asset = format!("<asset><mesh name='m' vertex='{points}' face='0 7 11' inertia='shell'/></asset>");
     let body = format!("<worldbody><body name='b'>{geoms}</body></worldbody>");
     let robot = read(&format!("<mujoco>{asset}{body}</mujoco>")).unwrap().robot;
     assert_eq!(robot.colliders.len(), 1000);

@@ -13,6 +13,8 @@ mod icub;
 mod large;
 /// Visuals.
 mod looks;
+/// Masses of meshes.
+mod meshes;
 /// Whatever is read is written and read back.
 mod round_trip;
 /// Wheeled robots that were written are read as they were.
