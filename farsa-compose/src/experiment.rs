@@ -19,6 +19,7 @@ use crate::composed_task::ComposedTask;
 use crate::document::{Document, Engine, Object};
 use crate::jointed;
 use crate::jointed::episode::JointedEpisode;
+use crate::jointed::start_contacts::check_start;
 use crate::limits::Limits;
 use crate::name::is_name;
 use crate::parts::agents::Agents;
@@ -124,7 +125,9 @@ impl ComposedExperiment {
         let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
         if let Some(text) = embedded(file, text, folder, &document, &source)? {
-            return Self::read(limits, file, &text, None, strategies);
+            let made = Self::read(limits, file, &text, None, strategies)?;
+            made.check_starts()?;
+            return Ok(made);
         }
         add_scene(&mut document, &mut source)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
@@ -158,7 +161,24 @@ impl ComposedExperiment {
         for condition in if made.conditions.is_empty() { &[""][..] } else { made.conditions } {
             made.check(&Settings::new(made.settings(condition))?)?;
         }
+        if folder.is_some() {
+            made.check_starts()?;
+        }
         Ok(made)
+    }
+
+    /// Refuses a start inside the floor or inside a thing. The text of a run is exempt, which is repeated as it was.
+    fn check_starts(&self) -> Result<(), Error> {
+        for condition in if self.conditions.is_empty() { &[""][..] } else { self.conditions } {
+            let document = self.document(&Settings::new(self.settings(condition))?)?;
+            if document.has_joints() {
+                let (options, trials) = (jointed::setup::options(&document), document.episode.trials);
+                let (setup, agents) = jointed::setup::Setup::new(document, &self.source)?;
+                let trials = STARTS.filter(|trial| *trial < trials).map(start_of);
+                check_start(&mut JointedEpisode::new(setup, agents), &options, trials, &self.source)?;
+            }
+        }
+        Ok(())
     }
 
     /// Builds an episode. The first starts must find places in the world.

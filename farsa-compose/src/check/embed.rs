@@ -5,20 +5,36 @@ use std::path::{Component, Path};
 
 use farsa_lab::Error;
 use farsa_lab::advanced::read_text_file;
+use farsa_models::ReadOptions;
 
 use crate::check::source::Source;
 use crate::document::{Document, NetworkKind, SensorKind};
+use crate::jointed::robot_model::model_options;
 
 /// Most bytes of a named file.
 const MAX_BYTES: u64 = 1_000_000;
 /// Most named files.
 const MAX_FILES: usize = 16;
 
+/// Path of the file of a robot.
+const MODEL: &str = "/robot/file";
+
+/// Returns the text of a model with the files that it includes, and with primitives for its meshes.
+///
+/// All of its files are in the experiment's folder or below it, and so are its packages.
+fn merged(target: &Path, root: &Path) -> Result<String, String> {
+    let options = ReadOptions { root: Some(root.into()), packages: vec![root.into()], ..model_options() };
+    let text = farsa_models::self_contained(target, &options).map_err(|error| error.to_string())?;
+    if text.len() as u64 > MAX_BYTES {
+        return Err(format!("has {} bytes with its included files, more than {MAX_BYTES}", text.len()));
+    }
+    Ok(text)
+}
+
 /// Lists the names of files in a document, with their paths.
 fn named(document: &Document) -> Vec<(String, &str)> {
     let scene = document.world.scene.as_deref().map(|name| ("/world/scene".to_owned(), name));
-    let model =
-        document.robot.as_ref().and_then(|robot| robot.file.as_deref()).map(|name| ("/robot/file".to_owned(), name));
+    let model = document.robot.as_ref().and_then(|robot| robot.file.as_deref()).map(|name| (MODEL.to_owned(), name));
     let network = if let NetworkKind::Evonet(evonet) = &document.network.kind { evonet.file.as_deref() } else { None };
     let network = network.map(|name| ("/network/file".to_owned(), name));
     let mut files: Vec<(String, &str)> = scene.into_iter().chain(model).chain(network).collect();
@@ -83,7 +99,10 @@ pub(crate) fn embedded(
         if !inside {
             return Err(source.wrong(&path, format!("`{name}` leads out of the folder of {file}")));
         }
-        let content = read_text_file(&target, MAX_BYTES).map_err(|error| source.wrong(&path, error))?;
+        let mut content = read_text_file(&target, MAX_BYTES).map_err(|error| source.wrong(&path, error))?;
+        if path == MODEL && ["<include", "<mesh"].iter().any(|part| content.contains(part)) {
+            content = merged(&target, root).map_err(|why| source.wrong(&path, format!("{name}: {why}")))?;
+        }
         contents.push((name, content));
     }
     if contents.is_empty() {

@@ -15,6 +15,7 @@ use crate::composed_task::Body;
 use crate::document::{Ending, MotorKind, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::channel_quantity;
+use crate::jointed::scene::Scene;
 use crate::jointed::setup::Setup;
 use crate::parts::agents::Agents;
 use crate::parts::channel_quantity::ChannelQuantity;
@@ -42,6 +43,10 @@ impl JointedEpisode {
         let bodies = setup.scene.robot.segments.len();
         let shown = drawn.shown().filter(|body| body.index() < bodies).collect();
         Self { setup, agents, markers, drawn, shown }
+    }
+
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.setup.scene
     }
 
     /// Places everything at its start. Returns false if something finds no place.

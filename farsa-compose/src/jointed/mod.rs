@@ -17,7 +17,7 @@ mod marker_position;
 /// A point of a body, or a marker.
 mod named_point;
 /// Robot, built in or from a file.
-mod robot_model;
+pub(crate) mod robot_model;
 /// Robot with the floor and the objects, and the parts that names refer to.
 pub(crate) mod scene;
 /// Sensors, with their wrappers.
@@ -26,6 +26,8 @@ mod sensing;
 pub(crate) mod setup;
 /// Abilities that a world must have.
 mod spatial_world;
+/// Contacts at the start of a trial.
+pub(crate) mod start_contacts;
 /// Initial placements.
 mod starting;
 /// Terms of the fitness.

@@ -21,6 +21,12 @@ const MAX_ELEMENTS: usize = 20_000;
 /// Most geoms of a model that may have contacts.
 const MAX_CONTACTS: usize = 200;
 
+/// Returns the options for models, with limits that suit an experiment.
+pub(crate) fn model_options() -> ReadOptions {
+    let limits = Limits { elements: MAX_ELEMENTS, contacts: MAX_CONTACTS, depth: 1000, ..Limits::default() };
+    ReadOptions { limits, ..ReadOptions::default() }
+}
+
 impl RobotModel {
     /// Builds the robot of a document at its base.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
@@ -47,9 +53,8 @@ impl RobotModel {
 
     fn from_file(name: &str, floating: bool, document: &Document, source: &Source) -> Result<Self, Error> {
         let text = document.files.get(name).map(String::as_str).unwrap_or_default();
-        let limits = Limits { elements: MAX_ELEMENTS, contacts: MAX_CONTACTS, depth: 1000, ..Limits::default() };
-        // Meshes are in further files. Contacts use the other shapes of the robot.
-        let options = ReadOptions { floating, meshes: Meshes::Leave, limits, ..ReadOptions::default() };
+        // The text of a run contains no mesh, and opens no file.
+        let options = ReadOptions { floating, meshes: Meshes::Leave, ..model_options() };
         let read = Imported::from_text(text, &options);
         let Imported { robot, frames, .. } =
             read.map_err(|error| source.wrong("/robot/file", format!("{name}: {error}")))?;

@@ -108,6 +108,24 @@ impl Scene {
         }
     }
 
+    /// Returns the names of two colliders of which one is the floor, fixed or part of a thing, else `None`.
+    pub(crate) fn parts(&self, colliders: [usize; 2]) -> Option<[&str; 2]> {
+        let [a, b] = colliders.map(|number| (number, &self.robot.colliders[number]));
+        let around = |(number, collider): (usize, &Collider)| number >= self.own[1] || collider.body.is_none();
+        match (around(a), around(b)) {
+            (false, false) => None,
+            (true, false) => Some([&b.1.name, &a.1.name]),
+            _ => Some([&a.1.name, &b.1.name]),
+        }
+    }
+
+    /// Returns the path of the part that can be moved apart from two colliders: a thing, or else the robot.
+    pub(crate) fn place_of(&self, colliders: [usize; 2]) -> String {
+        let thing = |collider| self.things.iter().position(|thing| thing.collider == Some(collider));
+        let thing = colliders.into_iter().filter_map(thing).max();
+        thing.map_or_else(|| "/robot".into(), |number| format!("/objects/{number}"))
+    }
+
     /// Checks if a body can move in the world.
     fn moves(&self, body: BodyId) -> bool {
         let mut next = Some(body);

@@ -1,6 +1,7 @@
 //! Robots with joints, from files: motors, falling things, errors.
 
 mod eyes;
+mod merged;
 
 use std::path::Path;
 
