@@ -26,6 +26,13 @@ pub(crate) struct PlacedShape<S> {
     pub(crate) velocity: Vector<S>,
 }
 
+impl<S: Scalar> Point<S> {
+    pub(crate) fn new(simd: S::Simd) -> Self {
+        let o = S::splat(simd, S::Real::from_f64(0.0));
+        Self { gap: o, normal: [o; 3], position: [o; 3], valid: o.lt(o) }
+    }
+}
+
 impl<S: Scalar> PlacedShape<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
         let o = S::splat(simd, S::Real::from_f64(0.0));
@@ -90,7 +97,7 @@ pub(crate) fn nearest_of_segments<S: Scalar>(
 
 /// -1 below 0, else 1.
 #[inline(always)]
-fn sign_of<S: Scalar>(x: S) -> S {
+pub(crate) fn sign_of<S: Scalar>(x: S) -> S {
     let one = x.constant(1.0);
     S::select(x.lt(x.constant(0.0)), -one, one)
 }
@@ -194,20 +201,6 @@ pub(crate) fn corner<S: Scalar>(place: &PlacedShape<S>, half: Vector<S>, index: 
         }
     }
     add(place.position, rotate(&place.rotation, at))
-}
-
-/// Edge `index` (0..12) of a box in the world: middle, direction, half length.
-#[inline(always)]
-pub(crate) fn edge<S: Scalar>(place: &PlacedShape<S>, half: Vector<S>, index: usize) -> (Vector<S>, Vector<S>, S) {
-    // Four edges along each axis, at the four corners of the other two.
-    let along = index / 4;
-    let (u, v) = ((along + 1) % 3, (along + 2) % 3);
-    let zero = half[0].constant(0.0);
-    let mut middle = [zero; 3];
-    middle[u] = if index & 1 == 0 { -half[u] } else { half[u] };
-    middle[v] = if index & 2 == 0 { -half[v] } else { half[v] };
-    let direction = [place.rotation[0][along], place.rotation[1][along], place.rotation[2][along]];
-    (add(place.position, rotate(&place.rotation, middle)), direction, half[along])
 }
 
 /// Distance from a point to a box [m], for the bounding test.

@@ -3,8 +3,8 @@
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::collision::{
-    PlacedShape, Point, ball_box, ball_plane, balls, corner, distance_to_box, edge, nearest_of_segments,
-    nearest_on_segment, segment_box,
+    PlacedShape, Point, ball_box, ball_plane, balls, corner, distance_to_box, nearest_of_segments, nearest_on_segment,
+    segment_box,
 };
 use crate::articulated::link::{LinkData, WORLD};
 use crate::articulated::model::{Geometry, Model, Pair};
@@ -66,24 +66,11 @@ pub(crate) fn clearance<S: Scalar>(
     }
 }
 
-/// For an edge of a box against a box: the distance left between the edge and the other's bound [m].
+/// The half edges of two boxes, for a pair of two boxes.
 #[inline(always)]
-pub(crate) fn edge_distance<S: Scalar>(
-    simd: S::Simd,
-    model: &Model<S::Real>,
-    pair: &Pair<S::Real>,
-    placed: &[PlacedShape<S>],
-    index: usize,
-) -> Option<S> {
-    // Most of the twelve edges of a small box on a large one are far away. Each costs a search with twelve halvings.
-    let [a, b] = pair.colliders;
-    match (model.colliders[a].geometry, model.colliders[b].geometry) {
-        (Geometry::Block { .. }, Geometry::Block { half }) if (8..20).contains(&index) => {
-            let (middle, direction, length) = edge(&placed[b], splat::<S>(simd, half), index - 8);
-            let near = nearest_on_segment(middle, direction, length, placed[a].position);
-            let d = sub(near, placed[a].position);
-            Some(dot(d, d).sqrt() - S::splat(simd, model.colliders[a].bound))
-        }
+pub(crate) fn halves_of_boxes<R: Real>(model: &Model<R>, pair: &Pair<R>) -> Option<[Vector<R>; 2]> {
+    match pair.colliders.map(|collider| model.colliders[collider].geometry) {
+        [Geometry::Block { half: first }, Geometry::Block { half: second }] => Some([first, second]),
         _ => None,
     }
 }
@@ -94,7 +81,7 @@ fn end<S: Scalar>(place: &PlacedShape<S>, index: usize, half: S) -> Vector<S> {
     add(place.position, scale(place.axis(), if index == 0 { -half } else { half }))
 }
 
-/// Contact point `index` of a pair.
+/// Contact point `index` of a pair, except of two boxes, see [`crate::articulated::boxes`].
 #[inline(never)]
 pub(crate) fn find<S: Scalar>(
     simd: S::Simd,
@@ -118,9 +105,8 @@ fn point<S: Scalar>(
     placed: &[PlacedShape<S>],
     index: usize,
 ) -> Point<S> {
-    // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius
-    // 0. Each pair reduces to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block,
-    // plane.
+    // Spheres and capsules are balls swept over a point or a segment, corners of boxes the same with radius 0. Each pair
+    // reduces to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     match (model.colliders[a].geometry, model.colliders[b].geometry) {
@@ -157,24 +143,6 @@ fn point<S: Scalar>(
         }
         (Geometry::Capsule { radius, half_length }, _) => {
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
-        }
-        (Geometry::Block { half: ha }, Geometry::Block { half: hb }) => {
-            // Corners of a in b, then edges of b through a. Where both boxes move (see `model_builder`), corners of b
-            // in a follow, with reversed normals, because they push a away from b.
-            let zero = S::splat(simd, S::Real::from_f64(0.0));
-            let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
-            if index < 8 {
-                ball_box(corner(pa, ha, index), zero, pb, hb)
-            } else {
-                let mut found = if index < 20 {
-                    let (middle, direction, length) = edge(pb, hb, index - 8);
-                    segment_box(middle, direction, length, zero, pa, ha)
-                } else {
-                    ball_box(corner(pb, hb, index - 20), zero, pa, ha)
-                };
-                found.normal = scale(found.normal, S::splat(simd, S::Real::from_f64(-1.0)));
-                found
-            }
         }
         (Geometry::Block { half }, _) => {
             ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::from_f64(0.0)), pb)

@@ -217,6 +217,43 @@ pub(crate) fn choose_references(links: &mut [Link<f64>]) {
     }
 }
 
+/// The smallest ratio of two principal moments of a body: eight units in the last place of the largest.
+///
+/// An inertia is rotated into the world's axes with that error at most, and must stay positive.
+pub(crate) fn least_ratio<R: Real>() -> f64 {
+    let mut unit = 1.0;
+    while R::from_f64(1.0 + 0.5 * unit).to_f64() > 1.0 {
+        unit *= 0.5;
+    }
+    8.0 * unit
+}
+
+/// The eigenvalues of an inertia [xx, yy, zz, xy, xz, yz], by Jacobi's rotations.
+fn principal_moments(&[xx, yy, zz, xy, xz, yz]: &[f64; 6]) -> [f64; 3] {
+    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    // Convergence is quadratic: five rounds reach the last place.
+    for _ in 0..8 {
+        for (p, q, other) in [(0, 1, 2), (0, 2, 1), (1, 2, 0)] {
+            let off = a[p][q];
+            if off == 0.0 {
+                continue;
+            }
+            let theta = (a[q][q] - a[p][p]) / (2.0 * off);
+            let root = Scalar::sqrt(theta * theta + 1.0);
+            let tangent = if theta < 0.0 { 1.0 / (theta - root) } else { 1.0 / (theta + root) };
+            let cosine = 1.0 / Scalar::sqrt(tangent * tangent + 1.0);
+            let sine = tangent * cosine;
+            let [x, y] = [a[other][p], a[other][q]];
+            a[p][p] -= tangent * off;
+            a[q][q] += tangent * off;
+            (a[p][q], a[q][p]) = (0.0, 0.0);
+            (a[other][p], a[other][q]) = (cosine * x - sine * y, sine * x + cosine * y);
+            (a[p][other], a[q][other]) = (a[other][p], a[other][q]);
+        }
+    }
+    [a[0][0], a[1][1], a[2][2]]
+}
+
 /// Stops scaled to each joint's own inertia, so that one frequency fits a shoulder and a finger.
 pub(crate) fn set_limits(
     robot: &Robot,
@@ -225,6 +262,7 @@ pub(crate) fn set_limits(
     initial: &[f64],
     dofs: usize,
     options: &Options,
+    least: f64,
 ) -> Result<(), ModelError> {
     let mut work = vec![LinkData::<f64>::new(()); links.len()];
     let mut matrix = vec![0.0; dofs * dofs];
@@ -241,6 +279,16 @@ pub(crate) fn set_limits(
         let inertia = matrix[at * dofs + at];
         if inertia.is_nan() || inertia <= 0.0 {
             return Err(ModelError::Weightless { segment: segment.name.clone() });
+        }
+        let moments = principal_moments(&link.inertia);
+        let largest = moments[0].max(moments[1]).max(moments[2]);
+        let ratio = match link.motion {
+            Motion::Floating => moments[0].min(moments[1]).min(moments[2]) / largest,
+            Motion::Revolute => inertia / largest,
+            Motion::Prismatic => 1.0,
+        };
+        if ratio < least {
+            return Err(ModelError::Thin { segment: segment.name.clone(), ratio, least });
         }
         link.limit_stiffness = inertia * options.limit_frequency * options.limit_frequency;
         link.limit_damping = 2.0 * options.limit_damping * inertia * options.limit_frequency;

@@ -3,6 +3,9 @@
 /// Many worlds in SIMD lanes.
 #[cfg(all(feature = "lanes", not(test)))]
 mod batch;
+/// Contact of two boxes.
+#[cfg(feature = "alloc")]
+mod boxes;
 /// Gap, normal and point of two convex shapes.
 #[cfg(feature = "alloc")]
 mod collision;

@@ -23,7 +23,8 @@ pub struct Options {
     pub substeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
-    /// Number of sweeps over the contacts in each dynamics step.
+    /// Number of sweeps over the contacts in each dynamics step. Where two free boxes can touch it is four times this
+    /// number, because stacks converge slowly.
     pub sweeps: u32,
     /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]. This determines how much creep is
     /// left.
@@ -72,6 +73,17 @@ pub enum ModelError {
         /// Name of the segment.
         segment: String,
     },
+    /// A floating body or a hinge has so small an inertia about one axis, compared with the largest principal moment of
+    /// its link, that rounding errors could make it negative.
+    Thin {
+        /// Name of the segment.
+        segment: String,
+        /// The smallest principal moment of a floating body, or the inertia about the hinge, divided by the largest
+        /// principal moment.
+        ratio: f64,
+        /// Smallest possible ratio in the model's precision.
+        least: f64,
+    },
     /// There are more parts than can be numbered with 16 bits.
     TooMany {
         /// Kind of the parts.
@@ -100,6 +112,10 @@ impl fmt::Display for ModelError {
             Self::Robot(e) => e.fmt(f),
             Self::Option { name, value } => write!(f, "option {name} is {value}"),
             Self::Weightless { segment } => write!(f, "segment {segment}: its joint moves no mass and has no armature"),
+            Self::Thin { segment, ratio, least } => write!(
+                f,
+                "segment {segment}: its least inertia is {ratio:.1e} of the largest, at least {least:.1e} in this precision"
+            ),
             Self::TooMany { what, count } => write!(f, "{count} {what}: at most 65534"),
             Self::Lanes { lanes, nearest } => write!(f, "{lanes} worlds in lanes: the nearest number is {nearest}"),
         }

@@ -6,10 +6,11 @@ use alloc::vec::Vec;
 use farsa_body::robot::{JointKind, PairFault, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
+use crate::articulated::boxes::BOX_POINTS;
 use crate::articulated::group::{groups_of, is_plane};
 use crate::articulated::link::{Link, Motion, WORLD};
 use crate::articulated::links::{
-    IDENTITY, cast_links, cast_mount, choose_references, compose, frame, links_of, set_limits, unit,
+    IDENTITY, cast_links, cast_mount, choose_references, compose, frame, least_ratio, links_of, set_limits, unit,
 };
 use crate::articulated::model::{
     Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
@@ -48,15 +49,14 @@ fn geometry_of(shape: Shape) -> (Geometry<f64>, f64, u8) {
     }
 }
 
-/// Contact points of a pair of geometries, in their canonical order, and whether the second one moves too.
-fn points_of(a: &Geometry<f64>, b: &Geometry<f64>, both_move: bool) -> Option<usize> {
+/// Contact points of a pair of geometries, in their canonical order.
+fn points_of(a: &Geometry<f64>, b: &Geometry<f64>) -> Option<usize> {
     match (a, b) {
         (Geometry::Ball { .. }, _) | (Geometry::Capsule { .. }, Geometry::Capsule { .. }) => Some(1),
         (Geometry::Capsule { .. }, Geometry::Plane) => Some(2),
         (Geometry::Capsule { .. }, Geometry::Block { .. }) => Some(3),
         (Geometry::Block { .. }, Geometry::Plane) => Some(8),
-        // Corners of the one in the other, edges of the other in the one. Corners of the other where it is no table.
-        (Geometry::Block { .. }, Geometry::Block { .. }) => Some(if both_move { 28 } else { 20 }),
+        (Geometry::Block { .. }, Geometry::Block { .. }) => Some(BOX_POINTS),
         _ => None,
     }
 }
@@ -138,12 +138,10 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         let [a, b] = p.colliders;
         let movable = |c: usize| colliders[c].0.link != WORLD;
         let rank = |c: usize| colliders[c].3;
-        // The moving one of two boxes comes first, so that its corners and the fixed one's edges are tested. Corners of
-        // a fixed box are not. A table's are rarely within reach, and eight further points would cost time for
-        // everything on it.
+        // The moving one of two boxes comes first, because the ball around the first one is compared with the other.
         let flipped = rank(a) > rank(b) || (rank(a) == 2 && rank(b) == 2 && !movable(a));
         let [a, b] = if flipped { [b, a] } else { [a, b] };
-        let Some(count) = points_of(&colliders[a].1, &colliders[b].1, movable(a) && movable(b)) else {
+        let Some(count) = points_of(&colliders[a].1, &colliders[b].1) else {
             let names = [a, b].map(|c| robot.colliders[c].name.clone());
             return Err(RobotError::Pair { colliders: names, fault: PairFault::Shapes }.into());
         };
@@ -174,6 +172,19 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         }
     }
     Ok(pairs)
+}
+
+/// Sweeps for each one of the options in a world of stacks. Impulses pass through one box of a stack per sweep.
+const STACK_SWEEPS: u32 = 4;
+
+/// Returns whether two free boxes can touch.
+fn has_stacks<R>(pairs: &[Pair<R>], links: &[Link<f64>], colliders: &[Fitted]) -> bool {
+    let free_box = |collider: usize| {
+        let (mount, geometry, ..) = &colliders[collider];
+        let free = links.get(usize::from(mount.link)).is_some_and(|link| link.motion == Motion::Floating);
+        free && matches!(geometry, Geometry::Block { .. })
+    };
+    pairs.iter().any(|pair| pair.colliders.into_iter().all(free_box))
 }
 
 /// The positions at the start, and as many zeros as there are velocities.
@@ -240,7 +251,8 @@ impl<R: Real> Model<R> {
     /// always valid.
     ///
     /// # Errors
-    /// A description that is not valid, an option out of range, a joint without inertia, more than 65534 parts.
+    /// A description that is not valid, an option out of range, a joint without inertia, a body too thin for the
+    /// precision, more than 65534 parts.
     pub fn new(robot: &Robot, options: &Options) -> Result<Self, ModelError> {
         robot.validate()?;
         check(options)?;
@@ -265,8 +277,10 @@ impl<R: Real> Model<R> {
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
         let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
         let initial = start_of(robot, &links, &mounts, positions + dofs);
-        set_limits(robot, &mounts, &mut links, &initial, dofs, options)?;
+        set_limits(robot, &mounts, &mut links, &initial, dofs, options, least_ratio::<R>())?;
         let stop_paths = stop_paths_of(&links);
+        let sweeps =
+            if has_stacks(&pairs, &links, &colliders) { STACK_SWEEPS * options.sweeps } else { options.sweeps };
         let actuators =
             robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
         let bodies_of = |pair: &farsa_body::robot::Pair| pair.colliders.map(|c| robot.colliders[c].body);
@@ -301,7 +315,7 @@ impl<R: Real> Model<R> {
             time_step: R::from_f64(options.time_step),
             h: R::from_f64(h),
             substeps: options.substeps,
-            sweeps: options.sweeps,
+            sweeps,
             friction_compliance: R::from_f64(options.friction_compliance),
             margin: R::from_f64(options.margin),
         };

@@ -8,8 +8,9 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
+use crate::articulated::boxes::{BOX_POINTS, find_boxes, hand_over};
 use crate::articulated::collision::{PlacedShape, Point};
-use crate::articulated::contact::{clearance, edge_distance, find, reach};
+use crate::articulated::contact::{clearance, find, halves_of_boxes, reach};
 use crate::articulated::ground::{Rubbing, relax_ground};
 use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
 use crate::articulated::link::LinkData;
@@ -77,6 +78,8 @@ struct Candidate<S: Scalar> {
 pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) placed: &'a [PlacedShape<S>],
     pub(crate) spheres: &'a [Sphere<S>],
+    /// The points of the present pair of boxes.
+    pub(crate) manifold: &'a mut [Point<S>; BOX_POINTS],
     pub(crate) work: &'a [LinkData<S>],
     pub(crate) roots: &'a [Root<S>],
     /// Square roots of the reciprocals of the joints' articulated inertias [dofs].
@@ -196,17 +199,19 @@ impl<S: Scalar> Solver<'_, S> {
             }
             return count;
         }
+        let boxes = halves_of_boxes(model, pair);
+        if let Some(halves) = boxes {
+            let places = pair.colliders.map(|collider| &self.placed[collider]);
+            far = S::select(near, find_boxes(simd, places, halves, self.manifold), far);
+            hand_over(self.manifold, own);
+        }
         for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
             let rolling = rolling_words(pair, index, rolling_impulses);
-            let near = match edge_distance(simd, model, pair, self.placed, index) {
-                Some(distance) => near & distance.le(reach),
-                None => near,
+            let point = match boxes {
+                Some(_) => self.manifold[index],
+                None => find(simd, model, pair, self.placed, index),
             };
-            if !near.any() {
-                forget_point(words, rolling, far);
-                continue;
-            }
-            let candidate = self.gap_and_mask(simd, model, pair, index, near, far);
+            let candidate = self.gap_and_mask(simd, model, pair, &point, near, far);
             if !candidate.mask.any() {
                 forget_point(words, rolling, candidate.gap);
                 continue;
@@ -229,7 +234,7 @@ impl<S: Scalar> Solver<'_, S> {
         count
     }
 
-    /// Returns the place of one contact point, and the lanes in which it may carry an impulse. `far` is the distance of
+    /// Returns one contact point, and the lanes in which it may carry an impulse. `far` is the distance of
     /// the pair's bounds, stored as the gap in lanes without a computed one.
     #[inline(always)]
     fn gap_and_mask(
@@ -237,7 +242,7 @@ impl<S: Scalar> Solver<'_, S> {
         simd: S::Simd,
         model: &Model<S::Real>,
         pair: &Pair<S::Real>,
-        index: usize,
+        point: &Point<S>,
         near: S::Mask,
         far: S,
     ) -> Candidate<S> {
@@ -245,7 +250,6 @@ impl<S: Scalar> Solver<'_, S> {
         let h = S::splat(simd, model.h);
         let margin = S::splat(simd, model.margin);
         let links = links_of_pair(model, pair);
-        let point = find(simd, model, pair, self.placed, index);
         let velocity = sub(
             velocity_at(simd, links[0], self.work, point.position),
             velocity_at(simd, links[1], self.work, point.position),
@@ -257,7 +261,7 @@ impl<S: Scalar> Solver<'_, S> {
         let mask = near & point.valid & (point.gap + h * closing).lt(margin);
         // The memory of a lane must not depend on its neighbors.
         let gap = S::select(near & point.valid, point.gap, far);
-        Candidate { point, velocity, mask, gap }
+        Candidate { point: *point, velocity, mask, gap }
     }
 
     /// Sets up the normal and friction rows of a point and starts them from the impulse `old` of the last step, given in

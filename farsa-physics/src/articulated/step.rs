@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 
 use farsa_num::{Mask as _, Real, Scalar};
 
-use crate::articulated::collision::PlacedShape;
+use crate::articulated::boxes::BOX_POINTS;
+use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::place_colliders;
 use crate::articulated::external::Wrenches;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
@@ -29,6 +30,7 @@ pub struct Scratch<S: Scalar> {
     response: Vec<S>,
     pub(crate) placed: Vec<PlacedShape<S>>,
     spheres: Vec<Sphere<S>>,
+    manifold: [Point<S>; BOX_POINTS],
     blocks: Vec<Block<S>>,
     rolling: Vec<Block<S>>,
     rows: Vec<[S; 3]>,
@@ -54,6 +56,7 @@ impl<S: Scalar> Scratch<S> {
             response: vec![zero; model.dofs],
             placed: vec![PlacedShape::new(simd); model.colliders.len()],
             spheres: vec![Sphere::new(simd); model.clusters.len()],
+            manifold: [Point::new(simd); BOX_POINTS],
             blocks: vec![Block::new(simd); model.points],
             rolling: vec![Block::new(simd); model.rolling],
             rows: vec![[zero; 3]; model.row_entries],
@@ -215,6 +218,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
         let mut solver = Solver {
             placed: &s.placed,
             spheres: &s.spheres,
+            manifold: &mut s.manifold,
             work: &s.links,
             roots: &s.roots,
             inverse_sqrt_inertia: &s.inverse_sqrt_inertia,

@@ -248,7 +248,7 @@ fn check_masses(robot: &Robot, mounts: &[Mount<f64>], links: &[Link<f64>]) -> Re
         initial.extend_from_slice(if floating { &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] } else { &[0.0] });
         dofs += if floating { 6 } else { 1 };
     }
-    set_limits(robot, mounts, &mut links, &initial, dofs, &Stops::default())
+    set_limits(robot, mounts, &mut links, &initial, dofs, &Stops::default(), 0.0)
 }
 
 /// The moving bodies and their joints.

@@ -120,3 +120,45 @@ fn a_stop_answers_a_contact_in_the_same_step() {
         assert!((base - impulse).abs() < 1e-9, "{base} and {impulse} N s");
     }
 }
+
+/// Returns whether a ball of a mass [kg] and radius [m] that hits a wall of a thickness [m] at a speed stays in front.
+fn stays_in_front(mass: f64, radius: f64, thickness: f64, speed: f64, damping: f64) -> bool {
+    let mut robot = Robot::new("wall");
+    let ball = robot.add_segment(Segment::new(
+        "ball",
+        None,
+        Joint::floating(Pose::at([-0.2 - radius, 0.0, 0.0])),
+        MassProperties::sphere(mass, radius),
+    ));
+    let half = [0.5 * thickness, 1.0, 1.0];
+    let skin = Collider::new("ball", Some(ball), Shape::Sphere { radius }, Pose::identity());
+    let wall = Collider::new("wall", None, Shape::Box { half }, Pose::identity());
+    let pair = [skin, wall].map(|collider| robot.add_collider(collider));
+    robot.add_pair(pair, Surface { damping, stiffness: 1e5, ..SURFACE });
+    let mut world = world(&robot, Options { gravity: [0.0; 3], ..Options::default() });
+    let twist = Twist { linear: [speed as f32, 0.0, 0.0], angular: [0.0; 3] };
+    world.place_body(ball, Pose::at([(-0.2 - radius) as f32, 0.0, 0.0]), twist);
+    world.finish_placement();
+    (0..200).for_each(|_| world.step());
+    world.pose(ball).position[0] < 0.0
+}
+
+/// A spring k stops a mass m at a speed v within v sqrt(m / k). The nearest face of a wall changes in its middle, so a
+/// ball stays in front up to (radius + thickness / 2) sqrt(k / m). Damping and the implicit step only add to that.
+#[test]
+fn a_ball_stays_in_front_of_a_wall_up_to_the_documented_speed() {
+    let mut passed = 0;
+    for mass in [0.02, 0.5, 1.0, 5.0, 30.0] {
+        for (radius, thickness) in [(0.02, 0.01), (0.04, 0.01), (0.01, 0.05), (0.03, 0.002)] {
+            let limit = (radius + 0.5 * thickness) * (1e5_f64 / mass).sqrt();
+            for damping in [0.0, 300.0] {
+                for share in [0.1, 0.5, 0.97] {
+                    let held = stays_in_front(mass, radius, thickness, share * limit, damping);
+                    assert!(held, "{mass} kg, {radius} m, {thickness} m, {share} of {limit} m/s, damping {damping}");
+                }
+            }
+            passed += usize::from(!stays_in_front(mass, radius, thickness, 1.5 * limit, 0.0));
+        }
+    }
+    assert!(passed >= 4, "the limit is far below the speed at which balls pass: {passed}");
+}

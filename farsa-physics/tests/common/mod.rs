@@ -128,7 +128,7 @@ pub(crate) fn points_of(robot: &Robot, pair: usize) -> usize {
         (Capsule { .. }, Plane) | (Plane, Capsule { .. }) => 2,
         (Capsule { .. }, Box { .. }) | (Box { .. }, Capsule { .. }) => 3,
         (Box { .. }, Plane) | (Plane, Box { .. }) => 8,
-        (Box { .. }, Box { .. }) => 20,
+        (Box { .. }, Box { .. }) => 13,
         (Plane, Plane) => 0,
     }
 }
