@@ -32,7 +32,7 @@ pub enum Emitter {
     /// their cells rank before those that are better than an elite, then by objective and by the difference of objectives.
     /// Without additions it starts again from an elite. Deviations: individuals out of bounds are drawn again up to a
     /// hundred times and then put at the bounds (the source has none). It also starts again where the distribution has
-    /// collapsed.
+    /// collapsed, and no standard deviation of a gene passes the larger of sigma and the widest range.
     Improvement {
         /// Number of individuals in a generation, at least 2.
         batch: usize,

@@ -22,6 +22,8 @@ pub(super) struct Improvement {
     batch: usize,
     /// The step size at every start.
     sigma: f64,
+    /// The upper limit of the standard deviation of every gene.
+    largest_step: f64,
     distribution: Distribution<Full>,
 }
 
@@ -30,14 +32,17 @@ fn coefficients(genes: usize, individuals: usize) -> Coefficients {
     Coefficients::new(genes, individuals, false, None, |one, mu| (one, mu))
 }
 
-fn start(mean: Vec<f64>, sigma: f64, batch: usize) -> Distribution<Full> {
+fn start(mean: Vec<f64>, sigma: f64, largest_step: f64, batch: usize) -> Distribution<Full> {
     let coefficients = coefficients(mean.len(), batch);
-    Distribution::new(mean, sigma, coefficients)
+    Distribution::new(mean, sigma, largest_step, coefficients)
 }
 
 impl Improvement {
-    pub(super) fn new(mean: Vec<f64>, sigma: f64, batch: usize) -> Self {
-        Self { batch, sigma, distribution: start(mean, sigma, batch) }
+    /// Creates an emitter whose genes have these bounds.
+    pub(super) fn new(mean: Vec<f64>, sigma: f64, batch: usize, bounds: &[[f64; 2]]) -> Self {
+        let widest = bounds.iter().fold(0.0_f64, |widest, [low, high]| widest.max(high - low));
+        let largest_step = sigma.max(widest);
+        Self { batch, sigma, largest_step, distribution: start(mean, sigma, largest_step, batch) }
     }
 
     /// Draws the individuals [batch x genes], each from the stream that belongs to it.
@@ -76,7 +81,7 @@ impl Improvement {
 
     /// Starts again from these genes.
     pub(super) fn restart(&mut self, mean: &[f64]) {
-        self.distribution = start(mean.to_vec(), self.sigma, self.batch);
+        self.distribution = start(mean.to_vec(), self.sigma, self.largest_step, self.batch);
     }
 
     pub(super) fn state_length(genes: usize) -> usize {
@@ -102,7 +107,7 @@ mod tests {
     #[test]
     fn a_distribution_that_has_collapsed_starts_again() {
         let tell = |emitter: &mut Improvement| emitter.tell(&[1.0; 4], &[Addition::New; 4]);
-        let mut emitter = Improvement::new(vec![0.5; 3], 0.2, 4);
+        let mut emitter = Improvement::new(vec![0.5; 3], 0.2, 4, &[[-9.0, 9.0]; 3]);
         let mut points = vec![0.0; 12];
         emitter.sample(|row| Stream::from_seed(row as u64), &mut points, &[[-9.0, 9.0]; 3]);
         let mut other = emitter.clone();

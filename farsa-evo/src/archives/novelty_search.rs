@@ -27,6 +27,8 @@ pub struct NoveltyConfig {
     pub neighbors: usize,
     /// Rule that decides which behaviors enter the archive.
     pub archive: ArchiveRule,
+    /// Largest number of behaviors in the archive, at least 1. The oldest leave it.
+    pub capacity: usize,
 }
 
 /// Rule that decides which behaviors enter the archive of a [`NoveltySearch`](crate::archives::NoveltySearch).
@@ -55,9 +57,9 @@ pub enum ArchiveRule {
 
 impl NoveltyConfig {
     /// Creates a configuration with 15 neighbors as in \[Lehman2011\]. Each behavior enters the archive with a
-    /// probability of 0.02, which is our choice.
+    /// probability of 0.02, and the archive holds 10 000 of them. Both numbers are our choice.
     pub const fn new(measures: usize) -> Self {
-        Self { measures, neighbors: 15, archive: ArchiveRule::Random { rate: 0.02 } }
+        Self { measures, neighbors: 15, archive: ArchiveRule::Random { rate: 0.02 }, capacity: 10_000 }
     }
 
     /// Checks that all settings are within their allowed ranges. You usually don't need to call this, since
@@ -69,6 +71,7 @@ impl NoveltyConfig {
         let (d, k) = (self.measures, self.neighbors);
         check_setting((1..=1000).contains(&d), "the number of descriptor values", d as f64, "1 to 1000")?;
         check_setting(k > 0, "the number of neighbours", k as f64, "1 or more")?;
+        check_setting(self.capacity > 0, "the capacity of the archive", self.capacity as f64, "1 or more")?;
         match self.archive {
             ArchiveRule::Random { rate } => check_share("the rate of the archive", rate),
             ArchiveRule::Threshold { first, patience, .. } => {
@@ -90,11 +93,10 @@ const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
 /// fitness.
 ///
 /// Behaviors enter the archive in `tell_scores`, in the order of their index. If they do so by chance, individual `i`
-/// of generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). Note that the archive grows
-/// without limit.
+/// of generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`).
 ///
 /// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: the inner strategy is any strategy, where
-/// the source has NEAT. An archive by chance is ours. All behaviors of a generation are compared with the archive before
+/// the source has NEAT. An archive by chance and its capacity are ours. All behaviors of a generation are compared with the archive before
 /// any of them enters it.
 ///
 /// ```
@@ -231,6 +233,9 @@ impl<S> NoveltySearch<S> {
                 (self.threshold, self.idle) = ((0.95 * self.threshold).max(THRESHOLDS[0]), 0);
             }
         }
+        // The oldest behaviors are first.
+        let room = self.config.capacity.saturating_mul(self.config.measures);
+        self.archive.drain(..self.archive.len().saturating_sub(room));
     }
 }
 
@@ -328,6 +333,9 @@ impl<S: Snapshot> Snapshot for NoveltySearch<S> {
         let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or_else(short)?;
         let mut header = StateReader::new(own, own.len())?;
         let (idle, threshold, behaviors) = (header.u32()?, header.real()?, size(header.u64()?));
+        if behaviors > self.config.capacity {
+            return Err(EvoError::state_content("the behaviors of an archive", behaviors as u64));
+        }
         let numbers = behaviors.saturating_mul(self.config.measures);
         let mut reader = StateReader::new(own, numbers.saturating_mul(8).saturating_add(20))?;
         let _ = (reader.u32()?, reader.real()?, reader.u64()?);

@@ -152,6 +152,10 @@ impl Covariance for Cholesky {
         }
     }
 
+    fn largest_variance(&self) -> f64 {
+        self.matrix.iter().step_by(self.n + 1).copied().fold(0.0, f64::max)
+    }
+
     /// The squares on the factor's diagonal, which lie between the eigenvalues.
     fn extremes(&self) -> [f64; 2] {
         let ends = self.diagonal().fold([f64::INFINITY, 0.0_f64], |[low, high], x| [low.min(x), high.max(x)]);

@@ -74,7 +74,7 @@ pub type SeparableCmaEs = CmaEs<Diagonal>;
 /// [`diagnostics`](Strategy::diagnostics) are the step size and the axis ratio.
 ///
 /// Source: \[Hansen2016\] appendix A. Deviations: larger fitness is better. Variances along axes are at least 10^-16 of the
-/// largest. The step size stays within 10^-100 and 10^100. Where the largest variance leaves 10^-30 to 10^30, the excess moves
+/// largest. The step size is at least 10^-100, and lowered where the standard deviation of a gene passes a limit. Where the largest variance leaves 10^-30 to 10^30, the excess moves
 /// into the step size.
 ///
 /// ```
@@ -118,7 +118,7 @@ impl<C: Covariance> CmaEs<C> {
         config.check()?;
         let (mean, sigma, population) = config.start();
         let mut population = Population::new(population, mean.len())?;
-        let mut distribution = Distribution::new(mean.to_vec(), sigma, config.coefficients());
+        let mut distribution = Distribution::new(mean.to_vec(), sigma, config.largest_step(), config.coefficients());
         distribution.sample(seed, 0, &mut population);
         Ok(Self { config, seed, generation: 0, distribution, population })
     }

@@ -14,6 +14,9 @@ pub trait Start: Clone + core::fmt::Debug + PartialEq {
     /// Gets the initial mean, the initial step size and the number of individuals.
     fn start(&self) -> (&[f64], f64, usize);
 
+    /// Gets the upper limit of the standard deviation of every gene.
+    fn largest_step(&self) -> f64;
+
     /// Computes weights and learning rates.
     fn coefficients(&self) -> Coefficients;
 
@@ -44,6 +47,9 @@ pub struct CmaEsConfig {
     /// Damping of the step size `d_sigma`, 0.001 to 1000. If this is `None`, the damping of \[Hansen2016\] eq. 55 is
     /// used.
     pub damping: Option<f64>,
+    /// Upper limit of the standard deviation of every gene, sigma to 10^100, in the unit of the genes. If genes have a
+    /// range, use its width. The default is 10^100.
+    pub largest_step: f64,
 }
 
 impl CmaEsConfig {
@@ -51,7 +57,17 @@ impl CmaEsConfig {
     /// rounded down, and it uses negative weights.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let population = Population::default_size(mean.len());
-        Self { mean, sigma, population, active: true, rank_one_rate: None, rank_mu_rate: None, damping: None }
+        let largest_step = STEP_SIZES[1];
+        Self {
+            mean,
+            sigma,
+            population,
+            active: true,
+            rank_one_rate: None,
+            rank_mu_rate: None,
+            damping: None,
+            largest_step,
+        }
     }
 
     /// Checks that all settings are within their allowed ranges.
@@ -61,7 +77,7 @@ impl CmaEsConfig {
     /// covariance matrix than [`Population::MAX_GENES`]. [`EvoError::OutOfRange`] for other numbers.
     pub fn validate(&self) -> Result<(), EvoError> {
         let genes = self.mean.len();
-        check_start(&self.mean, self.sigma, self.population)?;
+        check_start(self)?;
         Population::check(genes, genes)?;
         check_share("rank_one_rate", self.rank_one_rate.unwrap_or(0.0))?;
         let rank_one =
@@ -86,10 +102,12 @@ fn same(rank_one: f64, rank_mu: f64) -> (f64, f64) {
 }
 
 /// Checks the start of a search of a normal distribution.
-pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result<(), EvoError> {
+fn check_start(start: &impl Start) -> Result<(), EvoError> {
+    let (mean, sigma, population) = start.start();
     Population::check(population, mean.len())?;
     check_range("population", population as f64, [2.0, f64::INFINITY], "at least 2")?;
     check_range("sigma", sigma, STEP_SIZES, "1e-100 to 1e100")?;
+    check_range("largest_step", start.largest_step(), [sigma, STEP_SIZES[1]], "sigma to 1e100")?;
     mean.iter().try_for_each(|&x| check_range("mean", x, [-1e100, 1e100], "-1e100 to 1e100"))
 }
 
@@ -104,6 +122,9 @@ pub struct SeparableCmaEsConfig {
     pub sigma: f64,
     /// Number of individuals lambda in each generation, at least 2.
     pub population: usize,
+    /// Upper limit of the standard deviation of every gene, sigma to 10^100, in the unit of the genes. If genes have a
+    /// range, use its width. The default is 10^100.
+    pub largest_step: f64,
 }
 
 impl SeparableCmaEsConfig {
@@ -111,7 +132,7 @@ impl SeparableCmaEsConfig {
     /// down.
     pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
         let population = Population::default_size(mean.len());
-        Self { mean, sigma, population }
+        Self { mean, sigma, population, largest_step: STEP_SIZES[1] }
     }
 
     /// Checks the configuration. You usually don't need to call this yourself, since a new search does it as well.
@@ -119,13 +140,17 @@ impl SeparableCmaEsConfig {
     /// # Errors
     /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
-        check_start(&self.mean, self.sigma, self.population)
+        check_start(self)
     }
 }
 
 impl Start for CmaEsConfig {
     fn start(&self) -> (&[f64], f64, usize) {
         (&self.mean, self.sigma, self.population)
+    }
+
+    fn largest_step(&self) -> f64 {
+        self.largest_step
     }
 
     fn coefficients(&self) -> Coefficients {
@@ -140,6 +165,10 @@ impl Start for CmaEsConfig {
 impl Start for SeparableCmaEsConfig {
     fn start(&self) -> (&[f64], f64, usize) {
         (&self.mean, self.sigma, self.population)
+    }
+
+    fn largest_step(&self) -> f64 {
+        self.largest_step
     }
 
     fn coefficients(&self) -> Coefficients {

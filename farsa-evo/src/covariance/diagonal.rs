@@ -53,6 +53,10 @@ impl Covariance for Diagonal {
         self.variances.iter_mut().for_each(|variance| *variance = variance.max(smallest));
     }
 
+    fn largest_variance(&self) -> f64 {
+        self.variances.iter().copied().fold(0.0, f64::max)
+    }
+
     fn extremes(&self) -> [f64; 2] {
         let fold = |first, choose: fn(f64, f64) -> f64| self.variances.iter().copied().fold(first, choose);
         [fold(f64::INFINITY, f64::min), fold(0.0, f64::max)]

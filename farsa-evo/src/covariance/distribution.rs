@@ -38,6 +38,9 @@ pub trait Covariance: Clone + core::fmt::Debug + PartialEq {
     /// Keeps so much of the matrix and adds the squares of rows [factors x genes], each times its factor.
     fn update(&mut self, keep: f64, factors: &[f64], rows: &[f64]);
 
+    /// The largest variance of a gene.
+    fn largest_variance(&self) -> f64;
+
     /// The smallest and the largest variance along an axis.
     fn extremes(&self) -> [f64; 2];
 
@@ -71,6 +74,8 @@ pub(crate) struct Distribution<C> {
     pub(crate) mean: Vec<f64>,
     /// The step size sigma.
     pub(crate) sigma: f64,
+    /// The upper limit of the standard deviation of every gene.
+    largest_step: f64,
     /// The covariance C.
     pub(crate) covariance: C,
     /// The path of the step size `p_sigma` \[genes\].
@@ -86,12 +91,12 @@ pub(crate) struct Distribution<C> {
 }
 
 impl<C: Covariance> Distribution<C> {
-    pub(crate) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
+    pub(crate) fn new(mean: Vec<f64>, sigma: f64, largest_step: f64, coefficients: Coefficients) -> Self {
         let n = mean.len();
         let covariance = C::identity(n, &coefficients);
         let (normals, steps) = (vec![0.0; coefficients.population() * n], vec![0.0; coefficients.population() * n]);
         let (step_path, path) = (vec![0.0; n], vec![0.0; n]);
-        Self { coefficients, mean, sigma, covariance, step_path, path, updates: 0, normals, steps }
+        Self { coefficients, mean, sigma, largest_step, covariance, step_path, path, updates: 0, normals, steps }
     }
 
     /// Draws the individuals of a generation, each from its stream.
@@ -214,6 +219,15 @@ impl<C: Covariance> Distribution<C> {
         let growth = exp(c.step_path_rate / c.damping * (length / c.expected - 1.0));
         self.sigma = (self.sigma * growth).clamp(STEP_SIZES[0], STEP_SIZES[1]);
         self.normalize();
+        self.limit();
+    }
+
+    /// Lowers the step size where the standard deviation of a gene passes its limit, as `maxstd` of pycma does.
+    fn limit(&mut self) {
+        let deviation = self.sigma * Scalar::sqrt(self.covariance.largest_variance());
+        if deviation > self.largest_step {
+            self.sigma = (self.sigma * (self.largest_step / deviation)).max(STEP_SIZES[0]);
+        }
     }
 
     /// Moves variance from the covariance to the step size when there is very much or very little, which leaves the

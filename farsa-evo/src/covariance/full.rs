@@ -133,6 +133,10 @@ impl Covariance for Full {
         }
     }
 
+    fn largest_variance(&self) -> f64 {
+        self.matrix.iter().step_by(self.n + 1).copied().fold(0.0, f64::max)
+    }
+
     fn extremes(&self) -> [f64; 2] {
         let square = |d: Option<&f64>| d.map_or(1.0, |d| d * d);
         [square(self.deviations.first()), square(self.deviations.last())]

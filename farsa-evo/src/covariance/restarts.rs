@@ -142,7 +142,7 @@ impl CmaEsRestarts {
         let progress = Progress::default();
         let run = Run { number: 0, blocks: 1, small: false, sigma: *sigma, evaluated: 0, most: 0, progress };
         let population = Population::new(*population, mean.len())?;
-        let distribution = Distribution::new(mean.clone(), *sigma, config.first.coefficients_of(population.len()));
+        let distribution = Distribution::new(mean.clone(), *sigma, config.first.largest_step, config.first.coefficients_of(population.len()));
         let (points, told, spent) = (population.clone(), Vec::new(), [0, 0]);
         let (generation, large, latest) = (0, 1, 0);
         let mut search =
@@ -203,7 +203,9 @@ impl CmaEsRestarts {
     fn begin(&mut self, mean: Vec<f64>, run: Run) -> Result<(), EvoError> {
         let individuals = run.blocks as usize * self.population.len();
         self.points = Population::new(individuals, mean.len())?;
-        self.distribution = Distribution::new(mean, run.sigma, self.config.first.coefficients_of(individuals));
+        let CmaEsConfig { largest_step, .. } = self.config.first;
+        let coefficients = self.config.first.coefficients_of(individuals);
+        self.distribution = Distribution::new(mean, run.sigma, largest_step, coefficients);
         self.run = run;
         Ok(())
     }

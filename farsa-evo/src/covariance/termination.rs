@@ -124,7 +124,7 @@ mod tests {
 
     fn distribution(mean: f64, sigma: f64) -> Distribution<Full> {
         let config = CmaEsConfig::new(vec![mean; 4], sigma);
-        Distribution::new(config.mean.clone(), sigma, config.coefficients_of(8))
+        Distribution::new(config.mean.clone(), sigma, config.largest_step, config.coefficients_of(8))
     }
 
     /// A run of generations with these values as the best, others below.

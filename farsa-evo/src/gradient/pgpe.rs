@@ -7,7 +7,9 @@ use farsa_num::Scalar;
 
 use super::noise::{Directions, Spread};
 use super::optimizer::ClipUp;
-use super::settings::{bounded, bounded_size, decay, ends, learning_rate, point, point_row, positive, sizes_row};
+use super::settings::{
+    LARGEST, bounded, bounded_size, decay, ends, learning_rate, point, point_row, positive, sizes_row, step_sizes,
+};
 use super::utilities::{centered_ranks, rewards};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -49,6 +51,9 @@ pub struct PgpeConfig {
     pub sigma_max_change: f64,
     /// Determines the reward of an individual.
     pub fitness: PgpeFitness,
+    /// Upper limit of the standard deviation of every gene, sigma to 1e100. If genes have a range, use its width. The
+    /// default is 1e100.
+    pub largest_step: f64,
 }
 
 impl PgpeConfig {
@@ -68,6 +73,7 @@ impl PgpeConfig {
             sigma_learning_rate: 0.1,
             sigma_max_change: 0.2,
             fitness: PgpeFitness::CenteredRanks,
+            largest_step: LARGEST,
         }
     }
 
@@ -78,7 +84,7 @@ impl PgpeConfig {
     pub fn validate(&self) -> Result<(), EvoError> {
         Population::check(self.pairs.saturating_mul(2), self.mean.len())?;
         point("mean", &self.mean)?;
-        positive("sigma", self.sigma)?;
+        step_sizes(self.sigma, self.largest_step)?;
         positive("step_size", self.step_size)?;
         positive("max_speed", self.max_speed)?;
         decay("momentum", self.momentum)?;
@@ -97,7 +103,7 @@ impl PgpeConfig {
 /// the gradients are the means over the pairs of (f+ - f-) / 2 e and of ((f+ + f-) / 2 - b) (e^2 - sigma^2) / sigma.
 /// Deviations: sums go through the pairs by index. With raw fitness, a failed evaluation counts as the worst finite value
 /// of its generation and an infinite one as the best. A generation without a finite value changes nothing. Centers stay
-/// within 1e100 of zero, standard deviations within 1e-100 to 1e100.
+/// within 1e100 of zero, standard deviations between 1e-100 and a limit.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -152,7 +158,8 @@ impl PgpeState {
             self.directions.add_moments(row, weights, &mut first, &mut second);
         }
         first.iter_mut().zip(&self.sigmas).for_each(|(g, sigma)| *g *= sigma / pairs);
-        let PgpeConfig { step_size, max_speed, momentum, sigma_learning_rate, sigma_max_change, .. } = *config;
+        let PgpeConfig { step_size, max_speed, momentum, sigma_learning_rate, sigma_max_change, largest_step, .. } =
+            *config;
         self.clip_up.step(&first, step_size, max_speed, momentum);
         for (mean, velocity) in self.mean.iter_mut().zip(self.clip_up.velocity()) {
             *mean = bounded(*mean + velocity);
@@ -161,7 +168,7 @@ impl PgpeState {
         let (least, most) = (1.0 - sigma_max_change, 1.0 + sigma_max_change);
         for (sigma, g) in self.sigmas.iter_mut().zip(second) {
             let grown = *sigma + sigma_learning_rate * (*sigma * g / pairs);
-            *sigma = bounded_size(grown.clamp(least * *sigma, most * *sigma));
+            *sigma = bounded_size(grown.clamp(least * *sigma, most * *sigma), largest_step);
         }
     }
 }

@@ -41,9 +41,15 @@ pub(super) fn bounded(x: f64) -> f64 {
     x.clamp(-LARGEST, LARGEST)
 }
 
-/// A step size that stays where it is representable.
-pub(super) fn bounded_size(sigma: f64) -> f64 {
-    sigma.clamp(SMALLEST, LARGEST)
+/// A step size within its limits.
+pub(super) fn bounded_size(sigma: f64, largest: f64) -> f64 {
+    sigma.max(SMALLEST).min(largest)
+}
+
+/// Checks the first step size and the upper limit of all.
+pub(super) fn step_sizes(sigma: f64, largest: f64) -> Result<(), EvoError> {
+    positive("sigma", sigma)?;
+    check_range("largest_step", largest, [sigma, LARGEST], "sigma to 1e100")
 }
 
 /// The coordinates of a search point in a saved state.

@@ -5,7 +5,9 @@ use alloc::vec::Vec;
 
 use farsa_num::{Scalar, exp, ln};
 
-use super::settings::{at_least, bounded, bounded_size, ends, learning_rate, point, point_row, positive, sizes_row};
+use super::settings::{
+    LARGEST, at_least, bounded, bounded_size, ends, learning_rate, point, point_row, sizes_row, step_sizes,
+};
 use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -27,6 +29,9 @@ pub struct SnesConfig {
     pub mean_learning_rate: f64,
     /// Learning rate of the standard deviations (eta sigma), 0 to 10.
     pub sigma_learning_rate: f64,
+    /// Upper limit of the standard deviation of every gene, sigma to 1e100. If genes have a range, use its width. The
+    /// default is 1e100.
+    pub largest_step: f64,
 }
 
 impl SnesConfig {
@@ -40,6 +45,7 @@ impl SnesConfig {
             sigma_learning_rate: (3.0 + ln(d)) / (5.0 * Scalar::sqrt(d)),
             mean,
             sigma,
+            largest_step: LARGEST,
         }
     }
 
@@ -51,7 +57,7 @@ impl SnesConfig {
         Population::check(self.population, self.mean.len())?;
         at_least("population", self.population, 2, "2 or more")?;
         point("mean", &self.mean)?;
-        positive("sigma", self.sigma)?;
+        step_sizes(self.sigma, self.largest_step)?;
         learning_rate("mean_learning_rate", self.mean_learning_rate)?;
         learning_rate("sigma_learning_rate", self.sigma_learning_rate)
     }
@@ -64,7 +70,7 @@ impl SnesConfig {
 /// correlations. If you need them, use [`Xnes`](crate::gradient::Xnes). Only the order of fitness matters.
 ///
 /// Source: \[Wierstra2014\] algorithm 6 (SNES) with the utilities of table 1. Deviations: sums go through the individuals
-/// by index. Means stay within 1e100 of zero, standard deviations within 1e-100 to 1e100.
+/// by index. Means stay within 1e100 of zero, standard deviations between 1e-100 and a limit.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -125,7 +131,7 @@ impl Algorithm for SnesState {
         {
             // The mean moves by the sigma of the samples, so it changes first.
             *mean = bounded(*mean + mean_rate * *sigma * first);
-            *sigma = bounded_size(*sigma * exp(sigma_rate * second));
+            *sigma = bounded_size(*sigma * exp(sigma_rate * second), step.config.largest_step);
         }
     }
 

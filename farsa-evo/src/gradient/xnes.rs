@@ -7,7 +7,10 @@ use core::slice::{from_mut, from_ref};
 use farsa_num::{Scalar, exp, ln};
 
 use super::matrix_exponential::{exponential, mirror, multiply};
-use super::settings::{LARGEST, at_least, bounded, bounded_size, learning_rate, point, point_row, positive, sizes_row};
+use super::optimizer::norm;
+use super::settings::{
+    LARGEST, at_least, bounded, bounded_size, learning_rate, point, point_row, sizes_row, step_sizes,
+};
 use super::utilities::{utilities, weights};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -34,6 +37,9 @@ pub struct XnesConfig {
     pub sigma_learning_rate: f64,
     /// Learning rate of the shape (eta B), 0 to 10.
     pub shape_learning_rate: f64,
+    /// Upper limit of the standard deviation of every gene, sigma to 1e100. If genes have a range, use its width. The
+    /// default is 1e100.
+    pub largest_step: f64,
 }
 
 impl XnesConfig {
@@ -49,6 +55,7 @@ impl XnesConfig {
             shape_learning_rate: rate,
             mean,
             sigma,
+            largest_step: LARGEST,
         }
     }
 
@@ -64,7 +71,7 @@ impl XnesConfig {
             return Err(EvoError::OutOfRange { field: "genes", value: genes as f64, allowed: "1 to 1024" });
         }
         point("mean", &self.mean)?;
-        positive("sigma", self.sigma)?;
+        step_sizes(self.sigma, self.largest_step)?;
         learning_rate("mean_learning_rate", self.mean_learning_rate)?;
         learning_rate("sigma_learning_rate", self.sigma_learning_rate)?;
         learning_rate("shape_learning_rate", self.shape_learning_rate)
@@ -79,8 +86,9 @@ impl XnesConfig {
 ///
 /// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its table 1.
 /// A genome is mu + sigma B s. B is multiplied from the right by the exponential of a symmetric matrix without trace.
-/// Deviations: sums go through the individuals by index. Means stay within 1e100 of zero and sigma within 1e-100 to 1e100. B
-/// does not change where an element would pass 1e100.
+/// Deviations: sums go through the individuals by index. Means stay within 1e100 of zero and sigma within 1e-100 to 1e100.
+/// Sigma is lowered where the standard deviation of a gene passes a limit. B does not change where an element would pass
+/// 1e100.
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -177,7 +185,7 @@ impl Algorithm for XnesState {
         // The trace of the gradient grows sigma, the rest turns and stretches B.
         // M = (tr M / n) I + rest. With it sigma <- sigma exp(eta_sigma / 2 tr M / n) and B <- B exp(eta_B / 2 rest).
         let growth = second.iter().step_by(genes + 1).sum::<f64>() / genes as f64;
-        self.sigma = bounded_size(self.sigma * exp(0.5 * config.sigma_learning_rate * growth));
+        self.sigma = bounded_size(self.sigma * exp(0.5 * config.sigma_learning_rate * growth), LARGEST);
         second.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal -= growth);
         for x in &mut second {
             *x *= 0.5 * config.shape_learning_rate;
@@ -188,6 +196,11 @@ impl Algorithm for XnesState {
             if shape.iter().all(|x| x.abs() <= LARGEST) {
                 self.shape = shape;
             }
+        }
+        // The standard deviation of gene i is sigma |B_i|, with row i of B.
+        let longest = self.shape.chunks_exact(genes).map(norm).fold(0.0, f64::max);
+        if self.sigma * longest > config.largest_step {
+            self.sigma = bounded_size(config.largest_step / longest, LARGEST);
         }
     }
 

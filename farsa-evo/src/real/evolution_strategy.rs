@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Scalar, Stream, exp};
+use farsa_num::{Scalar, Stream, exp, ln};
 
 use crate::error::{EvoError, check_range, check_setting};
 use crate::fitness::Fitness;
@@ -34,7 +34,8 @@ pub enum Survival {
 pub enum Recombination {
     /// No recombination. All values are copied from the first parent that was drawn.
     None,
-    /// Each value is the mean over all rho parents.
+    /// Each gene is the mean over all rho parents. A step size is their geometric mean, which leaves its logarithm
+    /// unbiased where nothing is selected, \[Hansen2006\].
     Intermediate,
     /// Each value is copied from one of the rho parents, which is drawn separately for every value.
     Discrete,
@@ -105,12 +106,16 @@ pub struct EvolutionStrategyConfig {
     pub step_sizes: StepSizes,
     /// Lower limit of all step sizes, in the unit of the genes, 1e-100 to 1e100.
     pub smallest_step: f64,
+    /// Upper limit of all step sizes, in the unit of the genes, `initial_step` to 1e100. If genes have a range, use its
+    /// width.
+    pub largest_step: f64,
 }
 
 impl EvolutionStrategyConfig {
     /// Creates a (15/15, 100) strategy that starts around `mean` \[genes\] with the given step size. It has a step size
     /// for each gene and uses intermediate recombination for genes and step sizes. Its learning rates are those of
-    /// \[Beyer2002\]. While (15, 100) is the classical choice of its authors, the smallest step of 1e-12 is ours.
+    /// \[Beyer2002\]. While (15, 100) is the classical choice of its authors, the smallest step of 1e-12 is ours. The
+    /// largest step is 10^4 times the first, beyond which \[Hansen2016\] calls a search divergent.
     pub fn new(mean: Vec<f64>, initial_step: f64) -> Self {
         let step_sizes = StepSizes::per_gene(mean.len());
         Self {
@@ -124,6 +129,7 @@ impl EvolutionStrategyConfig {
             step_recombination: Recombination::Intermediate,
             step_sizes,
             smallest_step: 1e-12,
+            largest_step: (1e4 * initial_step).min(LARGEST),
         }
     }
 
@@ -132,7 +138,7 @@ impl EvolutionStrategyConfig {
     /// # Errors
     /// Returns [`EvoError::Config`] or [`EvoError::OutOfRange`] for the first setting that is invalid.
     pub fn validate(&self) -> Result<(), EvoError> {
-        let Self { parents, offspring, mixing, initial_step, smallest_step, .. } = *self;
+        let Self { parents, offspring, mixing, initial_step, smallest_step, largest_step, .. } = *self;
         Population::check(offspring, self.mean.len())?;
         if parents == 0 {
             return Err(EvoError::no_parents());
@@ -147,6 +153,7 @@ impl EvolutionStrategyConfig {
         let steps = 1e-100..=LARGEST;
         check_setting(steps.contains(&smallest_step), "the smallest step size", smallest_step, "1e-100 to 1e100")?;
         check_range("the first step size", initial_step, [smallest_step, LARGEST], "the smallest to 1e100")?;
+        check_range("the largest step size", largest_step, [initial_step, LARGEST], "the first to 1e100")?;
         let rate = |name, tau| check_range(name, tau, [0.0, 10.0], "0 to 10");
         match self.step_sizes {
             StepSizes::One { tau } => rate("tau", tau),
@@ -191,7 +198,8 @@ const FARTHEST: f64 = 1e120;
 /// trial 0, `i`, 0).
 ///
 /// Source: \[Beyer2002\]. Deviations: generation 0 has as many individuals as every other, and its mu best are the first
-/// parents, so mu is at most lambda. Step sizes stay between a smallest one and 1e100.
+/// parents, so mu is at most lambda. Step sizes stay between a smallest and a largest one, and their mean is geometric:
+/// the arithmetic mean of the source grows them without selection, \[Hansen2006\].
 ///
 /// ```
 /// use farsa_evo::Strategy;
@@ -257,7 +265,21 @@ impl EvolutionStrategyConfig {
         indices
     }
 
-    /// Makes a child of these parents.
+    /// True if step sizes are recombined by their logarithms.
+    fn mixes_logarithms(&self) -> bool {
+        self.step_recombination == Recombination::Intermediate
+    }
+
+    /// The parents with the numbers that step sizes are recombined by.
+    fn recombined(&self, parents: &[Individual]) -> Vec<Individual> {
+        let mut parents = parents.to_vec();
+        if self.mixes_logarithms() {
+            parents.iter_mut().flat_map(|parent| &mut parent.steps).for_each(|step| *step = ln(*step));
+        }
+        parents
+    }
+
+    /// Makes a child of [recombined](Self::recombined) parents.
     fn make(&self, parents: &[Individual], genes: &mut [f64], steps: &mut [f64], stream: &mut Stream) {
         let drawn = self.draw_parents(stream);
         let chosen: Vec<&Individual> = drawn.into_iter().filter_map(|parent| parents.get(parent)).collect();
@@ -277,7 +299,8 @@ impl EvolutionStrategyConfig {
                     tau_0 * common + tau * of_steps.get(1 + index).copied().unwrap_or_default()
                 }
             };
-            *step = (*step * exp(power)).clamp(self.smallest_step, LARGEST);
+            let mutated = if self.mixes_logarithms() { exp(*step + power) } else { *step * exp(power) };
+            *step = mutated.clamp(self.smallest_step, self.largest_step);
         }
         // A single step size repeats for all genes.
         for ((gene, normal), step) in genes.iter_mut().zip(of_genes).zip(steps.iter().cycle()) {
@@ -287,7 +310,7 @@ impl EvolutionStrategyConfig {
 
     /// Reads step sizes and genes that are possible.
     fn read_rows(&self, reader: &mut StateReader<'_>, steps: &mut [f64], genes: &mut [f64]) -> Result<(), EvoError> {
-        reader.row(steps, "a step size", [self.smallest_step, LARGEST])?;
+        reader.row(steps, "a step size", [self.smallest_step, self.largest_step])?;
         reader.row(genes, "a gene of -1e120 to 1e120", [-FARTHEST, FARTHEST])
     }
 }
@@ -371,13 +394,14 @@ impl Algorithm for EvolutionStrategyState {
     ) {
         let config = step.config;
         let (parents, again) = (self.select(config, fitness, genomes), config.asked_parents());
+        let recombined = config.recombined(&parents);
         let rows = genomes.iter_mut().zip(self.steps.chunks_exact_mut(config.width()));
         for (individual, (genes, steps)) in rows.enumerate() {
             if let Some(parent) = parents.get(individual).filter(|_| individual < again) {
                 genes.copy_from_slice(&parent.genes);
                 steps.copy_from_slice(&parent.steps);
             } else {
-                config.make(&parents, genes, steps, &mut step.stream(individual - again));
+                config.make(&recombined, genes, steps, &mut step.stream(individual - again));
             }
         }
         self.parents = parents;

@@ -180,14 +180,15 @@ proptest! {
         values in prop::collection::vec(any_value(), 1..40), seed: u64, away: bool,
     ) {
         let config = SnesConfig {
-            mean: mean.clone(), sigma, population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1],
+            population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1],
+            ..SnesConfig::new(mean.clone(), sigma)
         };
         let fresh = || Snes::new(config.clone(), seed).unwrap();
         survives(fresh(), fresh(), &values);
         driven(fresh(), fresh(), away);
         let config = XnesConfig {
-            mean, sigma, population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1],
-            shape_learning_rate: rates[2],
+            population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1], shape_learning_rate: rates[2],
+            ..XnesConfig::new(mean, sigma)
         };
         let fresh = || Xnes::new(config.clone(), seed).unwrap();
         survives(fresh(), fresh(), &values);
@@ -210,9 +211,9 @@ proptest! {
         survives(fresh(), fresh(), &values);
         driven(fresh(), fresh(), away);
         let config = PgpeConfig {
-            mean: mean.clone(), sigma: sizes[0], pairs, step_size: sizes[1], max_speed: sizes[2], momentum: decays[0],
-            sigma_learning_rate: rate, sigma_max_change: decays[1],
-            fitness: if choice { PgpeFitness::Raw } else { PgpeFitness::CenteredRanks },
+            step_size: sizes[1], max_speed: sizes[2], momentum: decays[0], sigma_learning_rate: rate,
+            sigma_max_change: decays[1], fitness: if choice { PgpeFitness::Raw } else { PgpeFitness::CenteredRanks },
+            ..PgpeConfig::new(mean.clone(), sizes[0], pairs)
         };
         let fresh = || Pgpe::new(config.clone(), seed).unwrap();
         survives(fresh(), fresh(), &values);

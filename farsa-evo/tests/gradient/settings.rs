@@ -23,6 +23,7 @@ fn impossible_natural_evolution_strategies_are_refused() {
     };
     assert_eq!(setting(snes(|c| c.mean[1] = 1e101)), ("mean", 1e101));
     assert_eq!(setting(snes(|c| c.sigma = 0.0)), ("sigma", 0.0));
+    assert_eq!(setting(snes(|c| c.largest_step = 0.9)), ("largest_step", 0.9));
     assert_eq!(setting(snes(|c| c.population = 1)), ("population", 1.0));
     assert_eq!(setting(snes(|c| c.mean_learning_rate = -1.0)), ("mean_learning_rate", -1.0));
     assert_eq!(setting(snes(|c| c.sigma_learning_rate = f64::INFINITY)), ("sigma_learning_rate", f64::INFINITY));
@@ -41,6 +42,7 @@ fn impossible_natural_evolution_strategies_are_refused() {
     assert_eq!(setting(xnes(|c| c.mean = vec![0.0; 1025])), ("genes", 1025.0));
     assert_eq!(setting(xnes(|c| c.mean[0] = f64::NEG_INFINITY)), ("mean", f64::NEG_INFINITY));
     assert_eq!(setting(xnes(|c| c.sigma = -1.0)), ("sigma", -1.0));
+    assert_eq!(setting(xnes(|c| c.largest_step = f64::INFINITY)), ("largest_step", f64::INFINITY));
     assert_eq!(setting(xnes(|c| c.population = 1)), ("population", 1.0));
     assert_eq!(setting(xnes(|c| c.mean_learning_rate = 11.0)), ("mean_learning_rate", 11.0));
     assert_eq!(setting(xnes(|c| c.sigma_learning_rate = 11.0)), ("sigma_learning_rate", 11.0));
@@ -75,6 +77,7 @@ fn impossible_mirrored_strategies_are_refused() {
         Pgpe::new(config, 0)
     };
     assert_eq!(setting(pgpe(|c| c.sigma = 1e200)), ("sigma", 1e200));
+    assert_eq!(setting(pgpe(|c| c.largest_step = 0.9)), ("largest_step", 0.9));
     assert_eq!(setting(pgpe(|c| c.step_size = 0.0)), ("step_size", 0.0));
     assert_eq!(setting(pgpe(|c| c.max_speed = 0.0)), ("max_speed", 0.0));
     assert_eq!(setting(pgpe(|c| c.momentum = 1.5)), ("momentum", 1.5));

@@ -313,6 +313,7 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(|c| c.population = 0), "a population of zero individuals");
     assert_eq!(refused(|c| c.population = 1), "population is 1, where at least 2 is possible");
     assert_eq!(refused(|c| c.sigma = 0.0), "sigma is 0, where 1e-100 to 1e100 is possible");
+    assert_eq!(refused(|c| c.largest_step = 0.9), "largest_step is 0.9, where sigma to 1e100 is possible");
     assert_eq!(refused(|c| c.sigma = f64::NAN), "sigma is NaN, where 1e-100 to 1e100 is possible");
     assert_eq!(refused(|c| c.mean[2] = f64::INFINITY), "mean is inf, where -1e100 to 1e100 is possible");
     assert_eq!(refused(|c| c.rank_one_rate = Some(1.5)), "rank_one_rate is 1.5, where 0 to 1 is possible");

@@ -7,6 +7,7 @@ mod covariance;
 mod errors;
 mod evolution;
 mod evolution_strategy;
+mod flat;
 mod generalist_coevolution;
 mod map_elites;
 mod novelty_search;

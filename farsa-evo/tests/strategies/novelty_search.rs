@@ -42,6 +42,23 @@ fn diagnostics_are_its_archive_and_those_of_the_inner_strategy() {
 }
 
 #[test]
+fn the_oldest_behaviors_leave_a_full_archive() {
+    let every = config(ArchiveRule::Random { rate: 1.0 });
+    let mut free = NoveltySearch::new(every, words().unwrap(), 7).unwrap();
+    let mut full = NoveltySearch::new(NoveltyConfig { capacity: 30, ..every }, words().unwrap(), 7).unwrap();
+    for _ in 0..3 {
+        let scores = scores(&free, f64::from);
+        free.tell_scores(&scores).unwrap();
+        full.tell_scores(&scores).unwrap();
+    }
+    // Behaviors of two numbers, without those of failed evaluations.
+    let oldest = free.archive().len() - 2 * 30;
+    assert!(oldest > 0 && full.archive() == &free.archive()[oldest..]);
+    let mut small = NoveltySearch::new(NoveltyConfig { capacity: 29, ..every }, words().unwrap(), 7).unwrap();
+    assert!(small.restore(&full.save()).is_err());
+}
+
+#[test]
 fn it_conforms() {
     for rule in [ArchiveRule::Random { rate: 0.3 }, THRESHOLD] {
         check_strategy(|| NoveltySearch::new(config(rule), words()?, 7), 40).unwrap();
@@ -186,6 +203,7 @@ fn impossible_configurations_are_refused() {
     let base = NoveltyConfig::new(2);
     assert_eq!(refused(NoveltyConfig::new(0)), ("the number of descriptor values", 0.0));
     assert_eq!(refused(NoveltyConfig { neighbors: 0, ..base }), ("the number of neighbours", 0.0));
+    assert_eq!(refused(NoveltyConfig { capacity: 0, ..base }), ("the capacity of the archive", 0.0));
     let rule = |archive| NoveltyConfig { archive, ..base };
     assert_eq!(refused(rule(ArchiveRule::Random { rate: 1.5 })), ("the rate of the archive", 1.5));
     let threshold = |first, patience| ArchiveRule::Threshold { first, most: 4, patience };

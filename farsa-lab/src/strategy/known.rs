@@ -56,10 +56,11 @@ pub(crate) fn find(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::Settings;
     use crate::limits::Limits;
+    use crate::strategy::any_strategy::AnyStrategy;
     use crate::strategy::definition::StrategyStart;
+    use farsa_evo::Scores;
 
     #[test]
     fn names_are_words_and_of_one_strategy_each() {
@@ -74,25 +75,62 @@ mod tests {
         assert_eq!(error, "here: unknown strategy `cma`; the nearest is `cma-es`");
     }
 
+    /// Starts a strategy with its default settings over five genes and two measures.
+    fn start(strategy: &dyn StrategyDefinition, populations: usize) -> Result<AnyStrategy, Error> {
+        let settings = Settings::new(strategy.settings()).unwrap();
+        strategy.start(&StrategyStart {
+            populations,
+            trials: 3,
+            genes: 5,
+            gene_bits: 16,
+            objectives: 2,
+            measures: &[[0.0, 1.0], [-3.0, 5.0]],
+            settings: &settings,
+            seed: 3,
+            limits: Limits::DEFAULT,
+            evaluator: &|| Err(Error::Other("none".into())),
+        })
+    }
+
+    /// Reports the same fitness to all individuals of 2000 generations. Returns the largest standard deviation of a gene
+    /// in the last 100 generations, as the root of the mean variance.
+    fn deviation_without_selection(name: &str, search: &mut dyn farsa_evo::Strategy<f64>) -> f64 {
+        let mut variances = vec![0.0; search.ask().genome_len()];
+        for generation in 0..2000 {
+            let (population, shape) = (search.ask(), search.score_shape());
+            assert!(population.as_slice().iter().all(|gene| gene.is_finite()), "{name}, {generation}");
+            let count = population.len() as f64;
+            for (index, variance) in variances.iter_mut().enumerate().filter(|_| generation >= 1900) {
+                let genes = || population.iter().map(|genes| genes[index]);
+                let mean = genes().sum::<f64>() / count;
+                *variance += genes().map(|gene| (gene - mean) * (gene - mean)).sum::<f64>() / count / 100.0;
+            }
+            let values = vec![1.0; population.len() * shape.width()];
+            search.tell_scores(&Scores::nan_as_failed(shape, values).unwrap()).unwrap();
+        }
+        variances.into_iter().fold(0.0, f64::max).sqrt()
+    }
+
+    #[test]
+    fn default_steps_stay_within_the_range_without_selection() {
+        let mut count = 0;
+        for strategy in KNOWN {
+            let Ok(AnyStrategy::Reals(mut search)) = start(strategy, 1) else { continue };
+            let deviation = deviation_without_selection(strategy.name(), search.as_mut());
+            // Mutations of CoSyNE are Cauchy numbers, which have no deviation.
+            assert!(deviation < 2.1 || strategy.name() == "cosyne", "{}: {deviation}", strategy.name());
+            let state = search.snapshot().unwrap().save();
+            assert!(state.len() < 1_000_000, "{}: a state of {} bytes", strategy.name(), state.len());
+            count += 1;
+        }
+        assert_eq!(count, 15);
+    }
+
     #[test]
     fn all_start_with_their_defaults_in_one_population_and_in_several() {
-        let evaluator: &dyn Fn() -> Result<Box<dyn Evaluator>, Error> = &|| Err(Error::Other("none".into()));
         for strategy in KNOWN.iter().filter(|strategy| strategy.name() != "learning") {
-            let settings = Settings::new(strategy.settings()).unwrap();
             for populations in [1, 2] {
-                let start = StrategyStart {
-                    populations,
-                    trials: 3,
-                    genes: 5,
-                    gene_bits: 16,
-                    objectives: 2,
-                    measures: &[[0.0, 1.0], [-3.0, 5.0]],
-                    settings: &settings,
-                    seed: 3,
-                    limits: Limits::DEFAULT,
-                    evaluator,
-                };
-                let made = strategy.start(&start);
+                let made = start(*strategy, populations);
                 if [("one-plus-one", 2), ("generalist", 1)].contains(&(strategy.name(), populations)) {
                     assert!(made.is_err());
                     continue;

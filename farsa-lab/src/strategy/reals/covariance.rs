@@ -5,7 +5,7 @@ use farsa_evo::covariance::{
     SeparableCmaEsConfig,
 };
 
-use super::{SIGMA, count_or, population_of_genes, sigma, sizes};
+use super::{SIGMA, WIDTH, count_or, population_of_genes, sigma, sizes};
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::any_strategy::AnyStrategy;
@@ -55,7 +55,7 @@ pub(in crate::strategy) static CMA_ES: SimpleStrategy = SimpleStrategy {
 fn config(settings: &Settings, genes: usize) -> Result<CmaEsConfig, Error> {
     let plain = CmaEsConfig::new(vec![0.0; genes], settings.number(SIGMA)?);
     let population = count_or(settings, POPULATION, plain.population)?;
-    Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, ..plain })
+    Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, largest_step: WIDTH, ..plain })
 }
 
 /// CMA-ES with a triangular factor instead of axes, [`farsa_evo::covariance::CholeskyCmaEs`].
@@ -100,5 +100,6 @@ pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy
 fn separable(start: &StrategyStart<'_>) -> Result<AnyStrategy, Error> {
     let plain = SeparableCmaEsConfig::new(vec![0.0; start.genes], start.settings.number(SIGMA)?);
     let population = count_or(start.settings, POPULATION, plain.population)?;
-    start.reals(|seed| SeparableCmaEs::with_covariance(SeparableCmaEsConfig { population, ..plain.clone() }, seed))
+    let config = SeparableCmaEsConfig { population, largest_step: WIDTH, ..plain };
+    start.reals(|seed| SeparableCmaEs::with_covariance(config.clone(), seed))
 }

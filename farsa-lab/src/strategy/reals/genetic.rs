@@ -5,7 +5,7 @@ use farsa_evo::real::{
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
 
-use super::{SIGMA, bounds, number_or, sigma, sizes};
+use super::{SIGMA, WIDTH, bounds, number_or, sigma, sizes};
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart};
@@ -139,8 +139,8 @@ pub(in crate::strategy) static EVOLUTION_STRATEGY: SimpleStrategy = SimpleStrate
                 .doc("Whether offspring alone are selected from, or parents too, which may be evaluated again."),
             Setting::word(RECOMBINATION, "intermediate", &["intermediate", "discrete", "none"])
                 .given()
-                .doc("How genes of parents are mixed; step sizes are averaged, or inherited where nothing is mixed."),
-            Setting::word(STEP_SIZES, "per-gene", &["per-gene", "one"]).given().doc("How many step sizes there are."),
+                .doc("How genes of parents are mixed; step sizes are averaged by their logarithms, or inherited where nothing is mixed."),
+            Setting::word(STEP_SIZES, "one", &["one", "per-gene"]).doc("Step sizes of an individual."),
             sigma(0.5, "a quarter of each range"),
         ]);
         table
@@ -166,9 +166,10 @@ pub(in crate::strategy) static EVOLUTION_STRATEGY: SimpleStrategy = SimpleStrate
             recombination,
             step_recombination: if alone { Recombination::None } else { Recombination::Intermediate },
             step_sizes: match settings.word(STEP_SIZES)? {
-                "one" => StepSizes::one(genes),
-                _ => StepSizes::per_gene(genes),
+                "per-gene" => StepSizes::per_gene(genes),
+                _ => StepSizes::one(genes),
             },
+            largest_step: WIDTH,
             ..EvolutionStrategyConfig::new(vec![0.0; genes], settings.number(SIGMA)?)
         };
         start.reals(|seed| EvolutionStrategy::new(config.clone(), seed))

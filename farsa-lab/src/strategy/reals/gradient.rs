@@ -2,7 +2,7 @@
 
 use farsa_evo::gradient::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness};
 
-use super::{SIGMA, STEPS, count_or, number_or, pairs, population_of_pairs, sigma, sizes};
+use super::{SIGMA, STEPS, WIDTH, count_or, number_or, pairs, population_of_pairs, sigma, sizes};
 use crate::experiment::settings::Setting;
 use crate::strategy::settings::NORMALISE;
 use crate::strategy::simple::SimpleStrategy;
@@ -85,6 +85,7 @@ pub(in crate::strategy) static PGPE: SimpleStrategy = SimpleStrategy {
             sigma_learning_rate: settings.number(SIGMA_RATE)?,
             sigma_max_change: settings.number(SIGMA_CHANGE)?,
             fitness: if raw { PgpeFitness::Raw } else { PgpeFitness::CenteredRanks },
+            largest_step: WIDTH,
             ..plain
         };
         start.reals(|seed| Pgpe::new(config.clone(), seed))

@@ -33,6 +33,9 @@ pub(super) use pareto::NSGA2;
 
 const SIGMA: &str = "strategy.sigma";
 
+/// Width of the range of a real gene, beyond which a step size has no meaning.
+const WIDTH: f64 = 2.0;
+
 /// Gets the ranges of all genes.
 fn bounds(genes: usize) -> Vec<[f64; 2]> {
     vec![[-1.0, 1.0]; genes]
@@ -82,7 +85,7 @@ fn count_or(settings: &Settings, key: &str, default: usize) -> Result<usize, Err
 /// The step size of the first generation.
 fn sigma(default: f64, why: &str) -> Setting {
     let doc = format!("Step size of the first generation, in halves of each parameter's range; {why}.");
-    Setting::number(SIGMA, default, 1e-9..=10.0).doc(&doc)
+    Setting::number(SIGMA, default, 1e-9..=WIDTH).doc(&doc)
 }
 
 /// Length of the latest step and of the point.

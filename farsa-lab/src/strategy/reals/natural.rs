@@ -2,7 +2,7 @@
 
 use farsa_evo::gradient::{Snes, SnesConfig, Xnes, XnesConfig};
 
-use super::{SIGMA, count_or, number_or, population_of_genes, sigma, sizes};
+use super::{SIGMA, WIDTH, count_or, number_or, population_of_genes, sigma, sizes};
 use crate::experiment::settings::Setting;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart};
 use crate::strategy::settings::POPULATION;
@@ -39,6 +39,7 @@ pub(in crate::strategy) static XNES: SimpleStrategy = SimpleStrategy {
             mean_learning_rate: start.settings.number(MEAN_RATE)?,
             sigma_learning_rate: number_or(start.settings, SIGMA_RATE, plain.sigma_learning_rate)?,
             shape_learning_rate: number_or(start.settings, SHAPE_RATE, plain.shape_learning_rate)?,
+            largest_step: WIDTH,
             ..plain
         };
         start.reals(|seed| Xnes::new(config.clone(), seed))
@@ -62,6 +63,7 @@ pub(in crate::strategy) static SNES: SimpleStrategy = SimpleStrategy {
             population: count_or(start.settings, POPULATION, plain.population)?,
             mean_learning_rate: start.settings.number(MEAN_RATE)?,
             sigma_learning_rate: number_or(start.settings, SIGMA_RATE, plain.sigma_learning_rate)?,
+            largest_step: WIDTH,
             ..plain
         };
         start.reals(|seed| Snes::new(config.clone(), seed))
