@@ -118,7 +118,9 @@ impl<C: Cells + Clone> MapElites<C> {
         let archive = Archive::new(cells, config.bounds.len())?;
         let population = Population::new(config.population(), config.bounds.len())?;
         let improvement = |emitter: &Emitter| match emitter {
-            Emitter::Improvement { batch, mean, sigma } => Some(Improvement::new(mean.clone(), *sigma, *batch, &config.bounds)),
+            Emitter::Improvement { batch, mean, sigma } => {
+                Some(Improvement::new(mean.clone(), *sigma, *batch, &config.bounds))
+            }
             _ => None,
         };
         let improvements = config.emitters.iter().map(improvement).collect();

@@ -142,7 +142,12 @@ impl CmaEsRestarts {
         let progress = Progress::default();
         let run = Run { number: 0, blocks: 1, small: false, sigma: *sigma, evaluated: 0, most: 0, progress };
         let population = Population::new(*population, mean.len())?;
-        let distribution = Distribution::new(mean.clone(), *sigma, config.first.largest_step, config.first.coefficients_of(population.len()));
+        let distribution = Distribution::new(
+            mean.clone(),
+            *sigma,
+            config.first.largest_step,
+            config.first.coefficients_of(population.len()),
+        );
         let (points, told, spent) = (population.clone(), Vec::new(), [0, 0]);
         let (generation, large, latest) = (0, 1, 0);
         let mut search =

@@ -183,7 +183,7 @@ fn surviving_parents_keep_their_fitness() {
     assert!((0..20).any(|i| parents(&search, i) == [7]));
 }
 
-/// With the arithmetic mean of step sizes, their logarithm grows by about (1 - 1 / mu) (tau_0^2 + tau^2) / 2 = 0.28 in
+/// With the arithmetic mean of step sizes, their logarithm grows by about (1 - 1 / mu) (`tau_0^2` + `tau^2`) / 2 = 0.28 in
 /// each generation without selection. With the geometric mean it is a random walk, \[Hansen2006\].
 #[test]
 fn without_selection_step_sizes_have_no_bias() {

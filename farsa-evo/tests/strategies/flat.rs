@@ -189,7 +189,8 @@ fn genetic_algorithms() {
     let step = |search: &RealGa| WIDTH * largest(&search.diagnostics());
     endures("real-ga, self-adaptive", || RealGa::new(config.clone(), 1), step);
     endures("sss", || SteadyState::new(SteadyStateConfig::new(bounds()), 1), no_step);
-    endures("nsga2", || Nsga2::new(Nsga2Config::new(bounds(), 2), 1), no_step);
+    let config = Nsga2Config { population: 20, ..Nsga2Config::new(bounds(), 2) };
+    endures("nsga2", || Nsga2::new(config.clone(), 1), no_step);
     endures("cosyne", || Cosyne::new(CosyneConfig { range: BOX[1], ..CosyneConfig::new(GENES) }, 1), no_step);
 }
 
