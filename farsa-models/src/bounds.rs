@@ -44,9 +44,45 @@ pub(crate) fn range_in_file([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(high.min(-ENDLESS)), high.min(low.max(ENDLESS))]
 }
 
+/// Computes the ends that a range has in an MJCF. Equal ends are moved apart, because MuJoCo reads them as no limit.
+pub(crate) fn separated([low, high]: [f64; 2]) -> [f64; 2] {
+    [low, if low < high { high } else { low + (low.abs() * f64::EPSILON).max(f64::MIN_POSITIVE) }]
+}
+
+/// Computes the range of which [`separated`] makes these ends.
+pub(crate) fn joined([low, high]: [f64; 2]) -> [f64; 2] {
+    if separated([low; 2]) == [low, high] { [low; 2] } else { [low, high] }
+}
+
+/// Number in an MJCF for an effort of 0 [N m, N].
+const NO_EFFORT: f64 = 3.3e-308;
+
+/// Computes the largest effort in an MJCF. MuJoCo reads 0 as no limit.
+pub(crate) fn effort_in_file(largest: f64) -> f64 {
+    if largest == 0.0 { NO_EFFORT } else { largest }
+}
+
+/// Computes the largest effort that [`effort_in_file`] writes.
+pub(crate) fn effort_from_file(largest: f64) -> f64 {
+    if largest == NO_EFFORT { 0.0 } else { largest }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_ends_are_apart_in_files() {
+        for end in [0.0, 1.0, -1.0, 0.1, -3e-300, 5e-324, 1e9, -7e8] {
+            let ends = separated([end, end]);
+            assert!(ends[0] < ends[1] && ends[1] - ends[0] <= 1e-6 && joined(ends) == [end, end], "{ends:?}");
+        }
+        for range in [[0.0, 1e-300], [-1.0, 1.0], [1.0, 1.000_000_1]] {
+            assert_eq!(joined(separated(range)), range);
+        }
+        assert!(effort_in_file(0.0) > 0.0 && effort_from_file(effort_in_file(0.0)) == 0.0);
+        assert_eq!(effort_from_file(effort_in_file(0.25)), 0.25);
+    }
 
     #[test]
     fn ranges_are_read_as_they_were_written() {

@@ -9,6 +9,7 @@ use crate::error::ReadError;
 use crate::files::ModelFiles;
 use crate::frame::Frame;
 use crate::mjcf;
+use crate::mjcf::read::ModelParts;
 use crate::options::ReadOptions;
 use crate::urdf;
 use crate::warnings::{Warning, Warnings};
@@ -23,15 +24,19 @@ use crate::xml::tree::Tree;
 /// An MJCF is read with `compiler`, `default` classes, `include`, bodies and `frame`s. Inertials are used if they
 /// exist, and otherwise inertias of the geoms. Hinges, slides and free joints have range, damping, armature and
 /// `ref`. Geoms and contact pairs have exclusions and surfaces at rest. Actuators on joints can be motors, position
-/// and velocity actuators (also as `general`).
+/// and velocity actuators (also as `general`). Flags of `option` that change the robot are applied. Gravity is in
+/// [`Imported::gravity`], because it belongs to the world.
 ///
 /// If a name is unknown, you get an error with the nearest valid name. Parts that a description cannot hold are
-/// listed in [`Imported::warnings`]. However, if leaving them out would make a different robot, this is an error.
+/// listed in [`Imported::warnings`], and so is every attribute of an MJCF that nothing has read. However, if leaving them out would make a different robot, this is an error.
 /// Examples are ball joints, `attach`, `replicate`, `composite` and `flexcomp`.
 ///
 /// **Rules of translation.**
 /// - *Several joints of a MuJoCo body* are separated by additional segments, which are named after body and joint. Since
 ///   every moving segment needs a mass, each of them gets a small share of the body's mass ([`ReadOptions::between`]).
+/// - *Limits* follow MuJoCo 4. Equal ends of a range are no limit. The `actuatorfrcrange` of a joint limits each of its
+///   actuators.
+/// - *A pair that is declared twice* has the springs and dampers of both declarations.
 /// - *If a joint is not at its body's origin*, the frame of the segment is at the joint. You can get the frame of the
 ///   body from [`Imported::frames`].
 /// - *Fixed links* remain segments. If a moving link has no mass, it takes over the mass of the links fixed to it.
@@ -60,6 +65,10 @@ pub struct Imported {
     pub robot: Robot,
     /// Frames of all links or bodies, in the order of the file.
     pub frames: Vec<Frame>,
+    /// Gravity [m/s2], if an MJCF sets it.
+    pub gravity: Option<[f64; 3]>,
+    /// False if an MJCF disables all contacts. The robot then has no pairs.
+    pub contacts: bool,
     /// Warnings about omitted and replaced parts, in alphabetical order.
     pub warnings: Vec<Warning>,
 }
@@ -105,13 +114,17 @@ impl Imported {
         let mut context = Context { files, options, warnings: Warnings::default(), elements: 0 };
         let tree = Tree::parse(file, text, &mut context)?;
         let root = tree.root();
-        let (robot, frames) = match root.tag() {
-            "robot" => urdf::read::read(&tree, &mut context)?,
+        let parts = match root.tag() {
+            "robot" => {
+                let (robot, frames) = urdf::read::read(&tree, &mut context)?;
+                ModelParts { robot, frames, gravity: None, contacts: true }
+            }
             "mujoco" => mjcf::read::read(&tree, &mut context)?,
             _ => return Err(root.unknown("root of a model", root.tag(), ["robot", "mujoco"])),
         };
+        let ModelParts { robot, frames, gravity, contacts } = parts;
         robot.validate().map_err(|error| ReadError::Robot { file: file.into(), error })?;
-        Ok(Self { robot, frames, warnings: context.warnings.list() })
+        Ok(Self { robot, frames, gravity, contacts, warnings: context.warnings.list() })
     }
 
     /// Finds the frame of a link or body by its name in the file. If there is no such name, this returns `None`.

@@ -20,6 +20,16 @@ pub(crate) fn repair_masses(
     warnings: &mut Warnings,
 ) -> Result<(), ReadError> {
     move_fixed_masses(robot, locations, warnings);
+    check_masses(robot, locations, repair, warnings)
+}
+
+/// Repairs masses as asked for, and refuses those that no body can have.
+pub(crate) fn check_masses(
+    robot: &mut Robot,
+    locations: &[SourceLocation],
+    repair: &Repair,
+    warnings: &mut Warnings,
+) -> Result<(), ReadError> {
     for (segment, place) in robot.segments.iter_mut().zip(locations) {
         let moves = segment.joint.kind != JointKind::Fixed;
         let mut body = segment.mass_properties();
@@ -59,7 +69,7 @@ pub(crate) fn repaired(body: &MassProperties, moves: bool, repair: &Repair) -> O
 }
 
 /// Moves the masses of fixed links to the moving one that carries them, where it has none itself.
-fn move_fixed_masses(robot: &mut Robot, locations: &[SourceLocation], warnings: &mut Warnings) {
+pub(crate) fn move_fixed_masses(robot: &mut Robot, locations: &[SourceLocation], warnings: &mut Warnings) {
     let without: Vec<bool> =
         robot.segments.iter().map(|segment| segment.joint.kind != JointKind::Fixed && segment.mass == 0.0).collect();
     // The segment whose motion each shares, and its place in that one's frame.

@@ -25,6 +25,9 @@ pub(crate) struct Summary {
     colliders: usize,
     pairs: usize,
     mass: f64,
+    /// `None` if the file does not set it.
+    gravity: Option<[f64; 3]>,
+    contacts: bool,
     notes: Vec<String>,
 }
 
@@ -73,7 +76,11 @@ pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error
 /// [`Error::Other`] if it cannot be written.
 pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String, Error> {
     let text = match format {
-        ModelFormat::Mjcf => mjcf::write(&reading.robot, &MjcfOptions::default()),
+        ModelFormat::Mjcf => {
+            let usual = MjcfOptions::default();
+            let gravity = reading.gravity.unwrap_or(usual.gravity);
+            mjcf::write(&reading.robot, &MjcfOptions { gravity, ..usual })
+        }
         ModelFormat::Urdf => urdf::write(&reading.robot),
     };
     text.map_err(|error| Error::Other(error.to_string()))
@@ -124,12 +131,14 @@ impl Summary {
             colliders: robot.colliders.len(),
             pairs: robot.pairs.len(),
             mass: robot.segments.iter().map(|segment| segment.mass).sum(),
+            gravity: reading.gravity,
+            contacts: reading.contacts,
             notes: reading.warnings.iter().map(ToString::to_string).collect(),
         }
     }
 
     pub(crate) fn text(&self) -> String {
-        let Self { robot, file, segments, joints, colliders, pairs, mass, notes } = self;
+        let Self { robot, file, segments, joints, colliders, pairs, mass, gravity, contacts, notes } = self;
         // A long name would widen every line.
         let line = |text: &str| OneLine(shortened(text)).to_string();
         let mut text = format!(
@@ -139,6 +148,12 @@ impl Summary {
             joints.len()
         );
         // Writing to a string cannot fail.
+        if let Some([x, y, z]) = gravity {
+            let _ = writeln!(text, "gravity {x} {y} {z} m/s2");
+        }
+        if !contacts {
+            text.push_str("all contacts are disabled\n");
+        }
         let width =
             |of: fn(&JointSummary) -> &str| joints.iter().map(|j| line(of(j)).chars().count()).max().unwrap_or(0);
         let (names, carried) = (width(|joint| &joint.name), width(|joint| &joint.segment));
@@ -192,8 +207,18 @@ mod tests {
         };
         let [robot, file, _] = names.clone();
         let joints = names.iter().map(joint).collect();
-        let summary =
-            Summary { robot, file, segments: 4, joints, colliders: 0, pairs: 0, mass: 1.0, notes: names[..2].into() };
+        let summary = Summary {
+            robot,
+            file,
+            segments: 4,
+            joints,
+            colliders: 0,
+            pairs: 0,
+            mass: 1.0,
+            gravity: None,
+            contacts: true,
+            notes: names[..2].into(),
+        };
         let text = summary.text();
         assert_eq!(text.lines().count(), 2 + 3 + 1 + 2, "{text}");
         assert!(text.starts_with("a\\nerror: b: \\u{1b}[2J\\u{9b}\n4 segments"), "{text}");

@@ -11,12 +11,13 @@ use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
-use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
+use crate::mjcf::compiler::{Compiler, ROTATIONS};
 use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
 use crate::mjcf::inertials::body_mass;
 use crate::mjcf::items::{Item, items};
-use crate::mjcf::joints::{check_joint, joint};
+use crate::mjcf::joints::{BodyJoint, check_joint, joint};
 use crate::mjcf::names::Names;
+use crate::mjcf::reasons::SHOW;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
@@ -46,6 +47,10 @@ pub(crate) struct Bodies<'t, 'c> {
     pub(crate) list: Vec<Body>,
     pub(crate) by_name: BTreeMap<String, usize>,
     pub(crate) joints: BTreeMap<String, JointId>,
+    /// Segments of each body with several joints, with their origins in the body's frame.
+    chains: Vec<Vec<(BodyId, [f64; 3])>>,
+    /// Largest efforts of joints.
+    pub(crate) efforts: Vec<(JointId, f64, SourceLocation)>,
     pub(crate) geoms: Vec<Geom<'t, 'c>>,
     /// Geoms that pairs name.
     paired: BTreeSet<&'t str>,
@@ -99,6 +104,8 @@ impl<'t, 'c> Bodies<'t, 'c> {
             list: vec![Body { segment: None, parent: 0, carrier: 0 }],
             by_name: BTreeMap::from([("world".to_owned(), 0)]),
             joints: BTreeMap::new(),
+            chains: Vec::new(),
+            efforts: Vec::new(),
             geoms: Vec::new(),
             paired,
             joint_number: 0,
@@ -117,7 +124,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         self.take_names(&worlds)?;
         for world in worlds {
             world.check(&[], &[], &mut context.warnings)?;
-            let items = items(world, 0, self.compiler, self.classes, context)?;
+            let items = items(world, self.classes.main(), self.compiler, self.classes, context)?;
             self.colliders(robot, 0, &Pose::identity(), &items, context)?;
             if let Some((joint, ..)) =
                 items.iter().find(|(e, ..)| ["joint", "freejoint", "inertial"].contains(&e.tag()))
@@ -215,14 +222,14 @@ impl<'t, 'c> Bodies<'t, 'c> {
         robot: &mut Robot,
         locations: &mut Vec<SourceLocation>,
         piece: &Piece<'_, 't>,
-        joints: Vec<(Joint, [f64; 3])>,
+        joints: Vec<BodyJoint>,
         context: &mut Context<'_>,
     ) -> (Option<BodyId>, Pose<f64>) {
         let Piece { element, name, carrying, placement, mass } = *piece;
         let (count, share) = (joints.len(), context.options.between);
         // The body's frame in that of the last segment. Before the first joint it is the body's place.
-        let (mut last, mut frame) = (carrying, placement);
-        for (i, (joint, anchor)) in joints.into_iter().enumerate() {
+        let (mut last, mut frame, mut chain) = (carrying, placement, Vec::with_capacity(count));
+        for (i, BodyJoint { joint, anchor, effort }) in joints.into_iter().enumerate() {
             // A segment's frame is at its joint: the anchor is the origin, and the body's frame is off by minus the anchor.
             let at_anchor = frame.compose(&Pose::at(anchor));
             let joint = Joint { placement: at_anchor.compose(&joint.placement), ..joint };
@@ -239,8 +246,10 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let id = robot.add_segment(Segment::new(&segment, last, joint, part));
             if let Some(joint) = single {
                 self.joints.insert(joint, JointId(id.0));
+                self.efforts.extend(effort.map(|(largest, place)| (JointId(id.0), largest, place)));
             }
             locations.push(element.place());
+            chain.push((id, anchor));
             last = Some(id);
         }
         if count > 1 {
@@ -249,8 +258,29 @@ impl<'t, 'c> Bodies<'t, 'c> {
                 "body with several joints",
                 "got segments with a share of its mass between",
             );
+            self.chains.push(chain);
         }
         (last, frame)
+    }
+
+    /// Gives segments between the joints of a body their share of the mass that the body took over from others.
+    pub(crate) fn share_masses(&self, robot: &mut Robot, share: f64) {
+        let put = |segment: &mut Segment, mass: &MassProperties, origin: [f64; 3]| {
+            (segment.mass, segment.inertia) = (mass.mass, mass.inertia);
+            segment.centre = [0, 1, 2].map(|k| mass.centre[k] - origin[k]);
+        };
+        for chain in &self.chains {
+            let [between @ .., (last, origin)] = chain.as_slice() else { continue };
+            let back = Pose::at(*origin);
+            let mass = robot.segments[last.index()].mass_properties().placed(&back);
+            if mass.mass == 0.0 || between.iter().any(|(id, _)| robot.segments[id.index()].mass > 0.0) {
+                continue;
+            }
+            put(&mut robot.segments[last.index()], &scaled(&mass, 1.0 - share * between.len() as f64), *origin);
+            for (id, anchor) in between {
+                put(&mut robot.segments[id.index()], &scaled(&mass, share), *anchor);
+            }
+        }
     }
 
     /// The segment of a body and where its frame is in it.
@@ -267,15 +297,14 @@ impl<'t, 'c> Bodies<'t, 'c> {
         body: Element<'t>,
         items: &[Item<'t>],
         context: &mut Context<'_>,
-    ) -> Result<Vec<(Joint, [f64; 3])>, ReadError> {
+    ) -> Result<Vec<BodyJoint>, ReadError> {
         let mut joints = Vec::new();
         for (element, within, class) in items {
             let number = self.joint_number;
             let made = match element.tag() {
                 "freejoint" => {
                     element.check(&["name"], &[("align group", "how MuJoCo computes")], &mut context.warnings)?;
-                    let name = element.attribute("name").unwrap_or_default().to_owned();
-                    (Joint { name, ..Joint::floating(Pose::identity()) }, [0.0; 3])
+                    BodyJoint::free(*element)
                 }
                 "joint" => {
                     check_joint(*element, &mut context.warnings)?;
@@ -309,6 +338,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let classed = self.classes.with(*element, *class)?;
             let number = self.geom_number;
             self.geom_number += 1;
+            element.skip(&CONDITIONAL);
             // The checks of a geom's numbers come with its pairs. Here any bit will do.
             let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
             let touches = bits("contype")? | bits("conaffinity")?;
@@ -316,9 +346,13 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let named = own.is_some_and(|name| self.paired.contains(name));
             if classed.text("type") == Some("mesh") && !touches && !named {
                 context.warnings.add(element.place(), "geom of a mesh that touches nothing", SHOW);
+                element.leave();
                 continue;
             }
-            let Some((solid, at)) = geom(&classed, within, self.compiler, &self.meshes, context)? else { continue };
+            let Some((solid, at)) = geom(&classed, within, self.compiler, &self.meshes, context)? else {
+                element.leave();
+                continue;
+            };
             let (shape, inner, why) = solid.shape();
             if let Some(why) = why {
                 context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
@@ -345,6 +379,21 @@ impl<'t, 'c> Bodies<'t, 'c> {
     }
 }
 
+/// Attributes of a geom without effect in MuJoCo, if it touches nothing or its body has an `inertial`.
+const CONDITIONAL: [&str; 11] = [
+    "contype",
+    "conaffinity",
+    "condim",
+    "priority",
+    "friction",
+    "solref",
+    "solimp",
+    "solmix",
+    "mass",
+    "density",
+    "shellinertia",
+];
+
 fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
     let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
     let ignored = [
@@ -356,8 +405,8 @@ fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadE
 }
 
 /// Refuses a free joint on a body within another or next to other joints, which MuJoCo's format excludes.
-fn check_free(body: Element<'_>, parent: usize, joints: &[(Joint, [f64; 3])]) -> Result<(), ReadError> {
-    if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
+fn check_free(body: Element<'_>, parent: usize, joints: &[BodyJoint]) -> Result<(), ReadError> {
+    if joints.iter().any(|BodyJoint { joint, .. }| joint.kind == JointKind::Floating) {
         if parent != 0 {
             return Err(body.unsupported("a free joint on a body; only bodies in the world can be free"));
         }

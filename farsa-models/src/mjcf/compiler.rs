@@ -1,4 +1,4 @@
-//! Settings of an MJCF file's `compiler` elements, and the places that they give a meaning.
+//! Settings of an MJCF file's `compiler` and `option` elements, and the places that they give a meaning.
 
 use farsa_body::Pose;
 use farsa_num::sin_cos;
@@ -6,13 +6,11 @@ use farsa_num::sin_cos;
 use crate::context::Context;
 use crate::error::ReadError;
 use crate::mesh::principal_axes::{rotation_of_axes, rotation_to};
+use crate::mjcf::flags::Flags;
+use crate::mjcf::reasons::{MUJOCO, SHOW};
 use crate::options::Repair;
 use crate::vector::{cross, norm};
 use crate::xml::tree::Element;
-
-/// Reasons why attributes are ignored, for each element. The attributes are those of MuJoCo's schema.
-pub(crate) const SHOW: &str = "only for show";
-pub(crate) const MUJOCO: &str = "how MuJoCo computes";
 
 /// Attributes for a rotation.
 pub(crate) const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
@@ -32,6 +30,7 @@ pub(crate) struct Compiler {
     /// Fits primitives around the points of a mesh instead of to its moments.
     pub(crate) fit_around: bool,
     pub(crate) strip_path: bool,
+    pub(crate) flags: Flags,
 }
 
 impl Compiler {
@@ -47,6 +46,7 @@ impl Compiler {
             mesh_folder: String::new(),
             fit_around: false,
             strip_path: false,
+            flags: Flags::from_model(model, context)?,
         };
         for element in model.all("compiler") {
             settings.add(element, context)?;
@@ -85,6 +85,7 @@ impl Compiler {
             ),
         ];
         element.check(&read, &ignored, &mut context.warnings)?;
+        element.check_children(&[], &[("lengthrange", MUJOCO)], &mut context.warnings)?;
         let truth = |name| Ok::<_, ReadError>(element.word(name, &["true", "false"])?.map(|word| word == "true"));
         match element.word("angle", &["degree", "radian"])? {
             Some("radian") => self.angle = 1.0,
@@ -111,6 +112,7 @@ impl Compiler {
         self.repair.least_mass = element.number("boundmass")?.unwrap_or(self.repair.least_mass);
         self.repair.least_inertia = element.number("boundinertia")?.unwrap_or(self.repair.least_inertia);
         self.total_mass = element.number("settotalmass")?.unwrap_or(self.total_mass);
+        element.skip(&["assetdir"]);
         if let Some(folder) = element.attribute("meshdir").or_else(|| element.attribute("assetdir")) {
             self.mesh_folder = folder.into();
         }
@@ -134,7 +136,7 @@ impl Compiler {
     }
 
     fn rotation(&self, element: Element<'_>) -> Result<Option<[f64; 4]>, ReadError> {
-        let given: Vec<&str> = ROTATIONS.into_iter().filter(|name| element.attribute(name).is_some()).collect();
+        let given: Vec<&str> = ROTATIONS.into_iter().filter(|name| element.has(name)).collect();
         let &[name] = given.as_slice() else {
             return match given.as_slice() {
                 [first, second, ..] => {

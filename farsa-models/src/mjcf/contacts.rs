@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::robot::{Robot, Shape};
+use farsa_body::robot::{Robot, Shape, Surface};
 
 use crate::context::Context;
-use crate::error::{ReadError, repeated};
+use crate::error::ReadError;
 use crate::mjcf::bodies::{Bodies, Geom};
 use crate::mjcf::classes::Classes;
+use crate::mjcf::flags::Flags;
 use crate::mjcf::inverse_weight::inverse_weights;
 use crate::mjcf::surface::{Contact, contact_of, mixed, overridden};
 use crate::warnings::Warnings;
@@ -43,14 +44,18 @@ pub(crate) fn contacts<'t>(
     robot: &mut Robot,
     classes: &Classes<'t>,
     bodies: &Bodies<'t, '_>,
+    flags: &Flags,
     context: &mut Context<'_>,
 ) -> Result<(), ReadError> {
     for element in classes.elements().filter(|element| element.tag() == "pair") {
         check_pair(element, &mut context.warnings)?;
     }
     let declared = Declared::from_model(model, robot, classes, bodies, &mut context.warnings)?;
+    if !flags.contact {
+        return Ok(());
+    }
     let touching = touching(bodies, context.options.limits.contacts)?;
-    let generated = generated(robot, bodies, &touching, &declared)?;
+    let generated = generated(robot, bodies, &touching, &declared, flags)?;
     if declared.pairs.is_empty() && generated.is_empty() {
         return Ok(());
     }
@@ -59,7 +64,7 @@ pub(crate) fn contacts<'t>(
         context.warnings.add(model.place(), "contype, conaffinity", what);
     }
     let pairs = declared.pairs.into_iter().chain(generated);
-    add_pairs(model, robot, pairs, &mut context.warnings)
+    add_pairs(model, robot, pairs, flags, &mut context.warnings)
 }
 
 impl Declared {
@@ -85,6 +90,8 @@ impl Declared {
                 // A pair with a geom that was left out is left out with it.
                 if let (Some(a), Some(b)) = (a?, b?) {
                     declared.pair(element, [a, b], robot, classes, warnings)?;
+                } else {
+                    element.leave();
                 }
             }
         }
@@ -103,7 +110,9 @@ impl Declared {
             let body = bodies.by_name.get(name).copied();
             body.ok_or_else(|| element.unknown("body", name, bodies.by_name.keys().map(String::as_str)))
         });
-        self.excluded.insert(ascending([a?, b?]));
+        if !self.excluded.insert(ascending([a?, b?])) {
+            warnings.add(element.place(), "exclude", "declared already");
+        }
         Ok(())
     }
 
@@ -116,11 +125,14 @@ impl Declared {
         warnings: &mut Warnings,
     ) -> Result<(), ReadError> {
         let colliders = [a.collider, b.collider];
-        if let Some(first) = self.lines.insert(ascending(colliders), element.place().line) {
-            let name = [element.needed("geom1")?, element.needed("geom2")?].join("` and `");
-            return Err(repeated(element.place(), "pair of", &name, first));
+        let first = self.lines.insert(ascending(colliders), element.place().line);
+        if first.is_some() {
+            warnings.add(element.place(), "pair", "declared already: a contact has the springs and dampers of both");
         }
-        let contact = overridden(&classes.with(element, 0)?, &mixed(&contact_of(a)?, &contact_of(b)?))?;
+        let contact = overridden(
+            &classes.with(element, classes.main())?,
+            &mixed(&contact_of(&a.classed)?, &contact_of(&b.classed)?),
+        )?;
         if possible(robot, colliders) {
             self.pairs.push((colliders, contact));
         } else {
@@ -161,7 +173,7 @@ fn touching<'b, 't, 'c>(bodies: &'b Bodies<'t, 'c>, most: usize) -> Result<Vec<T
             if (0.0..=4_294_967_295.0).contains(&number) { Ok(number as u32) } else { Err(wrong()) }
         };
         let (contype, conaffinity) = (bits("contype")?, bits("conaffinity")?);
-        touching.push(Touching { geom, contype, conaffinity, contact: contact_of(geom)? });
+        touching.push(Touching { geom, contype, conaffinity, contact: contact_of(classed)? });
     }
     touching.retain(|one| one.contype != 0 || one.conaffinity != 0);
     if let Some(beyond) = touching.get(most) {
@@ -179,13 +191,14 @@ fn generated(
     bodies: &Bodies<'_, '_>,
     touching: &[Touching<'_, '_, '_>],
     declared: &Declared,
+    flags: &Flags,
 ) -> Result<Vec<PairContact>, ReadError> {
     let mut pairs = Vec::new();
     for (i, a) in touching.iter().enumerate() {
         for b in &touching[i + 1..] {
             let colliders = ascending([a.geom.collider, b.geom.collider]);
             let meet = a.contype & b.conaffinity != 0 || b.contype & a.conaffinity != 0;
-            if !meet || !apart(bodies, a.geom.body, b.geom.body) || declared.lines.contains_key(&colliders) {
+            if !meet || !apart(bodies, a.geom.body, b.geom.body, flags) || declared.lines.contains_key(&colliders) {
                 continue;
             }
             if declared.excluded.contains(&ascending([a.geom.body, b.geom.body])) || !possible(robot, colliders) {
@@ -207,20 +220,44 @@ fn add_pairs(
     model: Element<'_>,
     robot: &mut Robot,
     pairs: impl Iterator<Item = PairContact>,
+    flags: &Flags,
     warnings: &mut Warnings,
 ) -> Result<(), ReadError> {
     let weights = inverse_weights(robot).map_err(|error| ReadError::Robot { file: model.place().file, error })?;
-    for (colliders, contact) in pairs {
+    let mut surfaces: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    for (colliders, mut contact) in pairs {
         let w: f64 = colliders
             .iter()
             .map(|collider| robot.colliders[*collider].body.map_or(0.0, |body| weights[body.index()]))
             .sum();
+        if let Some(numbers) = &flags.contacts {
+            numbers.apply(&mut contact);
+        }
         if contact.dimensions == 4.0 {
             warnings.add(model.place(), "condim 4", "friction about the normal alone is left out");
         }
-        robot.add_pair(colliders, contact.surface(w));
+        let surface = contact.surface(w);
+        if let Some(first) = surfaces.get(&ascending(colliders)) {
+            let first = &mut robot.pairs[*first].surface;
+            *first = both(first, &surface);
+        } else {
+            surfaces.insert(ascending(colliders), robot.pairs.len());
+            robot.add_pair(colliders, surface);
+        }
     }
     Ok(())
+}
+
+/// Returns the surface of two contacts at the same place: their forces add up, and so does their friction.
+fn both(a: &Surface, b: &Surface) -> Surface {
+    let stiffness = a.stiffness + b.stiffness;
+    let mean = |x: f64, y: f64| (x * a.stiffness + y * b.stiffness) / stiffness;
+    Surface {
+        friction: mean(a.friction, b.friction),
+        rolling_friction: mean(a.rolling_friction, b.rolling_friction),
+        stiffness,
+        damping: a.damping + b.damping,
+    }
 }
 
 fn check_pair(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
@@ -241,9 +278,9 @@ fn possible(robot: &Robot, [a, b]: [usize; 2]) -> bool {
 /// Bodies without joints count as part of their carrier ("welded" in MuJoCo's documentation). Parent and child are kept
 /// apart because their geoms overlap at the joint by design. The world as a parent is the exception, or nothing could
 /// rest on the ground.
-fn apart(bodies: &Bodies<'_, '_>, a: usize, b: usize) -> bool {
+fn apart(bodies: &Bodies<'_, '_>, a: usize, b: usize, flags: &Flags) -> bool {
     let carrier = |body: usize| bodies.list[body].carrier;
     let (a, b) = (carrier(a), carrier(b));
     let above = |body: usize| carrier(bodies.list[body].parent);
-    a != b && (a == 0 || b == 0 || (above(a) != b && above(b) != a))
+    a != b && (!flags.filter_parent || a == 0 || b == 0 || (above(a) != b && above(b) != a))
 }

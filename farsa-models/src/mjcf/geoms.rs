@@ -16,7 +16,8 @@ use crate::mesh::principal_axes::rotation_to;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::mjcf::classes::{Classed, Classes};
-use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
+use crate::mjcf::compiler::{Compiler, ROTATIONS};
+use crate::mjcf::reasons::SHOW;
 use crate::options::Meshes;
 use crate::vector::norm;
 use crate::warnings::Warnings;
@@ -56,7 +57,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
                     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
                 });
                 let name = element.attribute("name").or(file).ok_or_else(|| element.missing("name or file"))?;
-                let asset = MeshAsset { classed: classes.with(element, 0)?, fit: Cell::new(None) };
+                let asset = MeshAsset { classed: classes.with(element, classes.main())?, fit: Cell::new(None) };
                 if let Some(first) = all.insert(name.into(), asset) {
                     let (place, first) = (element.place(), first.classed.element.place().line);
                     return Err(repeated(place, "mesh", name, first));

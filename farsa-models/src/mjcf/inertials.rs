@@ -33,6 +33,9 @@ pub(crate) fn body_mass<'t>(
         (Some((element, within, _)), None | Some(false)) => given_mass(*element, within, compiler, context),
         (None, Some(false)) => Ok(none),
         _ => {
+            if let Some((element, ..)) = inertial {
+                element.leave();
+            }
             let mut sum = none;
             for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
                 let classed = classes.with(*element, *class)?;

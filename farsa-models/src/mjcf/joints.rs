@@ -3,11 +3,12 @@
 use farsa_body::Pose;
 use farsa_body::robot::{Joint, JointKind};
 
-use crate::bounds::range_from_file;
+use crate::bounds::{joined, range_from_file};
 use crate::context::Context;
-use crate::error::ReadError;
+use crate::error::{ReadError, SourceLocation};
 use crate::mjcf::classes::Classed;
-use crate::mjcf::compiler::{Compiler, SHOW};
+use crate::mjcf::compiler::Compiler;
+use crate::mjcf::reasons::SHOW;
 use crate::vector::norm;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
@@ -26,34 +27,70 @@ pub(crate) fn check_joint(element: Element<'_>, warnings: &mut Warnings) -> Resu
         "damping",
         "stiffness",
         "frictionloss",
+        "actuatorfrcrange",
+        "actuatorfrclimited",
     ];
     let ignored = [
         ("group", SHOW),
         ("springref springyield", "a joint's spring is not described"),
         ("springdamper", "a joint's spring is not described, nor the damping that follows from it"),
         ("solreflimit solimplimit solreffriction solimpfriction margin", "stops are the world's"),
-        ("actuatorfrcrange actuatorfrclimited", "actuators have a limit each"),
         ("actuatorgravcomp", "weights are not compensated"),
         ("user", "a user's own"),
     ];
     element.check(&read, &ignored, warnings)
 }
 
-/// A joint with its placement relative to its anchor, next to it.
+/// A joint of a body.
+pub(crate) struct BodyJoint {
+    /// Joint with its placement relative to its anchor.
+    pub(crate) joint: Joint,
+    /// Place in the frame that the previous joint left.
+    pub(crate) anchor: [f64; 3],
+    /// Largest effort of all actuators, and the line that gives it.
+    pub(crate) effort: Option<(f64, SourceLocation)>,
+}
+
+impl BodyJoint {
+    pub(crate) fn free(element: Element<'_>) -> Self {
+        let name = element.attribute("name").unwrap_or_default().into();
+        let joint = Joint { name, ..Joint::floating(Pose::identity()) };
+        Self { joint, anchor: [0.0; 3], effort: None }
+    }
+}
+
+/// Notes what a free joint cannot have.
+fn check_free(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) -> Result<(), ReadError> {
+    let flags = &compiler.flags;
+    for (name, applies) in [
+        ("armature", true),
+        ("damping", flags.damper),
+        ("stiffness", flags.spring),
+        ("frictionloss", flags.friction_loss),
+    ] {
+        let given = classed.list(name, 1, 3)?.is_some_and(|list| list.iter().any(|x| *x != 0.0));
+        if applies && given {
+            warnings.add(classed.element.place(), format!("free joint `{name}`"), "left out: free bodies have none");
+        }
+    }
+    Ok(())
+}
+
+/// Reads a joint, at a place in its body's frame.
 pub(crate) fn joint(
     classed: &Classed<'_, '_>,
     name: &str,
     within: &Pose<f64>,
     compiler: &Compiler,
     context: &mut Context<'_>,
-) -> Result<(Joint, [f64; 3]), ReadError> {
+) -> Result<BodyJoint, ReadError> {
     let element = classed.element;
     let kind = match classed.word("type", &["hinge", "slide", "ball", "free"])? {
         Some("slide") => JointKind::Prismatic,
         Some("ball") => return Err(element.unsupported("ball joints cannot be described; three hinges can")),
         Some("free") => {
-            let own = element.attribute("name").unwrap_or_default();
-            return Ok((Joint { name: own.into(), ..Joint::floating(Pose::identity()) }, [0.0; 3]));
+            check_free(classed, compiler, &mut context.warnings)?;
+            return Ok(BodyJoint::free(element));
         }
         _ => JointKind::Revolute,
     };
@@ -64,26 +101,22 @@ pub(crate) fn joint(
         let source = classed.source("axis").unwrap_or(element);
         return Err(source.wrong("axis", source.attribute("axis").unwrap_or_default(), "but must be a direction"));
     }
-    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-    if classed.limited("limited", "range", compiler.automatic_limits)? {
-        let source = classed.source("range").ok_or_else(|| element.missing("range"))?;
-        let list = classed.list("range", 2, 2)?.unwrap_or_default();
-        let [low, high] = [list[0] * unit, list[1] * unit];
-        if low > high {
-            let text = source.attribute("range").unwrap_or_default();
-            return Err(source.wrong("range", text, "but must not end before it begins"));
-        }
-        range = range_from_file([low, high]);
-    }
-    for (name, why) in
-        [("stiffness", "a joint's spring is not described"), ("frictionloss", "a joint's friction is not described")]
-    {
-        if classed.list(name, 1, 3)?.is_some_and(|list| list.iter().any(|x| *x != 0.0)) {
+    let ends = classed.limits("limited", "range", compiler.automatic_limits, &mut context.warnings)?;
+    let ends = ends.filter(|_| compiler.flags.limit);
+    let range =
+        ends.map_or([f64::NEG_INFINITY, f64::INFINITY], |ends| range_from_file(joined(ends.map(|end| end * unit))));
+    let flags = &compiler.flags;
+    for (name, why, applies) in [
+        ("stiffness", "a joint's spring is not described", flags.spring),
+        ("frictionloss", "a joint's friction is not described", flags.friction_loss),
+    ] {
+        let given = classed.list(name, 1, 3)?.is_some_and(|list| list.iter().any(|x| *x != 0.0));
+        if applies && given {
             context.warnings.add(element.place(), format!("joint `{name}`"), why);
         }
     }
     // Numbers after the first belong to higher powers of the speed.
-    let damping = classed.list("damping", 1, 3)?.unwrap_or_else(|| vec![0.0]);
+    let damping = classed.list("damping", 1, 3)?.filter(|_| flags.damper).unwrap_or_else(|| vec![0.0]);
     if damping.iter().skip(1).any(|x| *x != 0.0) {
         context.warnings.add(element.place(), "joint `damping`", "only what is proportional to the speed is described");
     }
@@ -108,5 +141,8 @@ pub(crate) fn joint(
             Pose::at(axis.map(|part| -part * reference))
         };
     }
-    Ok((joint, anchor))
+    let automatic = compiler.automatic_limits;
+    let effort = classed.largest("actuatorfrclimited", "actuatorfrcrange", automatic, &mut context.warnings)?;
+    let effort = effort.map(|largest| (largest, element.place()));
+    Ok(BodyJoint { joint, anchor, effort })
 }

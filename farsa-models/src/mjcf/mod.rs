@@ -5,8 +5,14 @@
 /// Entry: the sections of a model, one after the other.
 pub(crate) mod read;
 
+/// Reasons for which parts are ignored.
+mod reasons;
+
 /// Settings of `compiler` elements, and the places and rotations that depend on them.
 mod compiler;
+
+/// Settings of `option` elements that change the robot.
+mod flags;
 
 /// Classes of defaults, and the lookup of missing attributes.
 mod classes;
@@ -32,6 +38,9 @@ mod geoms;
 /// Actuators.
 mod actuators;
 
+/// Laws of actuators.
+mod gains;
+
 /// Which colliders may touch.
 mod contacts;
 
@@ -46,6 +55,9 @@ mod without_meshes;
 
 /// From a robot to the text of a file.
 mod write;
+
+/// Inertias in a file.
+mod written_inertia;
 
 pub(crate) use without_meshes::without_meshes;
 pub use write::{Keyframe, MjcfOptions, write};

@@ -9,43 +9,57 @@ use crate::mesh::solid::scaled;
 use crate::mjcf::actuators::actuators;
 use crate::mjcf::bodies::Bodies;
 use crate::mjcf::classes::{ACTUATORS, Classes};
-use crate::mjcf::compiler::{Compiler, MUJOCO};
+use crate::mjcf::compiler::Compiler;
 use crate::mjcf::contacts::contacts;
-use crate::repair::repair_masses;
+use crate::mjcf::flags::Flags;
+use crate::mjcf::reasons::{FIT, MUJOCO};
+use crate::repair::{check_masses, move_fixed_masses};
 use crate::xml::tree::Tree;
 
-pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
+/// Content of a model.
+pub(crate) struct ModelParts {
+    pub(crate) robot: Robot,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) gravity: Option<[f64; 3]>,
+    pub(crate) contacts: bool,
+}
+
+pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts, ReadError> {
     let model = tree.root();
     model.check(&["model"], &[], &mut context.warnings)?;
     let ignored = [
-        ("option", "gravity, steps and solvers are the world's"),
         ("size statistic visual", MUJOCO),
         ("sensor", "sensors are made beside the robot"),
         ("keyframe", "postures are not described"),
         ("custom extension", "a user's own"),
         ("tendon", "a description has no tendons"),
-        ("equality", "a description has no loops: what it joins is apart"),
         ("deformable", "all bodies are rigid"),
     ];
-    let read = ["compiler", "default", "asset", "worldbody", "contact", "actuator"];
+    let read = ["compiler", "option", "default", "asset", "worldbody", "contact", "actuator", "equality"];
     model.check_children(&read, &ignored, &mut context.warnings)?;
     let compiler = Compiler::from_model(model, context)?;
+    for element in model.all("equality") {
+        if compiler.flags.equality {
+            context.warnings.add(element.place(), "equality", "a description has no loops: what it joins is apart");
+        }
+        element.leave();
+    }
     let classes = Classes::from_model(model, context.options.limits.defaults)?;
     for element in classes.elements() {
-        let valid = ["joint", "geom", "pair", "mesh"].contains(&element.tag()) || ACTUATORS.contains(&element.tag());
-        if !valid {
-            context.warnings.add(
-                element.place(),
-                format!("default {}", element.tag()),
-                "of elements that are not read",
-            );
+        let tag = element.tag();
+        if tag == "mesh" {
+            element.check(&["scale", "inertia"], &[("maxhullvert", FIT)], &mut context.warnings)?;
+        } else if !["joint", "geom", "pair"].contains(&tag) && !ACTUATORS.contains(&tag) {
+            context.warnings.add(element.place(), format!("default {tag}"), "of elements that are not read");
         }
     }
     let mut robot = Robot::new(model.attribute("model").unwrap_or_default());
     let mut locations: Vec<SourceLocation> = Vec::new();
     let mut bodies = Bodies::new(model, &compiler, &classes, context)?;
     bodies.read(&mut robot, &mut locations, context)?;
-    repair_masses(&mut robot, &locations, &compiler.repair, &mut context.warnings)?;
+    move_fixed_masses(&mut robot, &locations, &mut context.warnings);
+    bodies.share_masses(&mut robot, context.options.between);
+    check_masses(&mut robot, &locations, &compiler.repair, &mut context.warnings)?;
     if compiler.total_mass > 0.0 {
         let sum: f64 = robot.segments.iter().map(|segment| segment.mass).sum();
         for segment in robot.segments.iter_mut().filter(|_| sum > 0.0) {
@@ -54,6 +68,9 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
         }
     }
     actuators(model, &mut robot, &compiler, &classes, &bodies, context)?;
-    contacts(model, &mut robot, &classes, &bodies, context)?;
-    Ok((robot, bodies.frames))
+    contacts(model, &mut robot, &classes, &bodies, &compiler.flags, context)?;
+    // Defaults and meshes may be of no element that was read. Their attributes are all of the format.
+    model.list_unread(&["default", "mesh", "name", "class", "childclass"], &mut context.warnings);
+    let Flags { gravity, contact, .. } = compiler.flags;
+    Ok(ModelParts { robot, frames: bodies.frames, gravity, contacts: contact })
 }

@@ -3,8 +3,8 @@
 use farsa_body::robot::Surface;
 
 use crate::error::ReadError;
-use crate::mjcf::bodies::Geom;
 use crate::mjcf::classes::Classed;
+use crate::xml::tree::Element;
 
 /// MuJoCo's parameters of a contact.
 #[derive(Clone, Copy)]
@@ -20,18 +20,63 @@ pub(crate) struct Contact {
     mix: f64,
 }
 
+impl Default for Contact {
+    /// Creates the numbers of MuJoCo's defaults.
+    fn default() -> Self {
+        let (friction, solref) = ([1.0, 0.005, 0.0001], [0.02, 1.0]);
+        Self { friction, dimensions: 3.0, solref, impedance: 0.95, priority: 0.0, mix: 1.0 }
+    }
+}
+
+/// Numbers of MuJoCo's flag `override`, which replace those of all contacts.
+pub(crate) struct Override {
+    friction: [f64; 3],
+    solref: [f64; 2],
+    impedance: f64,
+}
+
+impl Default for Override {
+    fn default() -> Self {
+        let Contact { friction, solref, impedance, .. } = Contact::default();
+        Self { friction, solref, impedance }
+    }
+}
+
+impl Override {
+    /// Reads the numbers that an `option` has.
+    pub(crate) fn read(&mut self, option: Element<'_>) -> Result<(), ReadError> {
+        for (to, from) in self.solref.iter_mut().zip(option.list("o_solref", 1, 2)?.unwrap_or_default()) {
+            *to = from;
+        }
+        if let Some(list) = option.list("o_solimp", 1, 5)? {
+            self.impedance = list.get(1).copied().unwrap_or(self.impedance);
+        }
+        spread(&mut self.friction, &option.list("o_friction", 1, 5)?.unwrap_or_default());
+        for (name, numbers) in [("o_friction", &self.friction[..]), ("o_solref", &self.solref)] {
+            if numbers.iter().any(|x| !x.is_finite() || (name == "o_friction" && *x < 0.0)) {
+                let text = option.attribute(name).unwrap_or_default();
+                return Err(option.wrong(name, text, "but must not be endless, and friction not negative"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the numbers of a contact.
+    pub(crate) fn apply(&self, contact: &mut Contact) {
+        (contact.friction, contact.solref, contact.impedance) = (self.friction, self.solref, self.impedance);
+    }
+}
+
+/// Takes over the friction of a pair: two coefficients along the surface, one about the normal, two of rolling.
+fn spread(friction: &mut [f64; 3], list: &[f64]) {
+    for (to, at) in friction.iter_mut().zip([0, 2, 3]) {
+        *to = list.get(at).copied().unwrap_or(*to);
+    }
+}
+
 /// Returns the numbers of one geom, with MuJoCo's defaults where it has none.
-pub(crate) fn contact_of(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
-    let start = Contact {
-        friction: [1.0, 0.005, 0.0001],
-        dimensions: 3.0,
-        solref: [0.02, 1.0],
-        impedance: 0.95,
-        priority: 0.0,
-        mix: 1.0,
-    };
-    let classed = &geom.classed;
-    let mut contact = solver_numbers(classed, start)?;
+pub(crate) fn contact_of(classed: &Classed<'_, '_>) -> Result<Contact, ReadError> {
+    let mut contact = solver_numbers(classed, Contact::default())?;
     if let Some(friction) = friction(classed, 3)? {
         for (to, from) in contact.friction.iter_mut().zip(friction) {
             *to = from;
@@ -54,14 +99,21 @@ fn friction(classed: &Classed<'_, '_>, most: usize) -> Result<Option<Vec<f64>>, 
     }
 }
 
-/// A pair's own numbers where it has some, those of its geoms where not.
+/// Returns a pair's own numbers where it has some, and otherwise those of its geoms. A list of a pair that is too short
+/// continues with MuJoCo's defaults.
 pub(crate) fn overridden(classed: &Classed<'_, '_>, geoms: &Contact) -> Result<Contact, ReadError> {
-    let mut contact = solver_numbers(classed, *geoms)?;
-    // Two along the surface, one about the normal, two of rolling.
-    if let Some(friction) = friction(classed, 5)? {
-        for (part, at) in [0, 2, 3].into_iter().enumerate() {
-            contact.friction[part] = friction.get(at).copied().unwrap_or(contact.friction[part]);
-        }
+    let mut contact = *geoms;
+    let start = Contact::default();
+    if classed.source("solref").is_some() {
+        contact.solref = start.solref;
+    }
+    if classed.source("solimp").is_some() {
+        contact.impedance = start.impedance;
+    }
+    contact = solver_numbers(classed, contact)?;
+    if let Some(list) = friction(classed, 5)? {
+        contact.friction = start.friction;
+        spread(&mut contact.friction, &list);
     }
     Ok(contact)
 }

@@ -29,7 +29,7 @@ pub(crate) fn without_meshes(model: Element<'_>, context: &mut Context<'_>) -> R
     let paired: BTreeSet<&str> =
         pairs.flat_map(|pair| [pair.attribute("geom1"), pair.attribute("geom2")]).flatten().collect();
     let mut changes = Changes::default();
-    let mut waiting: Vec<(Element<'_>, usize)> = model.all("worldbody").map(|world| (world, 0)).collect();
+    let mut waiting: Vec<(Element<'_>, usize)> = model.all("worldbody").map(|world| (world, classes.main())).collect();
     while let Some((body, inherited)) = waiting.pop() {
         let class = body.attribute("childclass").map_or(Ok(inherited), |name| classes.find(body, name))?;
         let items = items(body, class, &compiler, &classes, context)?;

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use farsa_body::Pose;
-use farsa_body::actuators::Law;
+use farsa_body::actuators::{Held, Law};
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{Actuator, Collider, JointKind, Pair, Robot, RobotError, Segment, Shape, Visual};
 use farsa_num::Scalar;
 
-use crate::bounds::{check_sizes, range_in_file};
+use crate::bounds::{check_sizes, effort_in_file, range_in_file, separated};
 use crate::mjcf::inverse_weight::inverse_weights;
+use crate::mjcf::written_inertia::inertial;
 use crate::xml::write::{
-    GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, visuals_by_body,
+    GROUND, Lines, colliders_by_body, friction_of_ground, numbers, quoted, segment_names, visuals_by_body,
 };
 
 /// Options of a MuJoCo model that a robot description does not contain.
@@ -77,7 +78,7 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 ///
 /// Segments, joints, inertias and shapes are exact to the last digit, and only pairs of the description may touch. Some
 /// parts are replaced, since MuJoCo does not have them:
-/// - muscle pairs and custom laws are `motor`s with the commanded effort, and the caller evaluates the law
+/// - muscle pairs and custom laws with a stiffness are `motor`s with the commanded effort, and the caller evaluates the law
 /// - position servos are position actuators with a force range, torque motors motors with a control range
 /// - a contact point has our stiffness at rest, but critical damping, and the mass of heavier bodies, without which
 ///   MuJoCo's contacts are unstable at steps of this size
@@ -126,7 +127,12 @@ pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError>
 }
 
 fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
-    if robot.actuators.iter().any(|actuator| matches!(actuator.law, Law::MusclePair(_) | Law::Held(_))) {
+    let is_custom = |law: &Law<f64>| match law {
+        Law::MusclePair(_) => true,
+        Law::Held(held) => held.stiffness > 0.0,
+        _ => false,
+    };
+    if robot.actuators.iter().any(|actuator| is_custom(&actuator.law)) {
         out.line(
             "<!-- MuJoCo has no such muscles: the motors of their joints exert the torque that they are told; leave \
              them at 0 and use qfrc_applied, with stiffness and damping in dof_damping, for implicit muscles. -->",
@@ -207,6 +213,10 @@ fn actuator_line(robot: &Robot, actuator: &Actuator) -> String {
         Law::Velocity(motor) => {
             format!("<velocity {head} kv=\"{:?}\"{}/>", motor.gain, limited("force", motor.limit))
         }
+        Law::Held(Held { stiffness: 0.0, damping }) => {
+            let bias = numbers(&[0.0, 0.0, -damping]);
+            format!("<general {head} gainprm=\"1.0\" biastype=\"affine\" biasprm=\"{bias}\"/>")
+        }
         Law::MusclePair(_) | Law::Held(_) => format!("<motor {head}/>"),
     }
 }
@@ -270,6 +280,7 @@ fn limited(what: &str, limit: f64) -> String {
     if limit.is_infinite() {
         return String::new();
     }
+    let limit = effort_in_file(limit);
     format!(" {what}limited=\"true\" {what}range=\"{}\"", numbers(&[-limit, limit]))
 }
 
@@ -301,26 +312,13 @@ fn joint(segment: &Segment, loss: f64) -> Option<String> {
         " limited=\"false\"".into()
     } else {
         // MuJoCo's limits have two ends.
-        format!(" limited=\"true\" range=\"{}\"", numbers(&range_in_file(joint.range)))
+        format!(" limited=\"true\" range=\"{}\"", numbers(&separated(range_in_file(joint.range))))
     };
     let (axis, armature, damping) = (numbers(&joint.axis), joint.armature, joint.damping);
     let loss = if loss > 0.0 { format!(" frictionloss=\"{loss:?}\"") } else { String::new() };
     Some(format!(
         "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"{loss}/>"
     ))
-}
-
-fn inertial(segment: &Segment) -> Option<String> {
-    if !has_inertial(segment) {
-        return None;
-    }
-    let [xx, yy, zz, crossed @ ..] = segment.inertia;
-    let inertia = if crossed == [0.0; 3] {
-        format!("diaginertia=\"{}\"", numbers(&[xx, yy, zz]))
-    } else {
-        format!("fullinertia=\"{}\"", numbers(&segment.inertia))
-    };
-    Some(format!("<inertial pos=\"{}\" mass=\"{:?}\" {inertia}/>", numbers(&segment.centre), segment.mass))
 }
 
 /// The shapes of a body.

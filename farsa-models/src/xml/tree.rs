@@ -1,5 +1,6 @@
 //! A model's elements as a tree, included files in their places, and how to ask them for names and numbers.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, ParsingOptions};
@@ -24,6 +25,25 @@ struct Node {
     children: Vec<usize>,
     file: usize,
     line: usize,
+    reading: Reading,
+}
+
+/// Record of the parts of an element that were read.
+#[derive(Default)]
+struct Reading {
+    state: Cell<State>,
+    /// A bit for each of the first 128 attributes.
+    attributes: Cell<u128>,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum State {
+    #[default]
+    Unread,
+    /// Its attributes were compared with those of the format.
+    Checked,
+    /// Left out with its content, with a warning if this changes the robot.
+    Left,
 }
 
 /// One element.
@@ -90,6 +110,7 @@ impl Tree {
                 children: Vec::new(),
                 file: number,
                 line: line(node.range().start),
+                reading: Reading::default(),
             });
             index[node.id().get_usize()] = own;
             if let Some(parent) = node.parent().filter(roxmltree::Node::is_element) {
@@ -203,7 +224,54 @@ impl<'t> Element<'t> {
     }
 
     pub(crate) fn attribute(&self, name: &str) -> Option<&'t str> {
-        self.node().attributes.iter().find(|(attribute, _)| attribute == name).map(|(_, value)| value.as_str())
+        let mut attributes = self.node().attributes.iter().enumerate();
+        let (number, (_, value)) = attributes.find(|(_, (attribute, _))| attribute == name)?;
+        self.mark(number);
+        Some(value.as_str())
+    }
+
+    /// Checks whether the element has an attribute, without reading it.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.node().attributes.iter().any(|(attribute, _)| attribute == name)
+    }
+
+    fn mark(&self, number: usize) {
+        let read = &self.node().reading.attributes;
+        read.set(read.get() | 1_u128.checked_shl(number as u32).unwrap_or(0));
+    }
+
+    /// Marks attributes as read that have no effect in the format either.
+    pub(crate) fn skip(&self, names: &[&str]) {
+        for name in names {
+            self.attribute(name);
+        }
+    }
+
+    /// Marks the element as left out. Nothing in it is unread.
+    pub(crate) fn leave(&self) {
+        self.node().reading.state.set(State::Left);
+    }
+
+    /// Warns of each attribute and element within that nothing has read. `named` excludes elements and attributes.
+    pub(crate) fn list_unread(self, named: &[&str], warnings: &mut Warnings) {
+        let mut open = vec![self];
+        while let Some(element) = open.pop() {
+            for (number, (name, _)) in element.node().attributes.iter().enumerate().take(128) {
+                let read = element.node().reading.attributes.get() >> number & 1 == 1;
+                if !read && !named.contains(&name.as_str()) {
+                    warnings.add(element.place(), format!("{} `{name}`", element.tag()), "has no effect here");
+                }
+            }
+            for child in element.children().filter(|child| !named.contains(&child.tag())) {
+                match child.node().reading.state.get() {
+                    State::Unread => {
+                        warnings.add(child.place(), child.tag(), format!("is not read in {}", element.tag()));
+                    }
+                    State::Checked => open.push(child),
+                    State::Left => {}
+                }
+            }
+        }
     }
 
     /// Gets the value of an attribute that must be there.
@@ -251,12 +319,14 @@ impl<'t> Element<'t> {
         ignored: &[(&str, &str)],
         warnings: &mut Warnings,
     ) -> Result<(), ReadError> {
-        for (name, _) in &self.node().attributes {
+        self.node().reading.state.set(State::Checked);
+        for (number, (name, _)) in self.node().attributes.iter().enumerate() {
             if read.contains(&name.as_str()) {
                 continue;
             }
             if let Some((_, why)) = ignored.iter().find(|(other, _)| other.split(' ').any(|other| other == name)) {
                 warnings.add(self.place(), format!("{} `{name}`", self.tag()), *why);
+                self.mark(number);
                 continue;
             }
             let valid = read.iter().copied().chain(ignored.iter().flat_map(|(names, _)| names.split(' ')));
@@ -285,11 +355,13 @@ impl<'t> Element<'t> {
         ignored: &[(&str, &str)],
         warnings: &mut Warnings,
     ) -> Result<(), ReadError> {
+        self.node().reading.state.set(State::Checked);
         for child in self.children() {
             let tag = child.tag();
             if read.contains(&tag) {
                 continue;
             }
+            child.leave();
             if let Some((_, why)) = ignored.iter().find(|(names, _)| names.split(' ').any(|other| other == tag)) {
                 warnings.add(child.place(), tag, *why);
                 continue;

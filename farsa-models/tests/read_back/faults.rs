@@ -128,7 +128,10 @@ fn faults_of_an_mjcf_are_told_with_place_and_nearest_name() {
         ("<joint type=\"ball\"/>", "text line 5: joint: ball joints cannot be described; three hinges can"),
         ("<joint class=\"leg\"/>", "text line 5: unknown class `leg`; the nearest is `main`"),
         ("<joint axis=\"0 0 0\"/>", "text line 5: joint: axis is \"0 0 0\", but must be a direction"),
-        ("<joint range=\"10 -10\"/>", "text line 5: joint: range is \"10 -10\", but must not end before it begins"),
+        (
+            "<joint limited=\"true\" range=\"10 -10\"/>",
+            "text line 5: joint: range is \"10 -10\", but must end after it begins",
+        ),
         ("<joint limited=\"true\"/>", "text line 5: joint has no range"),
         ("<joint/><freejoint/>", "text line 3: body `b`: a free joint beside others"),
         ("<body name=\"b\"/>", "text line 5: a second body `b`, the first is in line 3"),
@@ -195,7 +198,7 @@ fn mujocos_rules_are_followed() {
             <geom type="box" size="0.1 0.1 0.1" mass="2"/></body></frame></body></worldbody>
       <actuator><position joint="k" kp="10" kv="1" gear="2" forcerange="-3 3"/><general joint="k" gainprm="4" ctrlrange="-1 1"/>
         <velocity name="v" joint="k" kv="5"/><muscle joint="k"/></actuator></mujoco>"#;
-    let Imported { robot, warnings, frames } = read(text).unwrap();
+    let Imported { robot, warnings, frames, .. } = read(text).unwrap();
     let knee = &robot.segments[robot.body("knee").unwrap().index()];
     assert_eq!((knee.joint.damping, knee.joint.armature, knee.joint.axis), (2.0, 3.0, [0.0, 1.0, 0.0]));
     assert_eq!(knee.joint.range, [-1.0, 2.0]);
@@ -213,7 +216,7 @@ fn mujocos_rules_are_followed() {
     let laws: Vec<Law<f64>> = robot.actuators.iter().map(|actuator| actuator.law).collect();
     assert_eq!(laws[0], Law::Servo(farsa_body::actuators::Servo { stiffness: 40.0, damping: 4.0, limit: 6.0 }));
     assert_eq!(laws[1], Law::Torque(Torque { limit: 4.0 }));
-    assert_eq!(laws[2], Law::Held(farsa_body::actuators::Held { stiffness: 0.0, damping: 5.0 }));
+    assert_eq!(laws[2], Law::Velocity(farsa_body::actuators::Velocity { gain: 5.0, limit: f64::INFINITY }));
     assert_eq!(laws.len(), 3);
     assert!(
         warnings.iter().any(|note| note.what == "actuator muscle" && note.why.starts_with("left out")),

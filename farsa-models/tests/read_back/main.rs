@@ -1,6 +1,8 @@
 //! Written robots are read unchanged. Wrong, hostile or damaged files are refused with the place of the fault.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+/// MuJoCo's classes of defaults.
+mod defaults;
 /// Faults with their place and the nearest name, and MuJoCo's rules.
 mod faults;
 /// The files that a model names.
@@ -11,12 +13,18 @@ mod hostile;
 mod icub;
 /// Models as large as the limits.
 mod large;
+/// Limits of joints and actuators.
+mod limits;
 /// Visuals.
 mod looks;
+/// Parts of an MJCF that are left out, and the list of them.
+mod losses;
 /// Masses of meshes.
 mod meshes;
 /// Whatever is read is written and read back.
 mod round_trip;
+/// Settings of an MJCF that change the robot.
+mod settings;
 /// Wheeled robots that were written are read as they were.
 mod wheeled;
 /// Robots that were written are read as they were.
