@@ -2,57 +2,47 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::thread;
-use std::time::Duration;
+#[cfg(unix)]
+use std::process::Command;
 
-use crate::tool::{Said, command, interruptible, ok, own, scratch};
+#[cfg(unix)]
+use crate::tool::interruptible;
+use crate::tool::{Running, Said, command, ok, own, scratch};
 
 /// Runs a line of a shell.
 fn shell(here: &Path, line: &str) -> Said {
-    let mut shell = Command::new("sh");
-    shell.arg("-c").arg(line).current_dir(here).stdin(Stdio::null()).env("F", own());
-    shell.output().expect("a shell").into()
+    let mut shell = command(Path::new("sh"), here, &["-c", line]);
+    Running::start(shell.env("F", own())).end()
 }
 
 /// A run that continues until it is stopped, once it has finished some generations.
-fn begun(here: &Path, start: &mut Command) -> Child {
-    let child = start.current_dir(here).spawn().expect("the program");
-    let log = here.join("r/fitness.csv");
-    while !fs::read_to_string(&log).is_ok_and(|text| text.lines().count() > 5) {
-        thread::sleep(Duration::from_millis(5));
-    }
-    child
+#[cfg(unix)]
+fn begun(here: &Path, start: &mut Command) -> Running {
+    let mut run = Running::start(start);
+    run.until("generation 5", || generations(here) > 5);
+    run
 }
 
-fn endless(here: &Path) -> Command {
-    let mut start =
-        interruptible(own(), here, &["run", "cart", "--generations", "4000000", "--out", "r", "--threads", "1"]);
-    // A machine of a cluster that tests has its own.
-    for name in ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID", "FLUX_JOB_ID", "_CONDOR_JOB_AD"]
-    {
-        start.env_remove(name);
-    }
-    start
+#[cfg(unix)]
+fn generations(here: &Path) -> usize {
+    fs::read_to_string(here.join("r/fitness.csv")).map_or(0, |log| log.lines().count().saturating_sub(1))
 }
 
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([format!("-{name}"), child.id().to_string()]).status().expect("kill");
-    assert!(sent.success());
-}
+#[cfg(unix)]
+const ENDLESS: [&str; 8] = ["run", "cart", "--generations", "4000000", "--out", "r", "--threads", "1"];
 
 #[cfg(unix)]
 #[test]
 fn signals_end_a_run_as_ctrl_c_does() {
     for (name, scheduler, code) in [("INT", "", 130), ("TERM", "", 130), ("HUP", "", 130), ("TERM", "42", 75)] {
         let here = scratch(&format!("signals-{name}{scheduler}"));
-        let mut start = endless(&here);
+        let mut start = interruptible(own(), &here, &ENDLESS);
         if !scheduler.is_empty() {
             start.env("SLURM_JOB_ID", scheduler);
         }
-        let child = begun(&here, &mut start);
-        signal(&child, name);
-        let said = Said::from(child.wait_with_output().expect("its end"));
+        let run = begun(&here, &mut start);
+        run.signal(name);
+        let said = run.end();
         assert_eq!(said.code, Some(code), "{name}: {said:?}");
         assert!(said.err.contains("go on with `own-experiment run --resume r`"), "{name}: {said:?}");
         // All that was finished is kept: the log has no line more than the checkpoint.
@@ -67,19 +57,13 @@ fn signals_end_a_run_as_ctrl_c_does() {
 #[test]
 fn what_nohup_ignores_stays_ignored() {
     let here = scratch("nohup");
-    let mut start = Command::new("nohup");
-    start.arg(own()).args(["run", "cart", "--generations", "4000000", "--out", "r", "--threads", "1"]);
-    start.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = begun(&here, &mut start);
-    signal(&child, "HUP");
-    let lines = || fs::read_to_string(here.join("r/fitness.csv")).expect("the log").lines().count();
-    let before = lines();
-    while lines() < before + 50 {
-        thread::sleep(Duration::from_millis(5));
-    }
-    signal(&child, "TERM");
-    let said = Said::from(child.wait_with_output().expect("its end"));
-    assert!(said.code == Some(130) || said.code == Some(75), "{said:?}");
+    let mut run = begun(&here, interruptible(Path::new("nohup"), &here, &[own()]).args(ENDLESS));
+    run.signal("HUP");
+    let before = generations(&here);
+    run.until("more generations", || generations(&here) >= before + 50);
+    run.signal("TERM");
+    let said = run.end();
+    assert_eq!(said.code, Some(130), "{said:?}");
 }
 
 #[cfg(target_os = "linux")]
@@ -150,15 +134,15 @@ fn tests_of_one_run_at_the_same_time_leave_the_files_of_one() {
     let here = scratch("together");
     ok(own(), &here, "run cart --generations 2 --out r -q");
     for _ in 0..10 {
-        let all: Vec<Child> = (1..4)
+        let all: Vec<Running> = (1..4)
             .map(|seed: usize| {
                 let words = format!("test r --trials {} --seed {seed} -q", 3 * seed);
                 let words: Vec<&str> = words.split(' ').collect();
-                command(own(), &here, &words).spawn().expect("the program")
+                Running::start(&mut command(own(), &here, &words))
             })
             .collect();
         for child in all {
-            let said = Said::from(child.wait_with_output().expect("its end"));
+            let said = child.end();
             assert_eq!(said.code, Some(0), "{said:?}");
         }
         let record = fs::read_to_string(here.join("r/test.json")).expect("it");

@@ -4,18 +4,15 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
-use crate::tool::{ok, own, results, scratch};
+use crate::tool::{Running, command, ok, own, results, scratch};
 
 fn script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/cluster").join(name)
 }
 
 /// A task of an array that begins, in a folder where `scontrol` writes its words to a file.
-fn task(here: &Path, name: &str, number: u32, arguments: &str) -> Child {
+fn task(here: &Path, name: &str, number: u32, arguments: &str) -> Running {
     let bin = here.join("bin");
     fs::create_dir_all(&bin).expect("a folder");
     let scontrol = bin.join("scontrol");
@@ -24,10 +21,8 @@ fn task(here: &Path, name: &str, number: u32, arguments: &str) -> Child {
         fs::set_permissions(&scontrol, fs::Permissions::from_mode(0o755)).expect("its mode");
     }
     let path = std::env::var("PATH").unwrap_or_default();
-    Command::new("bash")
-        .arg(script(name))
-        .args(arguments.split(' '))
-        .current_dir(here)
+    let mut bash = command(Path::new("bash"), here, &[script(name)]);
+    bash.args(arguments.split(' '))
         .env("PATH", format!("{}:{path}", bin.display()))
         .env("FARSA", own())
         .env_remove("FARSA_RUNS")
@@ -36,20 +31,8 @@ fn task(here: &Path, name: &str, number: u32, arguments: &str) -> Child {
         .env("SLURM_ARRAY_JOB_ID", "5")
         .env("SLURM_ARRAY_TASK_ID", number.to_string())
         .env("SLURM_ARRAY_TASK_MAX", "2")
-        .env("SLURM_CPUS_PER_TASK", "1")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("bash")
-}
-
-fn until(what: &str, mut done: impl FnMut() -> bool) {
-    let patience = Instant::now() + Duration::from_secs(120);
-    while !done() {
-        assert!(Instant::now() < patience, "no {what}");
-        sleep(Duration::from_millis(5));
-    }
+        .env("SLURM_CPUS_PER_TASK", "1");
+    Running::start(&mut bash)
 }
 
 fn generations(run: &Path) -> usize {
@@ -65,18 +48,16 @@ fn a_task_that_is_stopped_asks_to_be_started_again_and_ends_as_if_it_had_not() {
 
     let mut first = task(&here, "array.sh", 2, study);
     let run = here.join("runs/cart-rough-2");
-    until("generation 20", || generations(&run) >= 20);
-    let kill = Command::new("kill").args(["-TERM", &first.id().to_string()]).status().expect("kill");
-    assert!(kill.success());
-    until("requeue", || requeued() == "requeue 5_2\n");
+    first.until("generation 20", || generations(&run) >= 20);
+    first.signal("TERM");
+    first.until("requeue", || requeued() == "requeue 5_2\n");
     // As Slurm does with a task that it starts again.
-    first.kill().expect("its end");
-    first.wait().expect("its end");
+    drop(first);
     let stopped = generations(&run);
     assert!((20..400).contains(&stopped), "{stopped}");
 
     for number in [2, 1] {
-        let code = task(&here, "array.sh", number, study).wait().expect("its end").code();
+        let code = task(&here, "array.sh", number, study).end().code;
         assert_eq!(code, Some(0), "task {number}");
     }
     assert_eq!(requeued(), "requeue 5_2\n", "what ends by itself is not started again");
@@ -95,7 +76,7 @@ fn a_wrong_configuration_is_not_started_again() {
         ("workers.sh", "run cart --replications 0"),
         ("workers.sh", "run cart --config nowhere.toml --replications 2"),
     ] {
-        let code = task(&here, name, 1, arguments).wait().expect("its end").code();
+        let code = task(&here, name, 1, arguments).end().code;
         assert!([Some(1), Some(2)].contains(&code), "{arguments}: {code:?}");
     }
     assert!(!here.join("requeued").exists() && !here.join("runs").exists());
@@ -108,8 +89,8 @@ fn workers_share_a_sweep() {
         "experiment = \"cart\"\nreplications = 2\n[evolution]\ngenerations = 30\n[grid]\ncart.friction = [0, 1, 2]\n";
     fs::write(here.join("friction.toml"), file).expect("the file");
     let workers = [1, 2].map(|number| task(&here, "workers.sh", number, "sweep friction.toml"));
-    for mut worker in workers {
-        assert_eq!(worker.wait().expect("its end").code(), Some(0));
+    for worker in workers {
+        assert_eq!(worker.end().code, Some(0));
     }
     ok(own(), &here, "sweep friction.toml --out alone -q");
     for friction in ["0.0", "1.0", "2.0"] {

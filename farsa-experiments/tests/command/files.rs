@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{command, content, ok, own, results, say, scratch};
+use crate::tool::{Running, Said, command, content, ok, own, results, say, scratch};
 
 /// Damages a file in a way, expects the command to refuse and to change nothing, and puts the file back.
 fn refused(here: &Path, file: &str, damage: &dyn Fn(&mut Vec<u8>), arguments: &str, words: &[&str]) {
@@ -71,10 +71,10 @@ fn missing_files_are_named() {
 
 /// A shell that lets no file grow beyond some blocks of 512 bytes, which is what a full disk looks like to a program.
 #[cfg(unix)]
-fn on_a_full_disk(here: &Path, blocks: u32, arguments: &str) -> crate::tool::Said {
+fn on_a_full_disk(here: &Path, blocks: u32, arguments: &str) -> Said {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" {arguments}");
     let arguments = [std::ffi::OsStr::new("-c"), script.as_ref(), own().as_os_str()];
-    command(Path::new("/bin/sh"), here, &arguments).output().expect("a shell").into()
+    Running::start(&mut command(Path::new("/bin/sh"), here, &arguments)).end()
 }
 
 #[cfg(unix)]
@@ -120,7 +120,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
     // But a reader that has stopped is no error.
     let script = "\"$0\" replay r | head -n 2";
     let arguments = [std::ffi::OsStr::new("-c"), script.as_ref(), own().as_os_str()];
-    let said = crate::tool::Said::from(command(Path::new("/bin/sh"), &here, &arguments).output().expect("a shell"));
+    let said = Running::start(&mut command(Path::new("/bin/sh"), &here, &arguments)).end();
     assert_eq!((said.out.lines().count(), said.err.as_str()), (2, ""));
 }
 
@@ -129,16 +129,12 @@ fn two_processes_at_one_run() {
     let here = scratch("two");
     let arguments = "run cart --generations 100000 --set trial.steps=50000 --out r";
     let arguments: Vec<&str> = arguments.split(' ').collect();
-    let mut first = command(own(), &here, &arguments).spawn().expect("the program");
-    while !here.join("r/fitness.csv").exists() {
-        assert_eq!(first.try_wait().expect("the child"), None);
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
+    let mut first = Running::start(&mut command(own(), &here, &arguments));
+    first.until("log", || here.join("r/fitness.csv").exists());
     // The first needs a moment between making the directory and taking possession.
     std::thread::sleep(std::time::Duration::from_millis(300));
     let said = say(own(), &here, "run --resume r");
-    first.kill().expect("SIGKILL");
-    first.wait().expect("its end");
+    drop(first);
     assert_eq!(said.code, Some(2), "{said:?}");
     assert!(said.err.contains("another process is at this run"), "{said:?}");
 }

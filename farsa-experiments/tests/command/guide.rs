@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{Said, command, farsa, scratch};
+use crate::tool::{Running, Said, command, farsa, scratch};
 
 /// The fenced blocks of a language in a text.
 fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
@@ -38,7 +38,7 @@ fn protocols_print_what_their_guide_shows() {
                 fs::create_dir_all(copy.parent().expect("a folder")).expect("a folder");
                 fs::copy(root.join(file), copy).expect("a copy");
             }
-            let said: Said = command(farsa(), &here, &arguments).output().expect("the program").into();
+            let said: Said = Running::start(&mut command(farsa(), &here, &arguments)).end();
             assert_eq!(said.code, Some(0), "{line}: {said:?}");
             printed = said.out;
         }

@@ -8,13 +8,14 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use farsa_num::{Domain, Stream};
 use serde_json::{Value, json};
 
-use crate::tool::{Said, command, farsa, ok, own, say, scratch};
+use crate::tool::{Deadline, Running, Said, command, farsa, ok, own, say, scratch};
 
 /// The command at the other end of two pipes.
 struct Served {
     child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
+    _deadline: Deadline,
 }
 
 impl Served {
@@ -23,7 +24,8 @@ impl Served {
         let mut child = command(program, here, &arguments).stdin(Stdio::piped()).spawn().expect("the program");
         let input = child.stdin.take().expect("a pipe");
         let output = BufReader::new(child.stdout.take().expect("a pipe"));
-        Self { child, input, output }
+        let deadline = Deadline::new(child.id());
+        Self { child, input, output, _deadline: deadline }
     }
 
     fn read(&mut self) -> Value {
@@ -49,7 +51,7 @@ fn all(program: &Path, here: &Path, arguments: &str, lines: &str) -> Said {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     fs::write(here.join("lines"), lines).expect("a file");
     let input = fs::File::open(here.join("lines")).expect("a file");
-    command(program, here, &arguments).stdin(input).output().expect("the program").into()
+    Running::start(command(program, here, &arguments).stdin(input)).end()
 }
 
 fn answers(said: &Said) -> Vec<Value> {

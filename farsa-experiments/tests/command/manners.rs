@@ -1,9 +1,8 @@
 //! The command's messages about itself, and its silence.
 
 use std::fs;
-use std::path::Path;
 
-use crate::tool::{command, content, farsa, ok, own, say, scratch};
+use crate::tool::{Running, Said, command, content, farsa, ok, own, say, scratch};
 
 const SUBCOMMANDS: [&str; 19] = [
     "strategies",
@@ -259,8 +258,8 @@ fn a_bench_counts_trials() {
 }
 
 /// True for a byte that colors or moves the cursor.
-fn escapes(output: &std::process::Output) -> bool {
-    output.stdout.iter().chain(&output.stderr).any(|&byte| byte == 0x1b || byte == b'\r')
+fn escapes(said: &Said) -> bool {
+    [&said.out, &said.err].into_iter().any(|text| text.contains(['\u{1b}', '\r']))
 }
 
 #[test]
@@ -268,28 +267,44 @@ fn pipes_get_no_colours() {
     let here = scratch("colours");
     for arguments in ["--help", "run --help", "rnu", "run cart --generations 3 --out r", "test r --trials 3", "list"] {
         let arguments: Vec<&str> = arguments.split(' ').collect();
-        let output = command(own(), &here, &arguments).output().expect("the program");
-        assert!(!escapes(&output), "{arguments:?}: {output:?}");
+        let said = Running::start(&mut command(own(), &here, &arguments)).end();
+        assert!(!escapes(&said), "{arguments:?}: {said:?}");
     }
 }
 
-/// On a terminal, made by `script`, help has colors and `NO_COLOR` takes them away. Without `script` nothing is tested.
+/// Runs a program whose output is a terminal, and returns what it wrote there.
+#[cfg(target_os = "linux")]
+fn on_a_terminal(mut program: std::process::Command) -> String {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+    grantpt(&controller).and_then(|()| unlockpt(&controller)).expect("a terminal");
+    let name = ptsname(&controller, Vec::new()).expect("its name").into_string().expect("its name");
+    let terminal = fs::File::options().read(true).write(true).open(name).expect("a terminal");
+    program.stdout(terminal.try_clone().expect("a terminal")).stderr(terminal);
+    let running = Running::start(&mut program);
+    drop(program);
+    // Reading fails when the program has ended, as the last one to hold the terminal.
+    let reader = crate::tool::read(fs::File::from(controller));
+    assert_eq!(running.end().code, Some(0));
+    reader.join().expect("its output")
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn no_color_is_heeded_on_a_terminal() {
     let here = scratch("terminal");
-    let on_a_terminal = |no_color: bool| {
-        let line = format!("{} --help", own().display());
-        let mut script = command(Path::new("script"), &here, &["-qec", &line, "/dev/null"]);
-        script.env("TERM", "xterm-256color").env_remove("NO_COLOR").env_remove("CLICOLOR");
+    let help = |no_color: bool| {
+        let mut help = command(own(), &here, &["--help"]);
+        help.env("TERM", "xterm-256color").env_remove("NO_COLOR").env_remove("CLICOLOR");
         if no_color {
-            script.env("NO_COLOR", "1");
+            help.env("NO_COLOR", "1");
         }
-        script.output().ok().filter(|output| output.status.success())
+        on_a_terminal(help)
     };
-    if let (Some(with), Some(without)) = (on_a_terminal(false), on_a_terminal(true)) {
-        assert!(with.stdout.contains(&0x1b) && !without.stdout.contains(&0x1b), "{with:?} {without:?}");
-    }
+    let [with, without] = [false, true].map(help);
+    assert!(with.contains('\u{1b}') && with.contains("Usage"), "{with}");
+    assert!(!without.contains('\u{1b}') && without.contains("Usage"), "{without}");
 }
 
 /// `--force` moves a run aside, and nothing else.

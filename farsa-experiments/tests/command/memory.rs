@@ -6,10 +6,10 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::tool::{command, farsa, scratch};
+use crate::tool::{Deadline, command, farsa, scratch};
 
 /// The peak memory of a process \[kB\], by Linux. It never falls during the process.
-fn peak(process: u32) -> Option<u64> {
+pub(crate) fn peak(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().strip_suffix(" kB")?.parse().ok()
 }
@@ -18,6 +18,7 @@ fn peak(process: u32) -> Option<u64> {
 fn most(directory: &Path, arguments: &str) -> u64 {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let mut child = command(farsa(), directory, &arguments).spawn().expect("the program");
+    let _deadline = Deadline::new(child.id());
     let mut most = 0;
     let ended = loop {
         most = most.max(peak(child.id()).unwrap_or(0));

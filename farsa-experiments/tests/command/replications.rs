@@ -2,11 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
-use crate::tool::{Said, command, content, interruptible, ok, own, results, say, scratch};
+use crate::tool::{Running, Said, command, content, interruptible, ok, own, results, say, scratch};
 
 #[test]
 fn the_same_as_single_runs() {
@@ -106,23 +103,12 @@ fn generations(run: &Path) -> usize {
 #[cfg(unix)]
 fn cut_short(here: &Path, line: &str, signal: &str) -> Said {
     let arguments: Vec<&str> = line.split(' ').collect();
-    let mut child = interruptible(own(), here, &arguments);
-    if signal == "-KILL" {
-        // Nothing reads its output: a full pipe would hold it up.
-        child.stderr(Stdio::null());
-    }
-    let mut child = child.spawn().expect("the program");
+    let mut run = Running::start(&mut interruptible(own(), here, &arguments));
     let second = here.join("runs/cart-rough-3");
     let wanted = generations(&second) + 20;
-    let patience = Instant::now() + Duration::from_secs(120);
-    while generations(&second) < wanted {
-        assert!(Instant::now() < patience, "no generation {wanted}");
-        assert_eq!(child.try_wait().expect("the child"), None, "it ended by itself");
-        sleep(Duration::from_millis(2));
-    }
-    let kill = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill");
-    assert!(kill.success());
-    child.wait_with_output().expect("its end").into()
+    run.until("20 generations more", || generations(&second) >= wanted);
+    run.signal(signal);
+    run.end()
 }
 
 #[cfg(unix)]
@@ -130,10 +116,10 @@ fn cut_short(here: &Path, line: &str, signal: &str) -> Said {
 fn killed_interrupted_and_repeated() {
     let here = scratch("replications-cut");
     let line = format!("{SLOW} --replications 3");
-    cut_short(&here, &line, "-KILL");
+    cut_short(&here, &line, "KILL");
     assert!(!here.join("runs/cart-rough-4").exists());
     let first = content(&here.join("runs/cart-rough-2"));
-    let said = cut_short(&here, &line, "-INT");
+    let said = cut_short(&here, &line, "INT");
     assert_eq!(said.code, Some(130), "{said:?}");
     assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {line}`")), "{said:?}");
     assert!(said.err.contains("replication 2 of 3: runs/cart-rough-3: continues\n"), "{said:?}");
@@ -190,10 +176,9 @@ fn processes_on_one_folder_share_the_runs() {
         let root = format!("shared-{processes}");
         let line = format!("{run} --out {root} --json");
         let arguments: Vec<&str> = line.split(' ').collect();
-        let begun: Vec<_> =
-            (0..processes).map(|_| command(own(), &here, &arguments).spawn().expect("the program")).collect();
-        let said: Vec<Said> =
-            begun.into_iter().map(|child| child.wait_with_output().expect("its end").into()).collect();
+        let start = || Running::start(&mut command(own(), &here, &arguments));
+        let begun: Vec<Running> = (0..processes).map(|_| start()).collect();
+        let said: Vec<Said> = begun.into_iter().map(Running::end).collect();
         let mut made: Vec<u64> = Vec::new();
         for said in &said {
             assert_eq!(said.code, Some(0), "{said:?}");
@@ -226,22 +211,17 @@ fn processes_on_one_folder_share_the_runs() {
 #[test]
 fn a_run_that_another_process_has_is_left_to_it() {
     let here = scratch("replications-busy");
-    // As a process holds it: with a lock on its file, here by a shell.
     ok(own(), &here, "run cart --generations 2 --seed 2 --out runs/cart-rough-2");
-    let holder = "exec 9>>runs/cart-rough-2/.run.lock; flock 9 || exit 77; echo held; exec sleep 600";
-    let mut holder = command(Path::new("sh"), &here, &["-c", holder]).spawn().expect("a shell");
-    let mut line = String::new();
-    std::io::BufRead::read_line(&mut std::io::BufReader::new(holder.stdout.take().expect("its output")), &mut line)
-        .expect("a line");
+    // As a process holds it.
+    let lock = fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(here.join("runs/cart-rough-2/.run.lock"))
+        .expect("its lock");
+    lock.try_lock().expect("the lock");
     let run = "run cart --generations 4 --replications 3";
-    let said = (line == "held\n").then(|| say(own(), &here, run));
-    let only = (line == "held\n").then(|| say(own(), &here, &format!("{run} --replication 2")));
-    holder.kill().expect("the end of the shell");
-    holder.wait().expect("its end");
-    let (Some(said), Some(only)) = (said, only) else {
-        // A machine without flock(1).
-        return;
-    };
+    let [said, only] = [say(own(), &here, run), say(own(), &here, &format!("{run} --replication 2"))];
+    drop(lock);
     assert_eq!((said.code, only.code), (Some(0), Some(0)), "{said:?} {only:?}");
     let busy = "replication 2 of 3: runs/cart-rough-2: another process is at it";
     assert!(said.err.contains(busy) && only.err.contains(busy), "{said:?} {only:?}");
@@ -269,8 +249,8 @@ fn a_wrong_configuration_never_asks_to_be_started_again() {
     ] {
         let arguments: Vec<&str> = line.split(' ').collect();
         for scheduler in ["SLURM_JOB_ID", "PBS_JOBID"] {
-            let output = command(own(), &here, &arguments).env(scheduler, "42").output().expect("the program");
-            assert!([Some(1), Some(2)].contains(&output.status.code()), "{line}: {output:?}");
+            let said = Running::start(command(own(), &here, &arguments).env(scheduler, "42")).end();
+            assert!([Some(1), Some(2)].contains(&said.code), "{line}: {said:?}");
         }
     }
     assert_eq!(fs::read_dir(&here).expect("a directory").count(), 1);
@@ -282,16 +262,10 @@ fn under_a_scheduler_an_interrupted_study_asks_to_be_started_again() {
     let here = scratch("replications-75");
     let line = format!("{SLOW} --replications 2");
     let arguments: Vec<&str> = line.split(' ').collect();
-    let mut child = interruptible(own(), &here, &arguments);
-    let child = child.env("SLURM_JOB_ID", "42").spawn().expect("the program");
-    let patience = Instant::now() + Duration::from_secs(120);
-    while generations(&here.join("runs/cart-rough-2")) < 20 {
-        assert!(Instant::now() < patience, "no generation 20");
-        sleep(Duration::from_millis(2));
-    }
-    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill");
-    assert!(kill.success());
-    let said: Said = child.wait_with_output().expect("its end").into();
+    let mut run = Running::start(interruptible(own(), &here, &arguments).env("SLURM_JOB_ID", "42"));
+    run.until("generation 20", || generations(&here.join("runs/cart-rough-2")) >= 20);
+    run.signal("TERM");
+    let said = run.end();
     assert_eq!(said.code, Some(75), "{said:?}");
     assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {line}`")), "{said:?}");
 }

@@ -2,13 +2,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
 use farsa_num::Instructions;
 
-use crate::tool::{Said, command, content, interruptible, ok, own, results, say, scratch};
+use crate::tool::{Running, command, content, interruptible, ok, own, results, say, scratch};
 
 #[test]
 fn one_and_two_threads() {
@@ -42,16 +39,6 @@ fn generations(run: &Path) -> usize {
     fs::read_to_string(run.join("fitness.csv")).map_or(0, |log| log.lines().count().saturating_sub(1))
 }
 
-/// Waits until a run has written some generations, and checks that it is still at it.
-fn wait_for(child: &mut Child, run: &Path, wanted: usize) {
-    let patience = Instant::now() + Duration::from_secs(120);
-    while generations(run) < wanted {
-        assert!(Instant::now() < patience, "no generation {wanted} in {}", run.display());
-        assert_eq!(child.try_wait().expect("the child"), None, "it ended by itself");
-        sleep(Duration::from_millis(2));
-    }
-}
-
 #[test]
 fn killed_and_resumed() {
     const LENGTH: usize = 1200;
@@ -63,11 +50,9 @@ fn killed_and_resumed() {
     let mut gone_on_from = Vec::new();
     // Far enough apart that a checkpoint lies between two kills on any machine that takes a second for the whole.
     for wanted in [1, LENGTH / 2] {
-        // Nothing reads its output: a full pipe would hold it up.
-        let mut child = command(own(), &here, &arguments).stderr(Stdio::null()).spawn().expect("the program");
-        wait_for(&mut child, &run, wanted);
-        child.kill().expect("SIGKILL");
-        child.wait().expect("its end");
+        let mut killed = Running::start(&mut command(own(), &here, &arguments));
+        killed.until("generation to be killed in", || generations(&run) >= wanted);
+        drop(killed);
         gone_on_from.push(generations(&run));
         arguments = ["run", "--resume", "killed"].map(Into::into).into();
     }
@@ -88,11 +73,10 @@ fn interrupted_and_resumed() {
     ok(own(), &here, &format!("{SLOW} --generations 300 --out whole"));
     let arguments: Vec<&str> = SLOW.split(' ').chain(["--generations", "300", "--out", "stopped"]).collect();
     let run = here.join("stopped");
-    let mut child = interruptible(own(), &here, &arguments).spawn().expect("the program");
-    wait_for(&mut child, &run, 20);
-    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
-    assert!(kill.success());
-    let said = Said::from(child.wait_with_output().expect("its end"));
+    let mut stopped = Running::start(&mut interruptible(own(), &here, &arguments));
+    stopped.until("generation 20", || generations(&run) >= 20);
+    stopped.signal("INT");
+    let said = stopped.end();
     assert_eq!(said.code, Some(130), "{said:?}");
     assert!(said.err.contains("go on with `own-experiment run --resume stopped`"), "{said:?}");
     let kept = generations(&run);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{Said, command, farsa, ok, say, scratch};
+use crate::tool::{Running, Said, command, farsa, ok, say, scratch};
 
 /// An escape sequence that clears the screen, one that names the window, C1's own, one that turns the direction of writing.
 const EVIL: &str = "\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}2J\u{202e}";
@@ -16,7 +16,7 @@ fn plain(said: &Said) {
 
 /// The program must refuse with a code and print the words on one line, without control characters.
 fn refused(here: &Path, arguments: &[&str], code: i32, words: &str) {
-    let said = Said::from(command(farsa(), here, arguments).output().expect("the program"));
+    let said = Running::start(&mut command(farsa(), here, arguments)).end();
     assert!(said.code == Some(code) && said.out.is_empty(), "{arguments:?}: {said:?}");
     assert!(said.err.contains(words) && said.err.lines().count() == 1, "{arguments:?}: no {words:?} in {said:?}");
     plain(&said);
@@ -56,7 +56,7 @@ fn names_of_files() {
     refused(&here, &["run", "--config", &evil], 1, "cannot read d\\u{1b}[2J\\u{9b}\\ne");
     let short = ["--generations", "1", "--set", "trial.count=1", "--set", "trial.steps=5"];
     let arguments = [&["run", "discrimination", "--out", &evil], short.as_slice()].concat();
-    let run = |arguments: &[&str]| Said::from(command(farsa(), &here, arguments).output().expect("the program"));
+    let run = |arguments: &[&str]| Running::start(&mut command(farsa(), &here, arguments)).end();
     for arguments in [
         arguments.as_slice(),
         &["run", "--resume", &evil],

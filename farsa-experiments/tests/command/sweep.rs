@@ -2,10 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
-use crate::tool::{Said, command, content, ok, own, results, say, scratch};
+use crate::tool::{Running, command, content, ok, own, results, say, scratch};
 
 const FILE: &str = r#"
 experiment = "cart"
@@ -110,18 +108,13 @@ fn processes_share_the_points_and_a_killed_one_is_gone_on_with() {
     fs::write(here.join("friction.toml"), FILE.replace("generations = 3", "generations = 200")).expect("the file");
     ok(own(), &here, "sweep friction.toml --out one -q");
     let arguments = ["sweep", "friction.toml", "--threads", "1", "--quiet"];
-    let start = || command(own(), &here, &arguments).spawn().expect("the program");
+    let start = || Running::start(&mut command(own(), &here, &arguments));
     let (mut first, others) = (start(), [start(), start()]);
     let begun = || fs::read_dir(here.join("runs/friction")).map_or(0, Iterator::count);
-    let patience = Instant::now() + Duration::from_secs(120);
-    while begun() < 2 {
-        assert!(Instant::now() < patience, "no second point");
-        sleep(Duration::from_millis(1));
-    }
-    first.kill().expect("its end");
-    first.wait().expect("its end");
+    first.until("second point", || begun() >= 2);
+    drop(first);
     for other in others {
-        let said: Said = other.wait_with_output().expect("its end").into();
+        let said = other.end();
         assert_eq!(said.code, Some(0), "{said:?}");
     }
     // The files of the killed process, unless another has taken them by then.

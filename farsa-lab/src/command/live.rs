@@ -1,6 +1,5 @@
 //! `farsa live` and `farsa serve`.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use serde::Serialize;
@@ -31,39 +30,47 @@ impl Invocation<'_, '_> {
     /// Writes an interactive page that runs an agent.
     pub(super) fn live(&self, args: &LiveArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
-        let module = self.live_module(args.module.as_deref(), &plan)?;
+        let file = args.module.as_deref().map(module_file).transpose()?;
+        let module = self.live_module(file.as_deref(), &plan)?;
         let generations = &args.generations;
-        let page = page::page(self.laboratory, (&plan, &directory), generations, &module, &args.html)?;
+        let page = page::page(self.laboratory, (&plan, &directory), generations, module, &args.html)?;
         self.summary(args.json, &format!("{}\n", page.summary), &|| pretty(&page))
     }
 
     /// Serves this page while the run continues.
     pub(super) fn serve(&self, args: &ServeArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
-        let module = self.live_module(args.module.as_deref(), &plan)?;
-        let (laboratory, plan, directory, module) = (self.laboratory, &plan, &directory, &module);
-        serve::serve(Served { laboratory, plan, directory, module }, args.port, |address| {
+        let file = args.module.as_deref().map(module_file).transpose()?;
+        self.live_module(file.as_deref(), &plan)?;
+        let module = |plan: &Plan<'_>| self.live_module(file.as_deref(), plan);
+        let served = Served { laboratory: self.laboratory, directory: &directory, module: &module };
+        serve::serve(served, args.port, |address| {
             if args.json { say(&pretty(&Address { address })?) } else { tell(&format!("{address}\n")) }
         })
     }
 
     /// Returns the module of a file or of this program, which may lack the plan's world.
-    fn live_module(&self, file: Option<&Path>, plan: &Plan<'_>) -> Result<Cow<'_, [u8]>, Error> {
-        let Some(path) = file else {
-            let absent = || Error::Usage("this program has no module for pages: give one with --module".into());
-            let (module, lacking) = self.laboratory.live_module().ok_or_else(absent)?;
-            let world = plan.settings.word(ENGINE).ok();
-            return match lacking.iter().find(|lacks| world == Some(**lacks)) {
-                Some(world) => Err(Error::Usage(format!(
-                    "world `{world}`: pages that run an agent are without it; `farsa replay --html` shows recorded trials"
-                ))),
-                None => Ok(Cow::Borrowed(module)),
-            };
-        };
-        let module = bounded::read_stream(path, MAX_MODULE_BYTES)?;
-        if !module.starts_with(GZIP) {
-            return Err(Error::Usage("the module is not compressed by gzip".into()));
+    fn live_module<'m>(&'m self, file: Option<&'m [u8]>, plan: &Plan<'_>) -> Result<&'m [u8], Error> {
+        if let Some(module) = file {
+            return Ok(module);
         }
-        Ok(Cow::Owned(module))
+        let absent = || Error::Usage("this program has no module for pages: give one with --module".into());
+        let (module, lacking) = self.laboratory.live_module().ok_or_else(absent)?;
+        let world = plan.settings.word(ENGINE).ok();
+        match lacking.iter().find(|lacks| world == Some(**lacks)) {
+            Some(world) => Err(Error::Usage(format!(
+                "world `{world}`: pages that run an agent are without it; `farsa replay --html` shows recorded trials"
+            ))),
+            None => Ok(module),
+        }
     }
+}
+
+/// Reads a module.
+fn module_file(path: &Path) -> Result<Vec<u8>, Error> {
+    let module = bounded::read_stream(path, MAX_MODULE_BYTES)?;
+    if !module.starts_with(GZIP) {
+        return Err(Error::Usage("the module is not compressed by gzip".into()));
+    }
+    Ok(module)
 }

@@ -18,6 +18,9 @@ pub(crate) mod page;
 pub(crate) mod page_run;
 /// Requests to a session and their answers, as JSON.
 mod request;
+/// Fitness of a generation.
+#[cfg(feature = "command")]
+mod row;
 /// State of a search, from which it continues.
 mod run_state;
 /// `farsa serve`: the page of a running run.
@@ -25,8 +28,5 @@ mod run_state;
 pub(crate) mod serve;
 /// Agent of a page and its episodes.
 mod session;
-/// New generations and champions of a running run.
-#[cfg(feature = "command")]
-mod updates;
 
 pub use session::LiveSession;

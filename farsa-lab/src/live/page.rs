@@ -10,9 +10,9 @@ use crate::error::Error;
 use crate::live::champion::champion;
 use crate::live::page_run::{PageIndividual, PageRun};
 use crate::live::request::EpisodeRequest;
+use crate::live::row::Row;
 use crate::live::run_state::RunState;
 use crate::live::session::{LiveSession, json};
-use crate::live::updates::Row;
 use crate::run::begin;
 use crate::run::config_file::MAX_BYTES;
 use crate::run::laboratory::Laboratory;
@@ -48,6 +48,9 @@ struct About {
     history: Vec<Row>,
     /// Reason why evolution cannot continue in the page, if it cannot.
     standstill: Option<String>,
+    /// Name of the run at the server, part of the address of its events.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -81,11 +84,11 @@ pub(crate) struct LiveSummary {
 
 /// Purpose of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Use {
+pub(crate) enum Use<'r> {
     /// A file in which evolution can continue.
     File,
-    /// Page of `farsa serve`, which follows a run.
-    Served,
+    /// Page of `farsa serve`, which follows a run with this name at the server.
+    Served { run: &'r str },
 }
 
 /// Text of a page and the generations in it.
@@ -121,7 +124,7 @@ pub(crate) fn html(
     (plan, directory): (&Plan<'_>, &Directory),
     generations: &[u32],
     module: &[u8],
-    used: Use,
+    used: Use<'_>,
 ) -> Result<PageText, Error> {
     if let Some(file) = plan.experiment.files(&plan.condition, &plan.settings)?.first() {
         return Err(Error::Usage(format!("a page cannot read files, and the run needs {}", file.display())));
@@ -137,20 +140,20 @@ pub(crate) fn html(
     let config = bounded::read_regular_text(&directory.config(), MAX_BYTES)?;
     let generations = individuals.iter().map(|individual| individual.generation).collect();
     let (history, state) = run_so_far(plan, directory)?;
-    let state = match used {
-        Use::File => state,
-        Use::Served => Err("the run continues in its own process".into()),
+    let (state, served) = match used {
+        Use::File => (state, None),
+        Use::Served { run } => (Err("the run continues in its own process".into()), Some(run.to_owned())),
     };
     let (state, standstill) = state.map_or_else(|why| (None, Some(why)), |state| (Some(state), None));
     let run = PageRun { config, individuals, state: None };
     let script = json(&run)?;
-    let about = json(&About { history, standstill, ..about(laboratory, &run, &script)? })?;
+    let about = json(&About { history, standstill, run: served.clone(), ..about(laboratory, &run, &script)? })?;
     let state = state.map(|state| json(&state)).transpose()?;
     let page = LivePage {
         title: plan.name(),
         from_above,
         module: module.into(),
-        served: used == Use::Served,
+        served: served.is_some(),
         state,
         about,
         script,
@@ -196,6 +199,7 @@ fn about(laboratory: &Laboratory<'_>, run: &PageRun, script: &str) -> Result<Abo
         individuals: Vec::new(),
         history: Vec::new(),
         standstill: None,
+        run: None,
     };
     for (index, PageIndividual { generation, individual, .. }) in run.individuals.iter().enumerate() {
         let mut trials = Vec::new();

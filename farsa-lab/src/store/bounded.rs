@@ -47,6 +47,26 @@ pub(crate) fn read_configuration(path: &Path, limit: u64) -> Result<String, Erro
 /// # Errors
 /// [`Error::Io`], and [`Error::File`] above the limit or for a pipe, a device or a directory.
 pub(crate) fn read_regular(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+    let (file, size) = open_regular(path)?;
+    read_limited(file, path, size, limit)
+}
+
+/// Reads at most `length` bytes of a regular file from a byte on. The result is shorter at the end of the file.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::File`] for a pipe, a device or a directory.
+#[cfg(feature = "command")]
+pub(crate) fn read_regular_part(path: &Path, start: u64, length: u64) -> Result<Vec<u8>, Error> {
+    use std::io::{Seek as _, SeekFrom};
+    let (mut file, _) = open_regular(path)?;
+    let mut bytes = Vec::new();
+    let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.take(length).read_to_end(&mut bytes));
+    read.map_err(Error::io("read", path))?;
+    Ok(bytes)
+}
+
+/// Opens a regular file, and returns its size.
+fn open_regular(path: &Path) -> Result<(File, u64), Error> {
     let regular = |metadata: Metadata| {
         if metadata.is_file() { Ok(metadata) } else { Err(Error::damaged(path, "is not a regular file")) }
     };
@@ -54,7 +74,7 @@ pub(crate) fn read_regular(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     regular(path.metadata().map_err(Error::io("read", path))?)?;
     let file = open_without_waiting(path).map_err(Error::io("read", path))?;
     let size = regular(file.metadata().map_err(Error::io("read", path))?)?.len();
-    read_limited(file, path, size, limit)
+    Ok((file, size))
 }
 
 /// Reads an optional file of a run. The result is `None` where there is no file, or something that is not a regular file.
@@ -94,7 +114,7 @@ fn open_without_waiting(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
     #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK);
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
     options.open(path)
 }
 

@@ -94,7 +94,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 
 	// Receives new generations from the server.
 	function hear() {
-		const events = new EventSource(`events?from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
+		const events = new EventSource(`events?run=${about.run}&from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
 		events.onopen = () => (status.textContent = "Connected to the run.");
 		events.onerror = () => (status.textContent = "The server does not answer. The page tries again.");
 		events.addEventListener("fitness", ({data}) => {
@@ -105,6 +105,8 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 			latest = JSON.parse(data);
 			own.champion.disabled = false;
 		});
+		// The directory holds another run, which has its own page.
+		events.addEventListener("replaced", () => (events.close(), location.reload()));
 	}
 
 	function toggle() {
