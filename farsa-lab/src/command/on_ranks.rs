@@ -1,5 +1,6 @@
 //! Command on several ranks, of which rank 0 executes it.
 
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use crate::command::arguments::subcommands::{Command, RunArgs};
@@ -48,13 +49,7 @@ impl Invocation<'_, '_> {
     /// Returns the arguments that must be equal on all ranks. Threads and lanes may differ.
     fn facts(&self, command: &Command) -> Result<Facts, Error> {
         let Command::Run(args) = command else { return Ok(vec![("command".into(), "another than run".into())]) };
-        let number = |number: Option<u32>| number.map_or_else(|| "none".into(), |number| number.to_string());
-        let mut facts = vec![
-            ("command".into(), "run".into()),
-            ("--replications".into(), number(args.replications)),
-            ("--replication".into(), number(args.replication)),
-            ("--groups".into(), number(args.groups)),
-        ];
+        let mut facts = argument_facts(args);
         let (_, plan) = self.planned_from_file(args)?;
         self.pool(args, &plan)?;
         facts.extend(coordinator::facts(&plan)?);
@@ -121,5 +116,51 @@ impl Invocation<'_, '_> {
         // All runs are finished, so this only reads their results.
         let reader = Invocation { quiet: true, exchange: Rc::default(), ..part };
         reader.replicate(args, count, None).map(Some)
+    }
+}
+
+/// Returns the arguments that select runs and their directories.
+fn argument_facts(args: &RunArgs) -> Facts {
+    let none = || "none".to_owned();
+    let number = |number: Option<u32>| number.map_or_else(none, |number| number.to_string());
+    let path = |path: &Option<PathBuf>| path.as_ref().map_or_else(none, |path| path.display().to_string());
+    let facts = [
+        ("command", "run".into()),
+        ("--replications", number(args.replications)),
+        ("--replication", number(args.replication)),
+        ("--groups", number(args.groups)),
+        ("--out", path(&args.out)),
+        ("--resume", path(&args.resume)),
+        ("--force", args.force.to_string()),
+    ];
+    facts.map(|(name, value)| (name.to_owned(), value)).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    use crate::ranks::facts;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        run: RunArgs,
+    }
+
+    #[test]
+    fn ranks_with_other_directories_are_refused() {
+        let of = |line: &str| argument_facts(&Line::try_parse_from(line.split(' ')).unwrap().run);
+        let own = of("run cart --out a");
+        facts::same(&[own.clone(), of("run cart --out a --threads 2")]).unwrap();
+        for (other, message) in [
+            ("run cart --out b", "rank 1: `--out` is b there and a on rank 0"),
+            ("run cart", "rank 1: `--out` is none there and a on rank 0"),
+            ("run cart --out a --force", "rank 1: `--force` is true there and false on rank 0"),
+            ("run --resume a", "rank 1: `--out` is none there and a on rank 0"),
+        ] {
+            assert_eq!(facts::same(&[own.clone(), of(other)]).unwrap_err().to_string(), message);
+        }
     }
 }

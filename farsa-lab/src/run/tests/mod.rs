@@ -13,7 +13,8 @@ mod ranks;
 mod reference;
 
 use std::fs;
-use std::path::PathBuf;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use farsa_body::Recorder;
@@ -172,10 +173,33 @@ impl Evaluator for Numbers {
     }
 }
 
-fn scratch(name: &str) -> PathBuf {
+/// A directory that does not exist yet, and is removed with everything in it at the end of a test.
+struct Scratch(PathBuf);
+
+impl Deref for Scratch {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl AsRef<Path> for Scratch {
+    fn as_ref(&self) -> &Path {
+        self
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn scratch(name: &str) -> Scratch {
     let path = std::env::temp_dir().join(format!("farsa-search-{name}-{}", std::process::id()));
     let _ = fs::remove_dir_all(&path);
-    path
+    Scratch(path)
 }
 
 fn plan(numbers: &Numbers, generations: i64) -> Plan<'_> {

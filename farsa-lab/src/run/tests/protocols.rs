@@ -154,7 +154,8 @@ fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
 
     // An experiment without a controller is refused.
     let plan = plan(&STEADY, 2);
-    let directory = create(&plan, &scratch("lesions-of-none")).unwrap();
+    let root = scratch("lesions-of-none");
+    let directory = create(&plan, &root).unwrap();
     run(&plan, &directory, 1);
     let error = lesions(&plan, &directory, None, &["neuron:1".into()], effort).unwrap_err().to_string();
     assert!(error.contains("has no controller that can be changed"), "{error}");
