@@ -14,6 +14,8 @@ use crate::document::{self, Document, RobotKind};
 pub(crate) struct RobotModel {
     pub(crate) robot: Robot,
     pub(crate) frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
+    /// False if the model disables all contacts.
+    pub(crate) touches: bool,
 }
 
 /// Most elements of a model.
@@ -44,7 +46,7 @@ impl RobotModel {
             (_, None) if *floating => return Err(source.wrong("/robot/floating", "is for the kind `model`")),
             (_, None) => {
                 let robot = ArmAndHand::default().robot().map_err(|error| source.wrong("/robot", error))?;
-                Self { robot, frames: Vec::new() }
+                Self { robot, frames: Vec::new(), touches: true }
             }
         };
         body.place(*base);
@@ -56,13 +58,14 @@ impl RobotModel {
         // The text of a run contains no mesh, and opens no file.
         let options = ReadOptions { floating, meshes: Meshes::Leave, ..model_options() };
         let read = Imported::from_text(text, &options);
-        let Imported { robot, frames, .. } =
+        let Imported { robot, frames, gravity, contacts, .. } =
             read.map_err(|error| source.wrong("/robot/file", format!("{name}: {error}")))?;
+        check_gravity(gravity, document, source)?;
         if robot.joints().next().is_none() && robot.segments.is_empty() {
             return Err(source.wrong("/robot/file", format!("{name}: has nothing that moves")));
         }
         let frames = frames.into_iter().map(|frame| (frame.name, frame.body, frame.placement)).collect();
-        Ok(Self { robot, frames })
+        Ok(Self { robot, frames, touches: contacts })
     }
 
     /// Moves all segments that are fixed to the world.
@@ -82,4 +85,16 @@ impl RobotModel {
         let standing = self.frames.iter_mut().filter(|(_, body, _)| body.is_none());
         standing.for_each(|(_, _, placement)| moved(placement));
     }
+}
+
+/// Refuses a model with another gravity than that of a world that does not choose one.
+fn check_gravity(gravity: Option<[f64; 3]>, document: &Document, source: &Source) -> Result<(), Error> {
+    let usual = document::World::default().gravity;
+    let Some(gravity) = gravity.filter(|gravity| *gravity != usual && document.world.gravity == usual) else {
+        return Ok(());
+    };
+    let why = format!(
+        "is {usual:?} and that of the model {gravity:?}; set `gravity = {gravity:?}`, or remove it from the model"
+    );
+    Err(source.wrong("/world/gravity", why))
 }

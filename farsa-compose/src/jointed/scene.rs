@@ -39,7 +39,7 @@ const FLOOR: &str = "floor";
 impl Scene {
     /// Builds the robot of a document with its surroundings.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
-        let RobotModel { mut robot, frames } = RobotModel::new(document, source)?;
+        let RobotModel { mut robot, frames, touches } = RobotModel::new(document, source)?;
         let own = [robot.segments.len(), robot.colliders.len()];
         let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
         let floor = document.world.floor.then(|| {
@@ -61,12 +61,12 @@ impl Scene {
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
         let mut scene = Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new() };
-        scene.pair(document);
+        scene.pair(document, touches);
         Ok(scene)
     }
 
-    /// Adds the contact pairs: robot and floor, each thing and everything else.
-    fn pair(&mut self, document: &Document) {
+    /// Adds the contact pairs: robot and floor, each thing and everything else. A robot that does not touch has none.
+    fn pair(&mut self, document: &Document, touches: bool) {
         let (stiffness, friction) = (document.world.stiffness, document.world.friction);
         // Critical damping, c = 2 sqrt(k m), with the whole mass at one point.
         let surface = |mass: f64, friction| Surface {
@@ -75,7 +75,7 @@ impl Scene {
             stiffness,
             damping: 2.0 * Scalar::sqrt(stiffness * mass),
         };
-        let [segments, colliders] = self.own;
+        let [segments, colliders] = [self.own[0], if touches { self.own[1] } else { 0 }];
         let mass: f64 = self.robot.segments[..segments].iter().map(|segment| segment.mass).sum();
         let moves = |collider: &Collider| collider.body.is_some_and(|body| self.moves(body));
         let movable: Vec<bool> = self.robot.colliders.iter().map(moves).collect();

@@ -2,6 +2,7 @@
 
 mod eyes;
 mod merged;
+mod settings;
 
 use std::path::Path;
 
