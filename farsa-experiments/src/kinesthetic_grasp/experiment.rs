@@ -158,6 +158,10 @@ impl Evaluator for Trainee {
         self.evaluator.evaluate(evaluation, recorder)
     }
 
+    fn record_start(&mut self, evaluation: Evaluation<'_>, recorder: &mut dyn Recorder) -> bool {
+        self.evaluator.record_start(evaluation, recorder)
+    }
+
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         self.evaluator.in_lanes()
     }

@@ -420,6 +420,15 @@ impl Bodies for Walkers {
 }
 
 impl Evaluator for Walkers {
+    fn record_start(&mut self, evaluation: Evaluation<'_>, recorder: &mut dyn Recorder) -> bool {
+        // Both engines start from the same state.
+        let Some((robot, mut episode)) = self.config.episode(&evaluation) else { return false };
+        let Some(mut world) = self.config.world(&robot) else { return false };
+        episode.start(&mut world, evaluation.id);
+        episode.record(&world, recorder);
+        true
+    }
+
     /// Success is ten strides, twenty steps, without a fall.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
         let Some((robot, episode)) = self.config.episode(&evaluation) else { return Outcome::failed() };

@@ -10,6 +10,7 @@ mod files;
 mod genotypes;
 mod guide;
 mod individuals;
+mod keyframes;
 mod lines;
 mod live;
 mod look;

@@ -258,6 +258,15 @@ pub trait Evaluator: Task {
     /// [`InWorld`](crate::InWorld) ends a trial at its [step budget](TaskInfo::step_budget).
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
+    /// Records the state from which a trial starts as a single tick. Returns false if the evaluator cannot, which is the
+    /// default.
+    ///
+    /// `farsa export` writes this state into the MuJoCo model of the robot.
+    fn record_start(&mut self, evaluation: Evaluation<'_>, recorder: &mut dyn Recorder) -> bool {
+        let _ = (evaluation, recorder);
+        false
+    }
+
     /// Checks whether evaluations support [`Evaluation::displacements`]. This is `false` by default.
     fn displaces(&self) -> bool {
         false

@@ -208,6 +208,18 @@ where
         limited.stopped().unwrap_or_else(|| self.rollout.outcome())
     }
 
+    fn record_start(&mut self, evaluation: Evaluation<'_>, recorder: &mut dyn Recorder) -> bool {
+        if !self.rollout.load(&evaluation) {
+            return false;
+        }
+        self.rollout.start(&mut self.world, evaluation.id);
+        let started = self.rollout.has_started();
+        if started {
+            self.rollout.record(&self.world, recorder);
+        }
+        started
+    }
+
     fn displaces(&self) -> bool {
         self.place.is_some()
     }

@@ -61,6 +61,10 @@ impl Evaluator for Rescored {
         rescore(&self.score, self.inner.evaluate(evaluation, recorder))
     }
 
+    fn record_start(&mut self, evaluation: Evaluation<'_>, recorder: &mut dyn Recorder) -> bool {
+        self.inner.record_start(evaluation, recorder)
+    }
+
     fn displaces(&self) -> bool {
         self.inner.displaces()
     }

@@ -11,6 +11,7 @@ use crate::evaluation::{genotypes, trials};
 use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::evaluator::{Evaluator, Exports};
 use crate::export::controller_formats;
+use crate::export::keyframe::start_of_trial;
 use crate::json::pretty;
 use crate::run::plan::Plan;
 use crate::run::records::{Best, Champions};
@@ -51,7 +52,7 @@ pub(crate) fn robot(
     run: Option<(&Directory, Option<&str>)>,
     format: ModelFormat,
 ) -> Result<String, Error> {
-    let evaluator = plan.evaluator()?;
+    let mut evaluator = plan.evaluator()?;
     let (name, names) = (plan.experiment.name(), evaluator.info().populations);
     let parameters = match (run, evaluator.bodies()) {
         (Some((directory, population)), Some(_)) => {
@@ -74,7 +75,13 @@ pub(crate) fn robot(
     let step = if robot.is_some() { 0.0 } else { evaluator.info().description.step_seconds };
     let robot = robot.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
-        ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref(), step)),
+        ModelFormat::Mjcf => {
+            let mut options = mjcf_options(evaluator.as_ref(), step);
+            if options.keyframes.is_empty() {
+                options.keyframes.extend(start_of_trial(evaluator.as_mut(), &robot, parameters.as_deref()));
+            }
+            mjcf::write(&robot, &options)
+        }
         ModelFormat::Urdf => urdf::write(&robot),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))

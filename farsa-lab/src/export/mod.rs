@@ -4,5 +4,7 @@
 mod controller_formats;
 /// `farsa export`.
 pub(crate) mod files;
+/// Start of a trial as a keyframe.
+mod keyframe;
 /// `farsa robot`.
 pub(crate) mod robot_file;
