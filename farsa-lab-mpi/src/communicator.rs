@@ -1,5 +1,6 @@
 //! The ranks of an MPI communicator.
 
+use std::io::{self, Write as _};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,9 @@ const MOST: usize = 1 << 30;
 /// The shortest and the longest pause between two checks for the other ranks.
 const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(1)];
 
+/// The wait after which a rank reports that it waits. Each further report takes twice as long.
+const SILENCE: Duration = Duration::from_secs(60);
+
 /// The ranks of an MPI communicator, for one thread. An MPI error ends all processes.
 pub struct MpiRanks {
     communicator: SimpleCommunicator,
@@ -31,10 +35,28 @@ impl MpiRanks {
     /// Waits for all ranks. MPI libraries occupy a processor while they wait, so this function polls with pauses.
     fn meet(&self) {
         let since = Instant::now();
+        let mut silence = SILENCE;
         let mut here: Request<'static, ()> = self.communicator.immediate_barrier();
         while let Err(waiting) = here.test() {
             here = waiting;
+            if since.elapsed() >= silence {
+                self.report_wait(silence);
+                silence *= 2;
+            }
             thread::sleep((since.elapsed() / 8).clamp(PAUSES[0], PAUSES[1]));
+        }
+    }
+}
+
+impl MpiRanks {
+    /// Reports a wait on two ranks, of which at most one is the rank that is waited for.
+    fn report_wait(&self, silence: Duration) {
+        let rank = self.communicator.rank();
+        if rank < 2 {
+            let seconds = silence.as_secs();
+            let why = "one of them is stopped, or its trials take longer";
+            // A closed standard error does not end the run.
+            let _ = writeln!(io::stderr(), "rank {rank}: has waited {seconds} s for the other ranks: {why}");
         }
     }
 }
