@@ -7,9 +7,10 @@ fn warnings(rest: &str) -> Vec<String> {
     let text = format!(
         "robot = {{ kind = \"marxbot\" }}\n\
          sensors = [{{ kind = \"infrared\" }}, {{ name = \"still\", kind = \"constant\", value = 0.4 }}]\n\
-         motors = [{{ kind = \"wheels\" }}]\nnetwork = {{ kind = \"perceptron\" }}\n\
+         network = {{ kind = \"perceptron\" }}\n\
          objects = [{{ name = \"post\", kind = \"cylinder\", radius = 0.05, at = [0.5, 0.5] }}, \
-         {{ name = \"nest\", kind = \"disc\", radius = 0.2, color = [0, 0, 0], at = [0.3, 0.3] }}]\n{rest}\n"
+         {{ name = \"nest\", kind = \"disc\", radius = 0.2, color = [0, 0, 0], at = [0.3, 0.3] }}]\n\
+         [[motors]]\nkind = \"wheels\"\n{rest}\n"
     );
     let made = ComposedExperiment::from_text("dull.toml", &text, farsa_lab::strategy::strategies());
     let made = made.unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -20,7 +21,7 @@ fn warnings(rest: &str) -> Vec<String> {
 #[test]
 fn a_fitness_without_weights_is_warned_about() {
     let found = warnings("[[reward]]\nkind = \"forward\"\nweight = 0.0\n[[reward]]\nkind = \"touch\"\nweight = 0.0");
-    assert_eq!(found, ["dull.toml line 8: no term has a weight, so the fitness of all individuals is 0"]);
+    assert_eq!(found, ["dull.toml line 9: no term has a weight, so the fitness of all individuals is 0"]);
     assert!(warnings("[[reward]]\nkind = \"forward\"\n[[reward]]\nkind = \"touch\"\nweight = 0.0").is_empty());
 }
 
@@ -64,7 +65,7 @@ fn a_fitness_that_cannot_differ_is_warned_about() {
             "name = \"met\"\nkind = \"touch\"\nweight = 0.0\n[[reward]]\nkind = \"time\"\nduring = \"met\"",
         ),
     ] {
-        assert_eq!(warnings(&format!("[[reward]]\n{constant}")), [format!("dull.toml line 6: {why}")], "{constant}");
+        assert_eq!(warnings(&format!("[[reward]]\n{constant}")), [format!("dull.toml line 7: {why}")], "{constant}");
         assert!(warnings(&format!("[[reward]]\n{differing}")).is_empty(), "{differing}");
     }
 }

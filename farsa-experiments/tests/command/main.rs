@@ -26,3 +26,4 @@ mod serve;
 mod strangers;
 mod sweep;
 mod tool;
+mod wrong;
