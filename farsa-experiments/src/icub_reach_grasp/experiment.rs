@@ -39,6 +39,11 @@ impl Experiment for IcubReachGrasp {
         strategy("snes")
     }
 
+    // 2: contacts of two boxes.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn settings(&self, condition: &str) -> Vec<Setting> {
         Config::for_area(Area::from_name(condition)).table()
     }

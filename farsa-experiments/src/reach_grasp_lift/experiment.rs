@@ -36,6 +36,11 @@ impl Experiment for ReachGraspLift {
         &[LABELS, NO_LABELS]
     }
 
+    // 2: contacts of palm and table are those of two boxes.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn settings(&self, condition: &str) -> Vec<Setting> {
         Config::for_condition(condition != NO_LABELS).table()
     }

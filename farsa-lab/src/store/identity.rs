@@ -12,7 +12,7 @@ use crate::experiment::settings::Value;
 /// It is increased whenever a change in the crates below experiments leads to different trials for the same
 /// configuration, seed and genes. For changes in an experiment itself, see
 /// [`Experiment::values_version`](crate::Experiment::values_version).
-pub const VALUES_VERSION: u32 = 4;
+pub const VALUES_VERSION: u32 = 3;
 
 /// Start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.
 pub(crate) const FILE: &str = "CRC-32 of ";
