@@ -15,11 +15,13 @@ fn refused(here: &Path, arguments: &str, words: &[&str]) {
     assert!(said.out.is_empty() && !here.join("runs").exists() && !here.join("o").exists(), "{arguments}: {said:?}");
 }
 
-/// An experiment of the guide, whose strategy is chosen in line 22.
+/// Writes an experiment of the guide whose strategy is chosen in line 1.
 fn follow(here: &Path, strategy: &str) {
     let _ = fs::remove_file(here.join("follow.toml"));
     ok(farsa(), here, "new follow --from wander --quiet");
     let text = fs::read_to_string(here.join("follow.toml")).expect("the file");
+    // Rates and parents are those of its own strategy.
+    let text = text.replace("parents = 8\n", "").replace("mutation_rate = 0.02\n", "");
     fs::write(here.join("follow.toml"), format!("strategy = {{ name = \"{strategy}\" }}\n{text}")).expect("a file");
 }
 
@@ -133,7 +135,7 @@ fn reports_name_the_origin_of_equal_names() {
     let here = scratch("equal-names");
     ok(farsa(), &here, "new discrimination --from light --quiet");
     let run = |name: &str, more: &str| ok(farsa(), &here, &format!("run {name} --generations 1 {more} --quiet"));
-    run("discrimination", "--population 20 --set trial.count=1 --set trial.steps=5 --out built-in");
+    run("discrimination", "--set trial.count=1 --set trial.steps=5 --out built-in");
     run("discrimination.toml", "--population 8 --set episode.trials=1 --set episode.steps=5 --out file");
     ok(farsa(), &here, "report built-in file --md both.md");
     let page = fs::read_to_string(here.join("both.md")).expect("the page");
