@@ -20,7 +20,7 @@ fn follow(here: &Path, strategy: &str) {
     let _ = fs::remove_file(here.join("follow.toml"));
     ok(farsa(), here, "new follow --from wander --quiet");
     let text = fs::read_to_string(here.join("follow.toml")).expect("the file");
-    // Rates and parents are those of its own strategy.
+    // The strategies below have other rates and parents.
     let text = text.replace("parents = 8\n", "").replace("mutation_rate = 0.02\n", "");
     fs::write(here.join("follow.toml"), format!("strategy = {{ name = \"{strategy}\" }}\n{text}")).expect("a file");
 }
