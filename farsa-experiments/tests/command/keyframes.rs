@@ -1,8 +1,8 @@
 //! Keyframes of exported models.
 
-use farsa_body::Pose;
 use farsa_body::ports::{Arrange as _, BodyId, Contacts as _, JointId, PairId, World as _};
 use farsa_body::robot::JointKind;
+use farsa_body::{Pose, Twist};
 use farsa_models::{Imported, ReadOptions};
 use farsa_physics::articulated::{Model, Options, World};
 
@@ -28,7 +28,7 @@ fn deepest(model: &str, state: &[f64]) -> f32 {
             JointKind::Floating => {
                 let [x, y, z, w, i2, j, k] = [(); 7].map(|()| next());
                 let pose = Pose { position: [x, y, z], rotation: [i2, j, k, w] };
-                world.place_body(BodyId(i as u16), pose, Default::default());
+                world.place_body(BodyId(i as u16), pose, Twist::default());
             }
             _ => world.place_joint(JointId(i as u16), next(), 0.0),
         }
