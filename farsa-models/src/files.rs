@@ -14,7 +14,7 @@ pub(crate) struct NamedFile<'a> {
     /// Folder of assets that the model chooses, such as `meshdir`. It may be empty.
     pub(crate) assets: &'a str,
     /// Folder of the included file that contains the name.
-    pub(crate) beside: Option<&'a Path>,
+    pub(crate) folder: Option<&'a Path>,
 }
 
 /// Reads files for a model.
@@ -124,13 +124,13 @@ impl ModelFiles {
     /// the same folder below that of the assets (MuJoCo's place for a model with a relative path), then its own folder
     /// of assets. `path` is the name in the model's folder of assets.
     fn path(&self, named: &NamedFile<'_>, path: &str) -> Result<PathBuf, &'static str> {
-        let NamedFile { name, assets, beside } = *named;
+        let NamedFile { name, assets, folder } = *named;
         let start = self.start.as_deref();
         let first = self.resolved(start, path);
-        let Some(beside) = beside.filter(|_| first.is_err() && !is_complete(name)) else { return first };
-        let below = start.and_then(|start| beside.strip_prefix(start).ok()?.to_str());
+        let Some(folder) = folder.filter(|_| first.is_err() && !is_complete(name)) else { return first };
+        let below = start.and_then(|start| folder.strip_prefix(start).ok()?.to_str());
         let below = below.map(|below| joined(assets, &joined(below, name)));
-        let places = [(Some(beside), Some(name)), (start, below.as_deref()), (Some(beside), Some(path))];
+        let places = [(Some(folder), Some(name)), (start, below.as_deref()), (Some(folder), Some(path))];
         let other = places.into_iter().find_map(|(folder, name)| self.resolved(folder, name?).ok());
         other.map_or(first, Ok)
     }

@@ -46,7 +46,7 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
         RewardKind::Deaths {} | RewardKind::Energy {} | RewardKind::Alive {} => {
             foraging.is_some_and(|foraging| foraging.cost == 0.0)
         }
-        RewardKind::Moved { object } => stands(object, document),
+        RewardKind::Moved { object } => is_fixed(object, document),
         RewardKind::Sensor { sensor } => {
             let place = source.names.sensors.iter().position(|(name, _)| name == sensor);
             let sensor = place.and_then(|place| document.sensors.get(place));
@@ -63,7 +63,7 @@ fn pulls(document: &Document) -> bool {
 }
 
 /// Checks if a thing stays at its place in a trial.
-fn stands(name: &str, document: &Document) -> bool {
+fn is_fixed(name: &str, document: &Document) -> bool {
     let movable = |kind: &ObjectKind| matches!(kind, ObjectKind::Block { .. } | ObjectKind::Ball { .. });
     let object = document.objects.iter().find(|object| object.name == name);
     object.is_some_and(|object| !movable(&object.kind) && !pulls(document))

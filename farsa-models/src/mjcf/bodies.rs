@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
-use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
+use crate::mjcf::geoms::{CONDITIONAL, MeshAssets, check_geom, geom};
 use crate::mjcf::inertials::body_mass;
 use crate::mjcf::items::{Item, items};
 use crate::mjcf::joints::{BodyJoint, check_joint, joint};
@@ -378,21 +378,6 @@ impl<'t, 'c> Bodies<'t, 'c> {
         Ok(())
     }
 }
-
-/// Attributes of a geom without effect in MuJoCo, if it touches nothing or its body has an `inertial`.
-const CONDITIONAL: [&str; 11] = [
-    "contype",
-    "conaffinity",
-    "condim",
-    "priority",
-    "friction",
-    "solref",
-    "solimp",
-    "solmix",
-    "mass",
-    "density",
-    "shellinertia",
-];
 
 fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
     let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();

@@ -99,7 +99,7 @@ impl MeshAsset<'_, '_> {
         let mesh = if let Some(file) = element.attribute("file") {
             let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
             let file = if compiler.strip_path { last } else { file };
-            let named = NamedFile { name: file, assets: &compiler.mesh_folder, beside: element.folder() };
+            let named = NamedFile { name: file, assets: &compiler.mesh_folder, folder: element.folder() };
             let bytes = context.files.content(&place, &named)?;
             Mesh::parse(file, &bytes).map_err(|why| ReadError::Mesh { place, path: file.into(), why })?
         } else {
@@ -136,31 +136,25 @@ impl MeshAsset<'_, '_> {
     }
 }
 
+/// Attributes of a geom without effect in MuJoCo, if it touches nothing or its body has an `inertial`.
+pub(crate) const CONDITIONAL: [&str; 11] = [
+    "contype",
+    "conaffinity",
+    "condim",
+    "priority",
+    "friction",
+    "solref",
+    "solimp",
+    "solmix",
+    "mass",
+    "density",
+    "shellinertia",
+];
+
 pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
     let read = [
-        &[
-            "name",
-            "class",
-            "type",
-            "size",
-            "fromto",
-            "pos",
-            "mesh",
-            "mass",
-            "density",
-            "group",
-            "rgba",
-            "shellinertia",
-            "fitscale",
-            "contype",
-            "conaffinity",
-            "condim",
-            "priority",
-            "friction",
-            "solref",
-            "solimp",
-            "solmix",
-        ][..],
+        &["name", "class", "type", "size", "fromto", "pos", "mesh", "group", "rgba", "fitscale"][..],
+        &CONDITIONAL,
         &ROTATIONS,
     ]
     .concat();

@@ -127,7 +127,7 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
             let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
             let place = shape.place();
             let mesh =
-                Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", beside: None })?);
+                Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", folder: None })?);
             let fit = mesh.and_then(|mesh| {
                 let scaled = mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]));
                 // Its link has the mass.

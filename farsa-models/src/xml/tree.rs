@@ -140,7 +140,7 @@ impl Tree {
                 let place = element.place();
                 element.check(&["file"], &[], &mut context.warnings)?;
                 let file = element.needed("file")?.to_owned();
-                let named = NamedFile { name: &file, assets: "", beside: element.folder() };
+                let named = NamedFile { name: &file, assets: "", folder: element.folder() };
                 let (path, text) = context.files.text(&place, &named)?;
                 if let Some((_, line)) = included.iter().find(|(other, _)| *other == path) {
                     return Err(repeated(place, "include of", &file, *line));

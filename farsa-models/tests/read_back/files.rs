@@ -105,7 +105,7 @@ fn included_files_stand_where_they_are_named() {
 /// for the folder `meshdir` of an included file, which it does not find.
 #[test]
 fn files_of_an_included_file_are_next_to_it() {
-    let folder = folder("beside").canonicalize().unwrap();
+    let folder = folder("included").canonicalize().unwrap();
     let model = folder.join("model/robot.xml");
     let body = "<worldbody><body><joint/><geom type='mesh' mesh='m'/></body></worldbody>";
     let asset = "<mujocoinclude><asset><mesh name='m' file='a.obj'/></asset></mujocoinclude>";
