@@ -1,4 +1,4 @@
-//! Generates docs/command.md from the command line and `reference.md`, and checks that the file is current.
+//! Generates docs/command.md from the command line and `reference.txt`, and checks that the file is current.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use clap::{Arg, Command};
 use crate::command::manual;
 use crate::run::laboratory::Laboratory;
 
-const TEMPLATE: &str = include_str!("reference.md");
+const TEMPLATE: &str = include_str!("reference.txt");
 /// Options that are listed once, with the help of `run`.
 const COMMON: [&str; 8] = ["condition", "set", "threads", "lanes", "simd", "world", "json", "quiet"];
 const MAX_BYTES: usize = 20_000;
