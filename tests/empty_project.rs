@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -39,6 +40,33 @@ fn ten_lines_are_enough() {
         assert!(lines <= 10, "{file} has {lines}");
         let widest = text.lines().map(str::len).max().unwrap();
         assert!(widest <= 130, "{file}: {widest} columns");
+    }
+}
+
+/// Crates of this repository in a text, by the names that follow a mark.
+fn crates(text: &str, marks: [&str; 2]) -> BTreeSet<String> {
+    let names = text.lines().flat_map(|line| marks.map(|mark| line.trim_start().strip_prefix(mark)));
+    let names = names.flatten().map(|rest| {
+        rest.chars().take_while(|letter| letter.is_ascii_lowercase() || "-_".contains(*letter)).collect::<String>()
+    });
+    names.map(|name| name.replace('_', "-")).collect()
+}
+
+#[test]
+fn readmes_list_the_crates_of_their_programs() {
+    for entry in fs::read_dir(root()).unwrap() {
+        let path = entry.unwrap().path().join("README.md");
+        let name = path.parent().unwrap().file_name().unwrap().to_string_lossy().into_owned();
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        if !name.starts_with("farsa-") {
+            continue;
+        }
+        let (_, rest) = text.split_once("[dependencies]\n").unwrap_or_else(|| panic!("{name} has no [dependencies]"));
+        let listed = crates(rest.split("```").next().unwrap(), ["farsa-", "# farsa-"]);
+        assert!(listed.contains(name.trim_start_matches("farsa-")), "{name} does not list itself: {listed:?}");
+        let programs: String = text.split("```").skip(1).step_by(2).filter(|block| !block.starts_with("t")).collect();
+        let used = crates(&programs, ["use farsa_", "# use farsa_"]);
+        assert!(!used.is_empty() && used.is_subset(&listed), "{name} uses {used:?} and lists {listed:?}");
     }
 }
 
