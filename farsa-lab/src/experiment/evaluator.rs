@@ -1,5 +1,7 @@
 //! Evaluation of an experiment: parameters in, outcomes out.
 
+use std::sync::atomic::AtomicBool;
+
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
 use farsa_evo::ObservationStatistics;
@@ -215,6 +217,8 @@ pub struct Evaluation<'p> {
     pub pushes: &'p [Push],
     /// Robot whose channels are recorded, of several \[[`TaskInfo::robots`]\]. By default the individual's first.
     pub watched: Option<u32>,
+    /// Flag that ends the episode early, which then counts as failed. None in a run and in a test.
+    pub stop: Option<&'static AtomicBool>,
 }
 
 impl<'p> Evaluation<'p> {
@@ -234,6 +238,7 @@ impl<'p> Evaluation<'p> {
             displacements: &[],
             pushes: &[],
             watched: None,
+            stop: None,
         }
     }
 }

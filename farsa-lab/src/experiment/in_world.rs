@@ -77,7 +77,7 @@ where
         let begin = |Numbered { limited, number }: &mut Numbered<R>| {
             loop {
                 let evaluation = next()?;
-                *number = evaluation.number;
+                (*number, limited.stop) = (evaluation.number, evaluation.stop);
                 if limited.episode.load(&evaluation) {
                     return Some(evaluation.id);
                 }
@@ -198,6 +198,7 @@ where
         }
         let budget = *self.budget.get_or_insert_with(|| self.rollout.info().step_budget());
         let mut limited = Limited::new(&mut self.rollout, budget);
+        limited.stop = evaluation.stop;
         let Evaluation { id, displacements, pushes, .. } = evaluation;
         let disturbances = Disturbances { displacements, pushes, place: self.place, apply: self.apply };
         if disturbances.any() {

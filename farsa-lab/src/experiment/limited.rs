@@ -1,13 +1,16 @@
 //! An episode with a maximum number of steps.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use farsa_body::Recorder;
 
 use crate::experiment::episode::{Episode, EpisodeId};
 use crate::experiment::outcome::{Failure, Outcome};
 
-/// An episode that is stopped after a maximum number of steps.
+/// An episode that is stopped after a maximum number of steps, or when a flag becomes true.
 pub(crate) struct Limited<E> {
     pub(crate) episode: E,
+    pub(crate) stop: Option<&'static AtomicBool>,
     budget: u64,
     left: u64,
     stopped: bool,
@@ -16,14 +19,18 @@ pub(crate) struct Limited<E> {
 impl<E> Limited<E> {
     /// An episode that has at most `budget` steps.
     pub(crate) fn new(episode: E, budget: u64) -> Self {
-        Self { episode, budget, left: budget, stopped: false }
+        Self { episode, stop: None, budget, left: budget, stopped: false }
     }
 
     /// Gets the outcome if the episode was stopped.
     pub(crate) fn stopped(&self) -> Option<Outcome> {
-        let steps = u32::try_from(self.budget).unwrap_or(u32::MAX);
-        let outcome = || Outcome { steps, failure: Some(Failure::Endless(self.budget)), ..Outcome::failed() };
-        self.stopped.then(outcome)
+        let steps = u32::try_from(self.budget - self.left).unwrap_or(u32::MAX);
+        let failure = if self.left > 0 { Failure::Interrupted } else { Failure::Endless(self.budget) };
+        self.stopped.then(|| Outcome { steps, failure: Some(failure), ..Outcome::failed() })
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }
 
@@ -44,7 +51,7 @@ impl<W: ?Sized, E: Episode<W>> Episode<W> for Limited<E> {
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         let end = self.episode.judge(world);
         self.left = self.left.saturating_sub(1);
-        self.stopped = end.is_none() && self.left == 0;
+        self.stopped = end.is_none() && (self.left == 0 || self.is_interrupted());
         if self.stopped { Some(f64::NAN) } else { end }
     }
 
@@ -85,6 +92,19 @@ mod tests {
             let end = run_episode(&mut episode, &mut NoWorld, id, None);
             assert_eq!(end.is_nan(), stopped, "{wanted}");
             assert_eq!((episode.stopped().is_some(), episode.episode.0), (stopped, if stopped { 5 } else { wanted }));
+        }
+    }
+
+    #[test]
+    fn a_flag_ends_an_episode_after_its_step() {
+        static STOP: AtomicBool = AtomicBool::new(true);
+        let mut episode = Limited { stop: Some(&STOP), ..Limited::new(Steps(0, 0), 5) };
+        // An episode that ends in the same step is complete.
+        for (wanted, interrupted) in [(3, true), (1, false)] {
+            let id = EpisodeId { trial: wanted, ..EpisodeId::default() };
+            assert_eq!(run_episode(&mut episode, &mut NoWorld, id, None).is_nan(), interrupted);
+            let failure = episode.stopped().map(|outcome| (outcome.steps, outcome.failure));
+            assert_eq!(failure, interrupted.then_some((1, Some(Failure::Interrupted))));
         }
     }
 }

@@ -32,12 +32,15 @@ pub enum Failure {
     Panicked(String),
     /// This occurs if an episode has not ended after [`TaskInfo::step_budget`](crate::TaskInfo::step_budget) steps.
     Endless(u64),
+    /// This occurs if [`Evaluation::stop`](crate::Evaluation::stop) becomes true before the end of an episode.
+    Interrupted,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Panicked(why) => write!(f, "panicked: {why}"),
+            Self::Interrupted => f.write_str("was interrupted"),
             Self::Endless(steps) => write!(f, "had not ended after {steps} steps, the most that the experiment names"),
         }
     }

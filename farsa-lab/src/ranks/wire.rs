@@ -49,6 +49,7 @@ enum WireNote {
 enum WireFailure {
     Panicked(String),
     Endless(u64),
+    Interrupted,
 }
 
 impl Outcomes {
@@ -71,6 +72,7 @@ impl Outcomes {
             failure: outcome.failure.as_ref().map(|failure| match failure {
                 Failure::Panicked(why) => WireFailure::Panicked(why.clone()),
                 Failure::Endless(steps) => WireFailure::Endless(*steps),
+                Failure::Interrupted => WireFailure::Interrupted,
             }),
         };
         let all = numbered.iter().map(|(number, outcome)| (*number as u32, outcome.as_ref().map(&mut wired))).collect();
@@ -100,6 +102,7 @@ impl Outcomes {
                 failure: wired.failure.map(|failure| match failure {
                     WireFailure::Panicked(why) => Failure::Panicked(why),
                     WireFailure::Endless(steps) => Failure::Endless(steps),
+                    WireFailure::Interrupted => Failure::Interrupted,
                 }),
             })
         };

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
@@ -10,89 +12,18 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::LanesInfo;
-use crate::experiment::outcome::Outcome;
+use crate::experiment::outcome::{Failure, Outcome};
 use crate::run::evaluation_backend::Unfinished;
 use crate::run::fitness::{Generation, Opponents, run_generation};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
-use crate::run::record_file::history;
-use crate::store::directory::Directory;
+use crate::run::sample::Sample;
 use crate::store::manifest::Machine;
-use crate::strategy::opponents::{HallOfFame, Pairing};
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
 /// Cores of the larger machine in the estimate.
 const MANY: usize = 64;
-
-/// Evaluated genomes.
-pub(crate) struct Sample {
-    /// Parameters of each individual.
-    parameters: Vec<Vec<f32>>,
-    /// Parameters of their opponents, in the order of the evaluations.
-    opponents: Vec<Vec<f32>>,
-    populations: usize,
-    /// Seed and generation of their trials. Later rounds increase the generation.
-    seed: u64,
-    generation: u32,
-    /// Run of the genomes, if they are not random.
-    run: Option<String>,
-}
-
-impl Sample {
-    /// Takes the first generation of a run of this plan.
-    pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
-        let strategy = plan.strategy()?;
-        let populations = strategy.populations();
-        let parameters = strategy.parameters(&plan.genotype(plan.evaluator()?.as_ref()));
-        Self::new(plan, parameters, populations, &HallOfFame::default(), 0, 0)
-    }
-
-    /// Takes the last finished generation of a run, or its first.
-    ///
-    /// The values of the run may be those of another version, because its genomes are evaluated and not replayed.
-    pub(crate) fn from_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
-        let (_, history, path) = history(plan, directory)?;
-        let finished = history.finished();
-        let run = Some(directory.path().display().to_string());
-        let Some(generation) = finished.checked_sub(1) else {
-            return Ok(Self { run, ..Self::random(plan)? });
-        };
-        let evaluator = plan.evaluator()?;
-        let genotype = plan.genotype(evaluator.as_ref());
-        let hall = HallOfFame::before(&history, &genotype)?;
-        let mut sample = None;
-        history.visit([generation], |generation, genomes| {
-            let parameters = genomes.decode_all(&genotype);
-            if parameters.is_none() {
-                return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
-            }
-            sample = Some(Self::new(plan, parameters, history.populations(), &hall, finished, generation)?);
-            Ok(())
-        })?;
-        let sample = sample.ok_or_else(|| history.missing(generation))?;
-        Ok(Self { run, ..sample })
-    }
-
-    /// Several populations are evaluated against the available champions and against each other.
-    fn new(
-        plan: &Plan<'_>,
-        parameters: Option<Vec<Vec<f32>>>,
-        populations: usize,
-        hall: &HallOfFame,
-        finished: u32,
-        generation: u32,
-    ) -> Result<Self, Error> {
-        let lost = |why: &str| Error::Other(format!("the opponents of {}: {why}", plan.name()));
-        let evaluator = plan.evaluator()?;
-        let parameters = parameters.ok_or_else(|| lost("genomes of another length"))?;
-        let (trials, size) = (evaluator.info().trials, parameters.len() / populations);
-        let meeting = Pairing { generation: finished, populations, size, trials };
-        let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost("one is missing"))?;
-        let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
-        Ok(Self { parameters, opponents, populations, seed: plan.seed, generation, run: None })
-    }
-}
 
 /// Measurement and estimate.
 #[derive(Debug, Serialize)]
@@ -106,7 +37,9 @@ pub(crate) struct Bench {
     genomes: usize,
     /// Finished generations.
     rounds: u32,
+    /// Finished trials.
     trials: u64,
+    /// Steps of finished and interrupted trials.
     steps: u64,
     seconds: f64,
     threads: usize,
@@ -145,49 +78,99 @@ struct Prediction {
     seconds: f64,
 }
 
+/// Steps of some trials.
+#[derive(Default)]
+struct Counts {
+    /// Trials that were not interrupted, and their steps.
+    trials: AtomicU64,
+    steps: AtomicU64,
+    /// Steps of interrupted trials.
+    cut: AtomicU64,
+    /// Finished generations.
+    rounds: u32,
+}
+
+impl Counts {
+    /// Evaluates complete generations for some time. Interrupts the first one if it takes longer.
+    fn new(sample: &Sample, pool: &mut Pool, limit: Duration) -> Result<Self, Error> {
+        let Sample { parameters, seed, generation, .. } = sample;
+        let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
+        let opponents = Opponents { parameters: &opponents, each: sample.populations - 1, told_apart: None };
+        // Trials in lanes live as long as their evaluator, so no shorter borrow fits.
+        let stop: &'static AtomicBool = Box::leak(Box::default());
+        let mut counts = Self::default();
+        let started = Instant::now();
+        thread::scope(|scope| {
+            let (finished, first) = channel::<()>();
+            let timer = move || {
+                if first.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+                    stop.store(true, Ordering::Relaxed);
+                }
+            };
+            let timer = thread::Builder::new().spawn_scoped(scope, timer);
+            timer.map_err(|error| Error::Other(format!("cannot start a thread: {error}")))?;
+            let mut finished = Some(finished);
+            while counts.rounds == 0 || started.elapsed() < limit {
+                let generation = generation.saturating_add(counts.rounds);
+                let id = EpisodeId { seed: *seed, generation, ..EpisodeId::default() };
+                let batch = Generation { parameters, opponents, normalisation: None, id, stop: Some(stop) };
+                match run_generation(&mut pool.until(stop), batch, |outcome| counts.add(outcome)) {
+                    Ok(_) => counts.rounds += 1,
+                    Err(Unfinished::Stopped) => break,
+                    Err(Unfinished::Error(error)) => return Err(error),
+                }
+                // The next generation is evaluated to its end.
+                finished.take();
+                if stop.load(Ordering::Relaxed) {
+                    break;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(counts)
+    }
+
+    fn add(&self, outcome: Option<&Outcome>) {
+        let Some(outcome) = outcome else { return };
+        let steps = u64::from(outcome.steps);
+        if outcome.failure == Some(Failure::Interrupted) {
+            self.cut.fetch_add(steps, Ordering::Relaxed);
+        } else {
+            self.trials.fetch_add(1, Ordering::Relaxed);
+            self.steps.fetch_add(steps, Ordering::Relaxed);
+        }
+    }
+}
+
 /// Evaluates complete generations, as a run does, for some seconds. A first generation that takes longer is cut.
 ///
 /// # Errors
-/// [`Error::Other`], and [`Error::Other`] if no trial was evaluated.
+/// [`Error::Other`], and [`Error::Other`] if no step was evaluated.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
-    let Sample { parameters, seed, generation, run, .. } = sample;
-    let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
-    let opponents = Opponents { parameters: &opponents, each: sample.populations - 1, told_apart: None };
-    let limit = Duration::from_secs_f64(seconds);
-    let (trials, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
+    let Sample { parameters, generation, run, .. } = sample;
     let (started, used) = (Instant::now(), processor_seconds());
-    let mut rounds = 0;
-    while rounds == 0 || started.elapsed() < limit {
-        let id = EpisodeId { seed: *seed, generation: generation.saturating_add(rounds), ..EpisodeId::default() };
-        let done = |outcome: Option<&Outcome>| {
-            if let Some(outcome) = outcome {
-                trials.fetch_add(1, Ordering::Relaxed);
-                steps.fetch_add(u64::from(outcome.steps), Ordering::Relaxed);
-            }
-            if rounds == 0 && started.elapsed() >= limit {
-                stop.store(true, Ordering::Relaxed);
-            }
-        };
-        let batch = Generation { parameters, opponents, normalisation: None, id };
-        match run_generation(&mut pool.until(&stop), batch, done) {
-            Ok(_) => rounds += 1,
-            Err(Unfinished::Stopped) => break,
-            Err(Unfinished::Error(error)) => return Err(error),
-        }
-    }
+    let counts = Counts::new(sample, &mut pool, Duration::from_secs_f64(seconds))?;
     let elapsed = started.elapsed().as_secs_f64();
     let used = used.zip(processor_seconds()).map(|(before, after)| after - before);
 
-    let (trials, steps) = (trials.into_inner(), steps.into_inner());
+    let Counts { trials, steps: whole, cut, rounds } = counts;
+    let [trials, whole, cut] = [trials, whole, cut].map(AtomicU64::into_inner);
+    let steps = whole + cut;
     if steps == 0 {
         return Err(Error::Other(format!("{}: none of {trials} trials had a step", plan.experiment.name())));
     }
+    let longest = pool.info().description.steps;
+    let mean = match (trials, longest) {
+        (0, 0) => cut as f64,
+        (0, longest) => longest as f64,
+        _ => whole as f64 / trials as f64,
+    };
     let machine = Machine::here();
     let (threads, cores) = (pool.threads(), machine.cores());
     let had = threads.min(cores);
     let steps_per_second = steps as f64 / elapsed;
     let per_core = steps_per_second / had as f64;
-    let study = Study::new(plan, &pool, parameters.len(), steps as f64 / trials as f64)?;
+    let study = Study::new(plan, &pool, parameters.len(), mean)?;
     let predict = |cores: usize| Prediction { cores, seconds: study.control_steps / (per_core * cores as f64) };
     Ok(Bench {
         experiment: plan.experiment.name().into(),
@@ -206,7 +189,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
         busy: used.map(|used| (used / (elapsed * had as f64)).min(1.0)),
         steps_per_second,
         steps_per_second_and_core: per_core,
-        trials_per_second_and_core: per_core * trials as f64 / steps as f64,
+        trials_per_second_and_core: per_core / mean,
         generations_per_hour: 3600.0 * steps_per_second / study.steps_of_generation(),
         predictions: vec![predict(cores), predict(MANY)],
         study,
@@ -244,7 +227,7 @@ impl Bench {
             Some(run) => format!("the {genomes} genomes of generation {generation} of {run}"),
         };
         let rounds = match rounds {
-            0 => "a part of a generation".into(),
+            0 => "a part of one generation".into(),
             1 => "one generation".into(),
             rounds => format!("{rounds} generations"),
         };
@@ -328,11 +311,13 @@ fn ticks(stat: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::episode::{Episode, NoWorld};
     use crate::experiment::evaluator::{Evaluation, Evaluator, Task, TaskInfo};
     use crate::experiment::lanes::LaneRequest;
     use crate::experiment::outcome::Description;
     use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
+    use crate::experiment::{InWorld, Rollout};
     use crate::run::experiment::Experiment;
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
@@ -416,6 +401,65 @@ mod tests {
         assert!(found.rounds == 0 && (1..58).contains(&found.trials), "{found:?}");
         // Without a limit of the experiment, trials are as long as measured.
         assert_eq!(found.study.steps, found.steps as f64 / found.trials as f64);
+    }
+
+    /// An episode that ends long after every other test.
+    struct Endless(u64);
+
+    impl Episode<NoWorld> for Endless {
+        fn start(&mut self, _: &mut NoWorld, _: EpisodeId) {
+            self.0 = 0;
+        }
+        fn act(&mut self, _: &mut NoWorld) {
+            thread::sleep(Duration::from_millis(1));
+            self.0 += 1;
+        }
+        fn judge(&mut self, _: &mut NoWorld) -> Option<f64> {
+            (self.0 == LONG).then_some(0.0)
+        }
+    }
+
+    const LONG: u64 = 30_000;
+
+    impl Task for Endless {
+        fn info(&self) -> TaskInfo {
+            TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], Schema::default())
+        }
+    }
+
+    impl Rollout for Endless {
+        fn load(&mut self, _: &Evaluation<'_>) -> bool {
+            true
+        }
+        fn outcome(&self) -> Outcome {
+            Outcome { terms: vec![1.0], steps: self.0 as u32, ..Outcome::default() }
+        }
+    }
+
+    impl Experiment for Endless {
+        fn name(&self) -> &'static str {
+            "endless"
+        }
+        fn summary(&self) -> &'static str {
+            "one long trial"
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![Setting::whole(POPULATION, 20, 1..=100), Setting::whole(GENERATIONS, 1, 1..=100)]
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Ok(Box::new(InWorld::new(NoWorld, Endless(0))))
+        }
+    }
+
+    #[test]
+    fn a_trial_that_takes_too_long_is_cut_short() {
+        let plan = Plan::new(&Endless(0), None, "").unwrap();
+        let pool = Pool::new(&plan, 2, LaneRequest::ONE).unwrap();
+        let found = bench(&plan, &Sample::random(&plan).unwrap(), pool, 0.02).unwrap();
+        assert_eq!((found.rounds, found.trials), (0, 0));
+        assert!((1..LONG).contains(&found.steps), "{found:?}");
+        // The steps of the interrupted trials are a least length.
+        assert_eq!(found.study.steps, found.steps as f64);
     }
 
     #[test]

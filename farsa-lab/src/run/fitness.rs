@@ -1,6 +1,6 @@
 //! Fitness of a generation from the trials of all individuals.
 
-use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
 use farsa_evo::{EvoError, ObservationStatistics, ScoreShape, Scores};
 use farsa_num::Digest;
@@ -32,6 +32,8 @@ pub(crate) struct Generation<'g> {
     pub(crate) normalisation: Option<&'g ObservationStatistics>,
     /// Seed, generation, and the number of the first individual. The other numbers and the trial are set for each evaluation.
     pub(crate) id: EpisodeId,
+    /// Flag that ends running trials.
+    pub(crate) stop: Option<&'static AtomicBool>,
 }
 
 /// Scores of a generation.
@@ -229,7 +231,7 @@ pub(crate) fn run_generation(
     batch: Generation<'_>,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-    let Generation { parameters, opponents, normalisation, id } = batch;
+    let Generation { parameters, opponents, normalisation, id, stop } = batch;
     let (count, trials) = (parameters.len(), by.info().trials);
     by.compare(id.generation, &|| batch.fingerprint());
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
@@ -239,7 +241,7 @@ pub(crate) fn run_generation(
         let alive = trial < failed[individual].load(Ordering::Relaxed);
         let opponents = opponents.get(number);
         let own = parameters.get(individual).filter(|_| alive);
-        own.map(|parameters| Evaluation { number, opponents, normalisation, ..Evaluation::new(parameters, id) })
+        own.map(|parameters| Evaluation { number, opponents, normalisation, stop, ..Evaluation::new(parameters, id) })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {

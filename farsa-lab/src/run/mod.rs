@@ -53,6 +53,9 @@ mod recover;
 /// `farsa run --replications`: one plan under consecutive seeds.
 #[cfg(feature = "command")]
 pub(crate) mod replications;
+/// Genomes of a measurement.
+#[cfg(feature = "command")]
+pub(crate) mod sample;
 /// State of a search, equal on every rank.
 pub(crate) mod search_state;
 /// Result of a run.

@@ -82,7 +82,8 @@ impl SearchState {
         let opponents = Opponents { parameters: &opponents, each: populations - 1, told_apart };
         let shape = self.search.score_shape();
         let normalisation = self.observed.clone();
-        let batch = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
+        let batch =
+            Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id, stop: None };
         let Judged { judgements, failed, observed } = judgements_of_all(by, batch, shape, advance)?;
         let fitness = judgements.fitness();
         let ranked_by = self.search.ranked_by(&fitness);

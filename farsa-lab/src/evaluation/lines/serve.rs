@@ -93,7 +93,7 @@ fn answer<'w>(
         let opponents = Opponents { parameters: &met, each: parameters.len() - 1, told_apart: None };
         let individual = (own * wanted.size) as u32 + individual;
         let id = EpisodeId { seed, generation, individual, trial: 0 };
-        let batch = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
+        let batch = Generation { parameters: &parameters[own], opponents, normalisation: None, id, stop: None };
         let judged = individuals(&mut pool.until(&AtomicBool::new(false)), batch, shape, |_| {})?;
         let evaluator = pool.evaluator();
         results.push((name, judged.into_iter().map(|judged| IndividualResult::new(judged, evaluator)).collect()));

@@ -10,9 +10,10 @@ use crate::experiment::evaluator::{Iteration, Learner};
 use crate::experiment::lanes::LaneRequest;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
-use crate::run::bench::{Sample, bench};
+use crate::run::bench::bench;
 use crate::run::record_file::history;
 use crate::run::records::Champions;
+use crate::run::sample::Sample;
 use crate::run::tests::{
     CHASE, LEARNER, Numbers, SIZE, STEADY, TRIALS, genes_of, lineage, plain, plan, pool, replayed, rows, run, scratch,
     twice, words,
