@@ -128,6 +128,18 @@ impl Error {
         }
     }
 
+    /// Converts the error of a file or a text that the user names into one of usage, with the same message.
+    pub(crate) fn into_usage(self) -> Self {
+        match self {
+            error @ (Self::Io { doing: "read", .. } | Self::File { fault: FileFault::Damaged, .. }) => {
+                Self::Usage(error.to_string())
+            }
+            Self::Other(why) => Self::Usage(why),
+            Self::Several(faults) => Self::Several(faults.into_iter().map(Self::into_usage).collect()),
+            other => other,
+        }
+    }
+
     /// Creates a closure for `map_err`, which converts an error of the operating system.
     pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { doing, path: path.into(), source }

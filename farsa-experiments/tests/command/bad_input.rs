@@ -99,7 +99,7 @@ fn the_command_line() {
     ] {
         refused(own(), &here, arguments, 2, words);
     }
-    refused(own(), &here, "run cart --config none.toml", 1, &["cannot read none.toml"]);
+    refused(own(), &here, "run cart --config none.toml", 2, &["cannot read none.toml"]);
     refused(farsa(), &here, "run reach-grasp-lit", 2, &["unknown experiment", "nearest is `reach-grasp-lift`"]);
     refused(farsa(), &here, "run reach-grasp-lift --condition label", 2, &["nearest is `labels`"]);
     refused(farsa(), &here, "run reach-grasp-lift --population 10", 2, &["20 parents from a population of 10"]);

@@ -58,11 +58,11 @@ fn what_cannot_be_imported_is_refused_and_nothing_is_written() {
     fs::write(here.join("a.gen"), "DYNAMICAL NN\n1\nEND\n").expect("a file");
     let before = content(&here);
     for (arguments, code, words) in [
-        ("import stay.ini --strict", 1, &["stay.ini: 1 of its lines", "line 54: ", "nothing is written"][..]),
+        ("import stay.ini --strict", 2, &["stay.ini: 1 of its lines", "line 54: ", "nothing is written"][..]),
         ("import none.ini", 2, &["none.ini: no `[GROUP]`"]),
         ("import arm.ini", 2, &["arm.ini line 42: unknown wheeled robot `iCub`"]),
-        ("import large.ini", 1, &["large.ini: "]),
-        ("import missing.ini", 1, &["cannot read missing.ini"]),
+        ("import large.ini", 2, &["large.ini: "]),
+        ("import missing.ini", 2, &["cannot read missing.ini"]),
         ("import stay.ini --out there.toml", 2, &["there.toml: there is one already"]),
         ("import stay.ini --out stay.json", 2, &["ends with .toml"]),
         ("import stay.ini --out Stay.toml", 2, &["`Stay` is the name of the experiment"]),

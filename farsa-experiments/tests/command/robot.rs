@@ -46,7 +46,7 @@ fn what_is_wrong_is_said_with_its_line() {
         ("robot light.urdf --least-mass -1", "must be a number from 0 on"),
     ] {
         let said = say(farsa(), &here, arguments);
-        assert!(said.code != Some(0) && said.err.contains(message), "{arguments}: {said:?}");
+        assert!(said.code == Some(2) && said.err.contains(message), "{arguments}: {said:?}");
     }
     let told = ok(farsa(), &here, "robot light.urdf --least-mass 0.1 --least-inertia 0.001");
     assert!(told.contains("turns") && told.contains("without end"), "{told}");
@@ -127,6 +127,6 @@ fn the_body_of_a_champion_is_written() {
         ("export robot minimal-cognition --format urdf", "minimal-cognition has no robot to export"),
     ] {
         let said = say(farsa(), &here, arguments);
-        assert!(said.code != Some(0) && said.err.contains(message), "{arguments}: {said:?}");
+        assert!(said.code == Some(2) && said.err.contains(message), "{arguments}: {said:?}");
     }
 }

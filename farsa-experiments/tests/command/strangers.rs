@@ -38,7 +38,7 @@ fn control_characters() {
     }
     fs::write(here.join("evil.gen"), format!("**NET : a\nDYNAMICAL NN\n{EVIL}\nEND\n")).expect("a file");
     let genes = ["evaluate", "discrimination", "--genes-file", "evil.gen"];
-    refused(&here, &genes, 1, &format!("evil.gen: line 3: gene 0 (the first is 0) is `{SHOWN}`, not a whole number"));
+    refused(&here, &genes, 2, &format!("evil.gen: line 3: gene 0 (the first is 0) is `{SHOWN}`, not a whole number"));
     let link = "<link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>";
     let robot = format!("<robot name='x&#x9b;2J\u{202e}'>{link}</robot>");
     fs::write(here.join("evil.urdf"), robot).expect("a file");
@@ -53,7 +53,7 @@ fn names_of_files() {
     let here = scratch("names");
     let evil = "d\u{1b}[2J\u{9b}\ne".to_owned();
     refused(&here, &["test", &evil], 2, "d\\u{1b}[2J\\u{9b}\\ne");
-    refused(&here, &["run", "--config", &evil], 1, "cannot read d\\u{1b}[2J\\u{9b}\\ne");
+    refused(&here, &["run", "--config", &evil], 2, "cannot read d\\u{1b}[2J\\u{9b}\\ne");
     let short = ["--generations", "1", "--set", "trial.count=1", "--set", "trial.steps=5"];
     let arguments = [&["run", "discrimination", "--out", &evil], short.as_slice()].concat();
     let run = |arguments: &[&str]| Running::start(&mut command(farsa(), &here, arguments)).end();
@@ -79,11 +79,11 @@ fn files_without_an_end() {
     fs::File::create(here.join("large")).and_then(|file| file.set_len(1 << 40)).expect("a file with a hole");
     let most = |bytes: u32| format!("large: has more than {bytes} bytes, the most that is read of it");
     refused(&here, &["run", "--config", "large"], 2, &most(4_000_000));
-    refused(&here, &["evaluate", "discrimination", "--genes-file", "large"], 1, &most(256_000_000));
-    refused(&here, &["import", "--experiment", "discrimination", "large", "--out", "i"], 1, &most(256_000_000));
+    refused(&here, &["evaluate", "discrimination", "--genes-file", "large"], 2, &most(256_000_000));
+    refused(&here, &["import", "--experiment", "discrimination", "large", "--out", "i"], 2, &most(256_000_000));
     let tables = ["--set", "robot.infrared=sampled", "--set", "robot.infrared_tables=."];
     fs::rename(here.join("large"), here.join("wall.sam")).expect("another name");
-    refused(&here, &[&["run", "discrimination"], tables.as_slice()].concat(), 1, "wall.sam: has more than 256000000");
+    refused(&here, &[&["run", "discrimination"], tables.as_slice()].concat(), 2, "wall.sam: has more than 256000000");
     if cfg!(unix) {
         refused(&here, &["run", "--config", "/dev/zero"], 2, "/dev/zero: has more than 4000000 bytes");
         refused(&here, &["run", "--config", "/dev/null"], 2, "names an experiment");
@@ -106,7 +106,7 @@ fn pipes() {
     writer.join().expect("a writer");
     mkfifo("wall.sam");
     let tables = ["--set", "robot.infrared=sampled", "--set", "robot.infrared_tables=."];
-    refused(&here, &[&["run", "discrimination"], tables.as_slice()].concat(), 1, "wall.sam: is not a regular file");
+    refused(&here, &[&["run", "discrimination"], tables.as_slice()].concat(), 2, "wall.sam: is not a regular file");
     ok(farsa(), &here, "run discrimination --generations 1 --set trial.count=1 --set trial.steps=5 --out r");
     fs::remove_file(here.join("r/config.toml")).expect("the configuration");
     mkfifo("r/config.toml");

@@ -129,6 +129,47 @@ fn names_that_are_almost_files_name_them() {
     refused(&here, "run foragin", &["unknown experiment `foragin`; the nearest is `foraging`"]);
 }
 
+/// Every file and folder that a command line names is a part of it, and so is what a setting names.
+#[test]
+fn files_of_the_command_line_are_missing_or_damaged() {
+    let here = scratch("wrong-files");
+    let run = "run discrimination --generations 1 --set trial.count=1 --set trial.steps=5";
+    ok(farsa(), &here, &format!("{run} --out r"));
+    fs::create_dir(here.join("folder")).expect("a folder");
+    fs::write(here.join("text.txt"), "text\n").expect("a file");
+    let model = "<robot name='r' xmlns:xacro='x'>\n<xacro:leg name='left'/></robot>";
+    fs::write(here.join("raw.urdf"), model).expect("a file");
+    let reads = ["check", "info", "run", "bench", "sweep"].map(|command| format!("{command} none.toml"));
+    let writes =
+        ["report r --html", "draw r --out", "replay r --out", "replay r --html", "live r --html", "merge r --csv"];
+    let writes = writes.map(|command| format!("{command} none/a.svg"));
+    let others = [
+        "run discrimination --config none.toml",
+        "run discrimination --config folder",
+        "run discrimination --set robot.infrared_tables=none",
+        "robot none.urdf",
+        "robot raw.urdf",
+        "robot text.txt",
+        "robot folder",
+        "robot raw.urdf --packages none",
+        "evaluate discrimination --genes-file text.txt",
+        "evaluate discrimination --genes-file none",
+        "evaluate discrimination --genes-file text.txt --ir-tables none",
+        "import none.ini",
+        "import folder --experiment discrimination",
+        "import text.txt --experiment discrimination",
+        "merge none",
+        "live r --module none --html page.html",
+        "serve r --module none",
+        "man --out text.txt/a",
+        "test none",
+    ];
+    for arguments in reads.into_iter().chain(writes).chain(others.map(str::to_owned)) {
+        let more = if arguments.starts_with("import") && !arguments.contains(".ini") { " --out o" } else { "" };
+        refused(&here, &format!("{arguments}{more}"), &["error: "]);
+    }
+}
+
 /// A file with the name of a built-in experiment is another experiment, also on a page.
 #[test]
 fn reports_name_the_origin_of_equal_names() {

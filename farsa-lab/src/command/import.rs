@@ -79,13 +79,13 @@ impl Invocation<'_, '_> {
         }
         let import = self.laboratory.files()?.import;
         let import = import.ok_or_else(|| Error::Usage("this program imports no configurations".into()))?;
-        let imported = import(&path.display().to_string(), &name, &text)?;
+        let imported = import(&path.display().to_string(), &name, &text).map_err(Error::into_usage)?;
         let ImportedFile { text, left, idle, more_left, more_idle } = &imported;
         let lost = left.len() + more_left;
         tell_left(left, lost);
         if args.strict && !left.is_empty() {
             let why = format!("{lost} of its lines and defaults cannot be carried over; nothing is written");
-            return Err(Error::Other(format!("{}: {why}", path.display())));
+            return Err(Error::Usage(format!("{}: {why}", path.display())));
         }
         create_results(&[(out, text)])?;
         let mut text = String::new();

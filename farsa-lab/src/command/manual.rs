@@ -198,7 +198,7 @@ pub(crate) fn page(program: &str, laboratory: &Laboratory<'_>) -> Result<String,
 /// Writes all manual pages into a directory and returns their number.
 ///
 /// # Errors
-/// [`Error::Usage`] for an existing page, [`Error::Io`].
+/// [`Error::Usage`] for an existing page and a folder that cannot be made, [`Error::Io`].
 pub(crate) fn pages(directory: &Path, program: &str, laboratory: &Laboratory<'_>) -> Result<usize, Error> {
     let mut command = command(program, laboratory);
     command.build();
@@ -208,7 +208,9 @@ pub(crate) fn pages(directory: &Path, program: &str, laboratory: &Laboratory<'_>
         let name = subcommand.get_display_name().unwrap_or(program).to_owned();
         files.push((directory.join(format!("{name}.1")), render(subcommand)?));
     }
-    fs::create_dir_all(directory).map_err(Error::io("make", directory))?;
+    if let Err(error) = fs::create_dir_all(directory) {
+        return Err(Error::Usage(format!("cannot make {}: {error}", directory.display())));
+    }
     create_results(&files)?;
     Ok(files.len())
 }

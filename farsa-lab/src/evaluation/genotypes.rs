@@ -131,7 +131,7 @@ impl Shape {
     /// Reads the genotypes of a file: one of the original's, or a list of genes.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::File`] with the line or the position, or for a file that does not end.
+    /// [`Error::Usage`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
         self.words(path, &bounded::read_stream_text(path, MAX_BYTES)?)
     }
@@ -147,7 +147,9 @@ impl Shape {
     /// Reads the genomes in the text of a file.
     pub(crate) fn genomes(self, path: &Path, text: &str) -> Result<Vec<Genome>, Error> {
         if are_reals(text) {
-            return Ok(vec![Genome::Reals(self.reals(text).map_err(|error| Error::damaged(path, error))?)]);
+            return Ok(vec![Genome::Reals(
+                self.reals(text).map_err(|error| Error::damaged(path, error).into_usage())?,
+            )]);
         }
         Ok(self.words(path, text)?.into_iter().map(Genome::Words).collect())
     }
@@ -176,7 +178,7 @@ impl Shape {
         } else {
             self.list(text).map(|genes| vec![genes])
         };
-        read.map_err(|error| Error::damaged(path, error))
+        read.map_err(|error| Error::damaged(path, error).into_usage())
     }
 }
 
@@ -198,7 +200,7 @@ fn is_title(line: &str) -> bool {
 /// line and the line `END`.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::File`] with the line if a genotype is truncated, does not have `genes` genes, or has
+/// [`Error::Usage`] for an unreadable file, and with the line if a genotype is truncated, does not have `genes` genes, or has
 /// a gene that is not a whole number below 2^`gene_bits`.
 pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<Vec<u16>>, Error> {
     Shape::new(genes, gene_bits).read(path)

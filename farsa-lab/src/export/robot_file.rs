@@ -48,7 +48,7 @@ struct JointSummary {
 /// Reads a model file.
 ///
 /// # Errors
-/// [`Error::Other`] for an invalid file, with the option that could help.
+/// [`Error::Usage`] for an invalid file, with the option that could help.
 pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error> {
     // A pipe is read with a time limit.
     let piped = fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
@@ -66,14 +66,14 @@ pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error
             ReadError::Path { .. } => "; or --root, --without-meshes",
             _ => "",
         };
-        Error::Other(format!("{error}{hint}"))
+        Error::Usage(format!("{error}{hint}"))
     })
 }
 
 /// Returns the robot as a file of this format.
 ///
 /// # Errors
-/// [`Error::Other`] if it cannot be written.
+/// [`Error::Usage`] for a robot that the format cannot describe.
 pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String, Error> {
     let text = match format {
         ModelFormat::Mjcf => {
@@ -83,7 +83,7 @@ pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String,
         }
         ModelFormat::Urdf => urdf::write(&reading.robot),
     };
-    text.map_err(|error| Error::Other(error.to_string()))
+    text.map_err(|error| Error::Usage(error.to_string()))
 }
 
 impl Summary {

@@ -71,7 +71,7 @@ impl<'e> Gathering<'e> {
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
         let mut seen: Vec<PathBuf> = Vec::new();
         for root in roots {
-            let real = fs::canonicalize(root).map_err(Error::io("read", root))?;
+            let real = fs::canonicalize(root).map_err(|error| Error::io("read", root)(error).into_usage())?;
             if seen.contains(&real) {
                 return Err(Error::Usage(format!("{}: is named twice", root.display())));
             }

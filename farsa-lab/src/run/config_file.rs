@@ -49,16 +49,16 @@ impl ConfigFile {
     /// Reads a file named by the user.
     ///
     /// # Errors
-    /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
+    /// [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = bounded::read_configuration(path, MAX_BYTES)?;
+        let text = bounded::read_stream_text(path, MAX_BYTES)?;
         Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads the configuration of a run.
     ///
     /// # Errors
-    /// As [`read`](Self::read), and [`Error::File`].
+    /// As [`read`](Self::read), [`Error::Io`] and [`Error::File`].
     pub(crate) fn read_regular(path: &Path) -> Result<Self, Error> {
         Self::parse(&path.display().to_string(), &bounded::read_regular_text(path, MAX_BYTES)?)
     }

@@ -141,7 +141,8 @@ impl<'e> Laboratory<'e> {
     ///
     /// The experiment is leaked. A process reads few of them.
     fn described(&self, name: &str, text: &str, folder: Option<&Path>) -> Result<&'e dyn Experiment, Error> {
-        Ok(Box::leak((self.files()?.read)(name, text, folder, &self.strategies)?))
+        let read = (self.files()?.read)(name, text, folder, &self.strategies);
+        Ok(Box::leak(read.map_err(Error::into_usage)?))
     }
 
     /// Returns the experiment that a configuration names or describes.
@@ -159,11 +160,11 @@ impl<'e> Laboratory<'e> {
     /// Returns the experiment with a name found at `place`, or of a file.
     ///
     /// # Errors
-    /// [`Error::Setting`] with the nearest name, [`Error::Io`], and the errors of a file.
+    /// [`Error::Setting`] with the nearest name, [`Error::Usage`], and the errors of a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if is_file(name) {
             let path = Path::new(name);
-            let text = bounded::read_configuration(path, MAX_BYTES).map_err(|error| match file_of(name) {
+            let text = bounded::read_stream_text(path, MAX_BYTES).map_err(|error| match file_of(name) {
                 Some(other) if !path.exists() => missing(place, name, &other),
                 _ => error,
             })?;
@@ -251,7 +252,8 @@ mod tests {
             assert!(found(name).to_string().starts_with(&format!("{}, text", path(name))));
         }
         assert!(found("folow").to_string().contains("unknown experiment"));
-        assert!(matches!(found("absent.toml"), Error::Io { .. }));
+        let absent = found("absent.toml");
+        assert!(absent.to_string().starts_with("cannot read ") && absent.exit_code() == 2, "{absent}");
         std::fs::remove_dir_all(folder).unwrap();
     }
 

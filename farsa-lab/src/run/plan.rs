@@ -248,14 +248,14 @@ impl<'e> Plan<'e> {
     /// Returns everything that the results depend on, with the content of files.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::File`] for a file that cannot be read, and the errors of [`Experiment::files`].
+    /// [`Error::Usage`] for a file that cannot be read, and the errors of [`Experiment::files`].
     pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
         let mut settings: Vec<(String, Value)> = settings
             .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
             .collect();
-        for path in self.experiment.files(&self.condition, &self.settings)? {
-            let bytes = bounded::read_regular(&path, MAX_BYTES)?;
+        for path in self.experiment.files(&self.condition, &self.settings).map_err(Error::into_usage)? {
+            let bytes = bounded::read_regular(&path, MAX_BYTES).map_err(Error::into_usage)?;
             settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
         }
         if let Some(text) = self.experiment.definition() {

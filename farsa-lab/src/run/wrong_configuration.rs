@@ -8,10 +8,7 @@ use crate::run::plan::Plan;
 impl Plan<'_> {
     /// Prepares the experiment with these settings. A failure is a wrong configuration.
     pub(super) fn prepared(&self, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        self.experiment.prepare(&self.condition, settings).map_err(|error| match error {
-            Error::Other(why) => Error::Usage(why),
-            other => self.placed(other),
-        })
+        self.experiment.prepare(&self.condition, settings).map_err(|error| self.placed(error.into_usage()))
     }
 
     /// Adds the place of a value from a file to an error about its key.

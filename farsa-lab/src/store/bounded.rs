@@ -12,34 +12,26 @@ use crate::error::Error;
 /// Reads a file named by the user: a regular file, a pipe or a device. It has to end within the limit [bytes].
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::File`] above the limit.
+/// [`Error::Usage`].
 pub(crate) fn read_stream(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
-    let file = File::open(path).map_err(Error::io("read", path))?;
-    let metadata = file.metadata().map_err(Error::io("read", path))?;
-    if metadata.is_dir() {
-        return Err(Error::io("read", path)(io::Error::new(ErrorKind::IsADirectory, "it is a directory")));
-    }
-    let size = if metadata.is_file() { metadata.len() } else { 0 };
-    read_limited(file, path, size, limit)
+    let read = || {
+        let file = File::open(path).map_err(Error::io("read", path))?;
+        let metadata = file.metadata().map_err(Error::io("read", path))?;
+        if metadata.is_dir() {
+            return Err(Error::io("read", path)(io::Error::new(ErrorKind::IsADirectory, "it is a directory")));
+        }
+        let size = if metadata.is_file() { metadata.len() } else { 0 };
+        read_limited(file, path, size, limit)
+    };
+    read().map_err(Error::into_usage)
 }
 
 /// Reads a file named by the user as text.
 ///
 /// # Errors
-/// As [`read_stream`], and [`Error::File`] with the line of the first byte that is not UTF-8.
+/// [`Error::Usage`], with the line of the first byte that is not UTF-8.
 pub(crate) fn read_stream_text(path: &Path, limit: u64) -> Result<String, Error> {
-    to_text(path, read_stream(path, limit)?)
-}
-
-/// Reads a configuration named by the user as text. A damaged one is a usage error.
-///
-/// # Errors
-/// [`Error::Io`], and [`Error::Usage`] above the limit and for a text that is not UTF-8.
-pub(crate) fn read_configuration(path: &Path, limit: u64) -> Result<String, Error> {
-    read_stream_text(path, limit).map_err(|error| match error {
-        error @ Error::File { .. } => Error::Usage(error.to_string()),
-        other => other,
-    })
+    to_text(path, read_stream(path, limit)?).map_err(Error::into_usage)
 }
 
 /// Reads a file of a run directory, which has to be a regular file or a link to one.
@@ -196,7 +188,7 @@ mod tests {
     fn a_file_is_read_up_to_the_limit() {
         let place = Place::new("limit");
         let path = place.file("a", &vec![7; 196_608]);
-        for read in [read_stream, read_regular] {
+        for (read, code) in [(read_stream as fn(&Path, u64) -> Result<Vec<u8>, Error>, 2), (read_regular, 1)] {
             assert_eq!(read(&path, 196_608).unwrap(), vec![7; 196_608]);
             let message = read(&path, 196_607).unwrap_err().to_string();
             assert_eq!(message, format!("{}: has more than 196607 bytes, the most that is read of it", path.display()));
@@ -207,7 +199,8 @@ mod tests {
                 message.ends_with("hole: has more than 1073741824 bytes, the most that is read of it"),
                 "{message}"
             );
-            assert!(matches!(read(&place.0.join("none"), 1), Err(Error::Io { .. })));
+            let missing = read(&place.0.join("none"), 1).unwrap_err();
+            assert!(missing.to_string().starts_with("cannot read ") && missing.exit_code() == code, "{missing}");
         }
         let message = read_stream(&place.0, 9).unwrap_err().to_string();
         assert_eq!(message, format!("cannot read {}: it is a directory", place.0.display()));

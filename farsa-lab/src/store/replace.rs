@@ -45,17 +45,28 @@ pub(crate) fn sync_directory(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// [`Error::Usage`].
 pub(crate) fn refuse_existing(path: &Path) -> Result<(), Error> {
+    refuse_lost(path)?;
     if fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
         return Err(Error::Usage(format!("{}: there is one already", path.display())));
     }
     Ok(())
 }
 
+/// Refuses the name of a result in a folder that does not exist.
+fn refuse_lost(path: &Path) -> Result<(), Error> {
+    let folder = temporary_file::parent(path);
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::Usage(format!("{}: there is no folder {}", path.display(), folder.display())))
+}
+
 /// Opens a file for a result: a new file, or an existing pipe or device.
 ///
 /// # Errors
-/// [`Error::Usage`] for an existing file, and [`Error::Io`].
+/// [`Error::Usage`] for an existing file and without its folder, and [`Error::Io`].
 pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
+    refuse_lost(path)?;
     match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             refuse_existing(path)?;
@@ -73,6 +84,7 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
     let mut made: Vec<&Path> = Vec::new();
     let written = results.iter().try_for_each(|(path, content)| {
         let content = content.as_ref();
+        refuse_lost(path)?;
         if fs::symlink_metadata(path).is_ok() {
             // A pipe, a device, or an existing file.
             return create_result(path)?.write_all(content).map_err(Error::io("write", path));

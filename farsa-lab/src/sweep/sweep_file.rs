@@ -48,7 +48,7 @@ impl SweepFile {
     /// # Errors
     /// As [`ConfigFile::read`], with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = bounded::read_configuration(path, MAX_BYTES)?;
+        let text = bounded::read_stream_text(path, MAX_BYTES)?;
         Self::parse(&path.display().to_string(), &text)
     }
 
