@@ -2,6 +2,7 @@
 
 mod attack;
 mod bad_input;
+mod broken_down;
 mod cases;
 mod cluster;
 mod configurations;

@@ -39,7 +39,7 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     assert_eq!(said.err, "4 runs\nnode2/runs/cart-rough-2: the same run as node1/runs/cart-rough-2\n");
     let rows = rows(&said.out);
     let head = "directory,experiment,condition,strategy,seed,cart.friction,generations,finished,evaluations,failed,best,mean,\
-                highest best,test generation,test trials,test success,test fitness";
+                highest best,test generation,test trials,test broken down,test success,test fitness";
     assert_eq!(rows[0].join(","), head);
     let starts: Vec<String> = rows[1..].iter().map(|row| row[..10].join(",")).collect();
     assert_eq!(
@@ -125,7 +125,7 @@ fn what_cannot_be_merged_writes_nothing() {
     };
     fs::create_dir(here.join("empty")).expect("a directory");
     refused("merge", 2, &["DIR"]);
-    refused("merge nowhere", 1, &["cannot read nowhere"]);
+    refused("merge nowhere", 2, &["cannot read nowhere"]);
     refused("merge node1 empty", 2, &["empty: holds no run, nor does a folder in it"]);
     refused("merge node1 ./node1", 2, &["./node1: is named twice"]);
     refused("merge node1 --out node1/all", 2, &["--out node1/all: lies in node1, from where the runs come"]);

@@ -166,7 +166,7 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     let table = fs::read_to_string(here.join("arm/protocols/labels.csv")).expect("the table");
     for line in table.lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
-        let result = if fields[7] == "true" { "succeeded" } else { "failed" };
+        let result = if fields[7] == "true" { "success" } else { "no success" };
         let held_out = if fields[3] == "true" { ", held out" } else { "" };
         let label = format!("{} {}", fields[1], fields[2]);
         assert!(fields[4] != "1" || sheet.contains(&format!("{}{held_out}: {result}", label.trim_end())), "{line}");
@@ -229,7 +229,7 @@ fn refused_reports_write_nothing() {
     refused("report a --html there.html", 2, &["there.html: there is one already"]);
     refused("report a --html new.html --md there.md", 2, &["there.md: there is one already"]);
     refused("report a --html new.html --md x.md", 2, &["x-fitness-1.svg: there is one already"]);
-    refused("report a --html none/new.html", 1, &["cannot write none/new.html"]);
+    refused("report a --html none/new.html", 2, &["none/new.html: there is no folder none"]);
     for (file, damaged, words) in [
         ("test.csv", "index,trial\n0,0\n", "test.csv: is not the table of a test"),
         ("test.csv", "index,trial,steps,success,fitness,at [m]\n0,0,5,true,x,1\n", "test.csv: line 2 "),

@@ -60,6 +60,7 @@ struct PopulationResult {
     mean_fitness: f64,
     /// Standard error of the mean fitness. NaN for a single trial.
     standard_error: f64,
+    /// Share of all trials, NaN if all broke down.
     success_rate: f64,
 }
 
@@ -73,7 +74,7 @@ impl PopulationResult {
         let earned: Vec<(f64, bool)> = finished.iter().filter_map(|results| result_of(results)).collect();
         let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
         let successes = earned.iter().filter(|(_, success)| *success).count();
-        let success_rate = successes as f64 / all.max(1) as f64;
+        let success_rate = if earned.is_empty() { f64::NAN } else { successes as f64 / all.max(1) as f64 };
         Self { population: name.into(), mean_fitness, standard_error, success_rate }
     }
 }

@@ -13,13 +13,12 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
-use crate::evaluation::trials::{came_to, facts, fitness};
+use crate::evaluation::trials::{came_to, facts, fitness, scored, why_failed};
 use crate::experiment::Anatomy;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::outcome::Outcome;
-use crate::figures::significant::significant;
 use crate::run::catch_panic::catch_printed_panic;
 use crate::run::plan::Plan;
 use crate::run::record_file::history;
@@ -256,13 +255,12 @@ impl Replayable {
 
     /// Summarizes each selected trial.
     fn replayed(&self, outcomes: &[Outcome]) -> Vec<ReplayedTrial> {
-        let terms = self.evaluator.info().terms;
         let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
             trial,
             steps: outcome.steps,
             fitness: self.fitness(std::slice::from_ref(outcome)),
             success: outcome.success,
-            failure: outcome.why_failed(&terms),
+            failure: why_failed(self.evaluator.as_ref(), outcome),
         });
         trials.collect()
     }
@@ -327,6 +325,13 @@ struct ReplayedTrial {
     failure: Option<String>,
 }
 
+/// Lists the trials that broke down with the reasons, each after a semicolon.
+fn failures(trials: &[ReplayedTrial]) -> String {
+    let failure =
+        |trial: &ReplayedTrial| Some(format!("; trial {} broke down: {}", trial.trial, trial.failure.as_ref()?));
+    trials.iter().filter_map(failure).collect()
+}
+
 impl InWords for ReplaySummary {
     /// A line, and one for the same with changes.
     fn text(&self) -> String {
@@ -335,18 +340,12 @@ impl InWords for ReplaySummary {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
         };
-        let fitness = significant(*fitness);
-        let mut text =
-            format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness}");
-        for ReplayedTrial { trial, failure, .. } in trials {
-            if let Some(why) = failure {
-                // Writing into a string cannot fail.
-                let _ = write!(text, "; trial {trial} failed: {why}");
-            }
-        }
+        let individual = format!("individual {individual} of generation {generation}");
+        let mut text = format!("{individual}, {what}: {steps} steps, {}{}", scored(*fitness), failures(trials));
         if let Some(Lesioned { list, trials, fitness, .. }) = lesion {
-            let (steps, fitness) = (trials.iter().map(|trial| trial.steps).sum::<u32>(), significant(*fitness));
-            let _ = write!(text, "\nwith {list}: {steps} steps, fitness {fitness}");
+            let steps = trials.iter().map(|trial| trial.steps).sum::<u32>();
+            // Writing into a string cannot fail.
+            let _ = write!(text, "\nwith {list}: {steps} steps, {}{}", scored(*fitness), failures(trials));
         }
         text
     }

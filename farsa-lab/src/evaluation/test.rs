@@ -150,8 +150,12 @@ pub(crate) fn whose(generation: u32, individual: u32, individuals: &[u32]) -> St
 
 /// Why the first of the trials that failed did, if any did.
 pub(crate) fn failure(results: &[TrialResult], terms: &[String]) -> Option<String> {
-    let failed =
-        results.iter().enumerate().find_map(|(number, found)| Some((number, found.outcome.why_failed(terms)?)));
+    let why = |found: &TrialResult| {
+        let fitness = found.fitness;
+        let other = || (!fitness.is_finite()).then(|| format!("the fitness of the trial is {fitness}"));
+        found.outcome.why_failed(terms).or_else(other)
+    };
+    let failed = results.iter().enumerate().find_map(|(number, found)| Some((number, why(found)?)));
     failed.map(|(number, why)| format!("line {number} of the test failed: {why}"))
 }
 
@@ -303,7 +307,7 @@ pub(crate) fn run_trials(
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
         let earned = fitness(&outcome);
         if let Some(first) = results.last_mut().filter(|_| !number.is_multiple_of(count)) {
-            first.others.push((earned, outcome.success));
+            first.others.push((earned, outcome.success && earned.is_finite()));
         } else {
             let trial = (number / count % trials.count % kinds) as u32;
             results.push(TrialResult { trial, outcome, fitness: earned, others: Vec::new() });

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::{Serialize, Serializer};
 
 use crate::error::Error;
+use crate::evaluation::trials::NO_VALUE;
 use crate::experiment::outcome::{Note, Outcome};
 use crate::figures::significant::significant;
 
@@ -63,11 +64,12 @@ impl Table {
             others.iter().flat_map(|name| ["fitness", "success"].map(|what| format!("{what} of population {name}"))),
         );
         let lines = trials.iter().enumerate().map(|(index, TrialResult { trial, outcome, fitness, others })| {
+            let success = outcome.success && fitness.is_finite();
             let mut line = vec![
                 index.to_string(),
                 trial.to_string(),
                 outcome.steps.to_string(),
-                outcome.success.to_string(),
+                success.to_string(),
                 number(*fitness),
             ];
             line.extend((0..terms.len()).map(|term| number(outcome.terms.get(term).copied().unwrap_or(f64::NAN))));
@@ -187,19 +189,22 @@ impl Table {
     pub(crate) fn findings(&self, terms: &[String]) -> Findings {
         let rows = self.lines.get(1..).unwrap_or_default();
         let field = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
-        let column = |column: usize| rows.iter().map(|row| field(row, column)).collect::<Vec<_>>();
+        let is_finished = |row: &[String]| field(row, 4).parse::<f64>().is_ok_and(f64::is_finite);
+        let finished: Vec<&Vec<String>> = rows.iter().filter(|row| is_finished(row)).collect();
+        let column = |column: usize| finished.iter().map(|row| field(row, column)).collect::<Vec<_>>();
         let mut by_trial: BTreeMap<u32, Share> = BTreeMap::new();
         for row in rows {
             let share = by_trial.entry(field(row, 1).parse().unwrap_or_default()).or_default();
             share.of += 1;
-            share.successes += usize::from(field(row, 3) == "true");
+            share.successes += usize::from(field(row, 3) == "true" && is_finished(row));
+            share.broken_down += usize::from(!is_finished(row));
         }
         let head = self.lines.first().map(Vec::as_slice).unwrap_or_default();
         let notes = head.iter().enumerate().skip(HEAD.len()).filter(|(_, name)| !own_columns(terms).contains(name));
         Findings {
             trials: rows.len(),
             successes: by_trial.values().map(|share| share.successes).sum(),
-            broken_down: column(4).iter().filter(|text| !text.parse::<f64>().is_ok_and(f64::is_finite)).count(),
+            broken_down: rows.len() - finished.len(),
             fitness: mean(&column(4)),
             by_trial,
             notes: notes.map(|(index, name)| (name.clone(), Finding::from_fields(column(index)))).collect(),
@@ -214,7 +219,7 @@ pub(crate) struct Findings {
     pub(crate) successes: usize,
     /// Trials whose numbers were not finite.
     pub(crate) broken_down: usize,
-    /// Mean fitness of the trials that did not break down.
+    /// Mean fitness of the trials that did not break down, NaN without any.
     pub(crate) fitness: f64,
     /// By the number of the experiment's trial.
     pub(crate) by_trial: BTreeMap<u32, Share>,
@@ -223,18 +228,27 @@ pub(crate) struct Findings {
     pub(crate) notes: Vec<(String, Finding)>,
 }
 
-/// Returns the share as text.
+/// Successes among trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub(crate) struct Share {
     pub(crate) successes: usize,
     pub(crate) of: usize,
+    /// Trials that broke down, which are no successes.
+    pub(crate) broken_down: usize,
+}
+
+impl Share {
+    /// Computes the share of successes, NaN if every trial broke down.
+    pub(crate) fn rate(self) -> f64 {
+        if self.of > self.broken_down { self.successes as f64 / self.of as f64 } else { f64::NAN }
+    }
 }
 
 /// Summary of a note.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Finding {
-    /// Mean of a quantity, over the trials that have it.
+    /// Mean of a quantity over the trials that have it, NaN without any.
     Mean(f64),
     /// Count of each word.
     Counts(BTreeMap<String, usize>),
@@ -259,14 +273,16 @@ impl Findings {
         let share = |n: usize| format!("{n} of {} ({:.1} %)", self.trials, 100.0 * self.part(n));
         // Writing into a string cannot fail.
         let mut text = String::new();
-        let _ = writeln!(text, "success: {}", share(self.successes));
+        let mean = |x: f64| if x.is_finite() { format!("mean {}", significant(x)) } else { NO_VALUE.into() };
+        let success = if self.rate().is_nan() { NO_VALUE.into() } else { share(self.successes) };
+        let _ = writeln!(text, "success: {success}");
         if self.broken_down > 0 {
             let _ = writeln!(text, "broken down: {}", share(self.broken_down));
         }
-        let _ = writeln!(text, "fitness: mean {}", significant(self.fitness));
+        let _ = writeln!(text, "fitness: {}", mean(self.fitness));
         for (name, finding) in &self.notes {
             let _ = match finding {
-                Finding::Mean(mean) => writeln!(text, "{name}: mean {}", significant(*mean)),
+                Finding::Mean(x) => writeln!(text, "{name}: {}", mean(*x)),
                 Finding::Counts(counts) => {
                     let counts: Vec<String> =
                         counts.iter().map(|(word, &count)| format!("{word} {}", share(count))).collect();
@@ -275,6 +291,12 @@ impl Findings {
             };
         }
         text
+    }
+
+    /// Computes the share of successes, NaN if every trial broke down.
+    pub(crate) fn rate(&self) -> f64 {
+        let Self { trials: of, successes, broken_down, .. } = *self;
+        Share { successes, of, broken_down }.rate()
     }
 
     /// A number of trials as a part of all.
@@ -295,7 +317,7 @@ pub(super) fn as_map<S: Serializer>(notes: &[(String, Finding)], serializer: S) 
 fn mean(fields: &[String]) -> f64 {
     let finite: Vec<f64> =
         fields.iter().filter_map(|field| field.parse().ok()).filter(|x: &f64| x.is_finite()).collect();
-    finite.iter().sum::<f64>() / finite.len().max(1) as f64
+    if finite.is_empty() { f64::NAN } else { finite.iter().sum::<f64>() / finite.len() as f64 }
 }
 
 fn number(x: f64) -> String {
@@ -362,6 +384,36 @@ mod tests {
         let shares = findings.by_trial.values().map(|share| (share.successes, share.of)).collect::<Vec<_>>();
         assert_eq!(shares, [(1, 2), (1, 1), (0, 1)]);
         assert!(table.aligned().lines().all(|line| line.len() <= table.aligned().lines().next().unwrap().len()));
+    }
+
+    #[test]
+    fn trials_that_broke_down_are_counted_and_not_averaged() {
+        let outcome = |terms: &[f64], success, height: f64| Outcome {
+            terms: terms.into(),
+            success,
+            notes: vec![("height", height.into())],
+            ..Outcome::default()
+        };
+        let result = |trial, fitness, outcome| TrialResult { trial, outcome, fitness, others: Vec::new() };
+        let good = result(0, 3.0, outcome(&[1.0, 2.0], true, 4.0));
+        // Its other term, its note and its success are those of a trial that was not finished.
+        let broken = result(1, f64::NAN, outcome(&[f64::NAN, 50.0], true, 60.0));
+        let terms = ["a".to_owned(), "b".to_owned()];
+        let found = Table::new(&terms, &[], &[good.clone(), broken.clone(), good.clone()]).findings(&[]);
+        assert_eq!((found.trials, found.successes, found.broken_down, found.fitness), (3, 2, 1, 3.0));
+        let means = [("a", 1.0), ("b", 2.0), ("height", 4.0)].map(|(name, x)| (name.to_owned(), Finding::Mean(x)));
+        assert_eq!(found.notes, means);
+        assert_eq!((found.by_trial[&0].rate(), found.by_trial[&1].rate().is_nan()), (1.0, true));
+        assert_eq!(found.rate(), 2.0 / 3.0);
+
+        let none = Table::new(&terms, &[], &[broken.clone(), broken]).findings(&terms);
+        assert_eq!(
+            none.text(),
+            "success: no value\nbroken down: 2 of 2 (100.0 %)\nfitness: no value\nheight: no value\n"
+        );
+        let json = serde_json::to_value(&none).unwrap();
+        assert_eq!((&json["fitness"], &json["broken_down"]), (&serde_json::Value::Null, &2.into()));
+        assert_eq!(json["notes"]["height"]["mean"], serde_json::Value::Null);
     }
 
     #[test]

@@ -6,7 +6,12 @@ use farsa_view::readable;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::outcome::{Note, Outcome};
+#[cfg(feature = "command")]
+use crate::figures::significant::significant;
 use crate::run::plan::MAX_SEED;
+
+/// Text of a mean or share over no trials.
+pub(crate) const NO_VALUE: &str = "no value";
 
 /// Returns the episode of a test trial, numbered through all trials, for the first individual. `kinds` is the
 /// experiment's number of trials.
@@ -23,8 +28,25 @@ pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
     fitness.get()
 }
 
-/// Returns success and fitness of a trial as text.
+/// Finds the reason for which a trial broke down.
+pub(crate) fn why_failed(evaluator: &dyn Evaluator, outcome: &Outcome) -> Option<String> {
+    outcome.why_failed(&evaluator.info().terms).or_else(|| {
+        let fitness = evaluator.fitness(std::slice::from_ref(outcome));
+        (!fitness.is_finite()).then(|| format!("its fitness is {fitness}"))
+    })
+}
+
+/// Formats a fitness with four digits, or its absence after a failure.
+#[cfg(feature = "command")]
+pub(crate) fn scored(fitness: f64) -> String {
+    if fitness.is_finite() { format!("fitness {}", significant(fitness)) } else { "no fitness".into() }
+}
+
+/// Returns success and fitness of a trial as text, or the reason for which it broke down.
 pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
+    if let Some(why) = why_failed(evaluator, outcome) {
+        return format!("broken down: {why}");
+    }
     let success = if outcome.success { "success" } else { "no success" };
     format!("{success}, {}", readable(fitness(evaluator, std::slice::from_ref(outcome))))
 }
@@ -40,10 +62,12 @@ pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String
         };
         ((*name).to_owned(), value)
     });
-    let summary = [
-        ("fitness of the trial alone".to_owned(), readable(fitness)),
-        ("success".to_owned(), if outcome.success { "yes" } else { "no" }.to_owned()),
-        ("steps".to_owned(), outcome.steps.to_string()),
-    ];
-    summary.into_iter().chain(terms).chain(notes).collect()
+    let why = why_failed(evaluator, outcome);
+    let success = (outcome.success && why.is_none()).to_string();
+    let summary = match why {
+        Some(why) => [("broken down".to_owned(), why), ("fitness of the trial".to_owned(), NO_VALUE.into())],
+        None => [("fitness of the trial".to_owned(), readable(fitness)), ("success".to_owned(), success)],
+    };
+    let steps = ("steps".to_owned(), outcome.steps.to_string());
+    summary.into_iter().chain([steps]).chain(terms).chain(notes).collect()
 }

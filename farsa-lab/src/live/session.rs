@@ -207,7 +207,8 @@ impl LiveSession {
         let episode = page.episode(0).unwrap_or_default();
         let episode = RawValue::from_string(episode).map_err(|error| Error::Other(error.to_string()))?;
         let fitness = fitness(evaluator.as_ref(), std::slice::from_ref(&outcome));
-        Ok(EpisodeAnswer { episode, digests, steps: outcome.steps, fitness, success: outcome.success })
+        let success = outcome.success && fitness.is_finite();
+        Ok(EpisodeAnswer { episode, digests, steps: outcome.steps, fitness, success })
     }
 
     /// Evaluates fresh trials.
@@ -233,10 +234,12 @@ impl LiveSession {
         });
         let outcomes = outcomes(evaluator.as_mut(), evaluations.collect());
         let fitness = outcomes.iter().map(|outcome| fitness(evaluator.as_ref(), std::slice::from_ref(outcome)));
+        let fitness: Vec<f64> = fitness.collect();
+        let finished = outcomes.iter().zip(&fitness).filter(|(_, fitness)| fitness.is_finite());
         Ok(FreshResults {
             trials: outcomes.len(),
-            successes: outcomes.iter().filter(|outcome| outcome.success).count(),
-            fitness: fitness.collect(),
+            successes: finished.filter(|(outcome, _)| outcome.success).count(),
+            fitness,
         })
     }
 

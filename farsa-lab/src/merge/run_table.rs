@@ -22,7 +22,8 @@ pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
         ["generations", "finished", "evaluations", "failed", "best", "mean", "highest best"].map(str::to_owned),
     );
     head.extend(populations.iter().flat_map(|name| [format!("best {name}"), format!("mean {name}")]));
-    head.extend(["test generation", "test trials", "test success", "test fitness"].map(str::to_owned));
+    let test = ["test generation", "test trials", "test broken down", "test success", "test fitness"];
+    head.extend(test.map(str::to_owned));
     let mut writer = csv::Writer::from_writer(Vec::new());
     let refused = |error: &dyn std::fmt::Display| Error::damaged(Path::new("the table of the runs"), error);
     writer.write_record(&head).map_err(|error| refused(&error))?;
@@ -45,7 +46,8 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     let sum = |what: fn(&Line) -> u64| run.lines.iter().map(what).sum::<u64>().to_string();
     row.extend([run.lines.len().to_string(), if run.is_finished() { "yes" } else { "no" }.to_owned()]);
     row.extend([sum(|line| line.evaluations), sum(|line| line.failed)]);
-    let number = |x: Option<f64>| x.map(|x| format!("{x:?}")).unwrap_or_default();
+    // Without a successful evaluation there is no number.
+    let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map(|x| format!("{x:?}")).unwrap_or_default();
     let last = run.lines.last();
     row.extend([0, 1].map(|which| number(last.map(|line| line.row[which]))));
     row.push(number(run.lines.iter().map(|line| line.row[0]).reduce(f64::max)));
@@ -62,7 +64,8 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
             [
                 record.map(|record| record.generation.to_string()).unwrap_or_default(),
                 findings.trials.to_string(),
-                number(Some(findings.part(findings.successes))),
+                findings.broken_down.to_string(),
+                number(Some(findings.rate())),
                 number(Some(findings.fitness)),
             ]
         }

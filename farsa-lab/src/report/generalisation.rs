@@ -21,13 +21,15 @@ impl HeldOut<'_> {
     /// Counts the runs that generalize to at least the given number of cases.
     fn count(&self, least: usize) -> Proportion {
         let enough = |rates: &&Vec<f64>| rates.iter().filter(|rate| **rate >= GENERALISES).count() >= least;
-        Proportion { successes: self.runs.iter().filter(enough).count(), of: self.runs.len() }
+        // A run with a case of broken trials alone cannot be counted.
+        let runs = self.runs.iter().filter(|rates| !rates.iter().any(|rate| rate.is_nan()));
+        Proportion { successes: runs.clone().filter(enough).count(), of: runs.count() }
     }
 
     /// Counts the runs that generalize to a case.
     fn to(&self, case: usize) -> Proportion {
-        let follows = |rates: &&Vec<f64>| rates.get(case).is_some_and(|rate| *rate >= GENERALISES);
-        Proportion { successes: self.runs.iter().filter(follows).count(), of: self.runs.len() }
+        let rates = self.runs.iter().filter_map(|rates| rates.get(case)).filter(|rate| !rate.is_nan());
+        Proportion { successes: rates.clone().filter(|rate| **rate >= GENERALISES).count(), of: rates.count() }
     }
 }
 
@@ -92,6 +94,9 @@ mod tests {
         assert_eq!(found[0].head, ["condition", "TOUCH green", "MOVE red", "at least one", "all"]);
         assert_eq!(found[0].rows[0], ["one", "1 of 3", "2 of 3", "2 of 3", "1 of 3"]);
         assert_eq!(found[0].rows[1], ["other", "0 of 3", "0 of 3", "0 of 3", "0 of 3"]);
+        let broken = group("broken", &[[f64::NAN, 0.9], [0.8, 0.9], [0.0, 0.9]]);
+        let blocks = generalisation(&[broken]);
+        assert_eq!(tables(&blocks)[0].rows[0], ["broken", "1 of 2", "3 of 3", "2 of 2", "1 of 2"]);
         // Two of six can be chosen in 15 ways, three of them within each group.
         assert_eq!(found[1].rows, [["one", "other", "2 of 3", "0 of 3", "0.4000"]]);
     }

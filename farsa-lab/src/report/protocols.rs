@@ -116,9 +116,10 @@ impl Alike<'_> {
         }
     }
 
-    /// Returns the share of success of a case in each run.
+    /// Returns the share of success of a case in each run, without runs in which all trials broke down.
     fn rates(&self, case: usize) -> Vec<f64> {
-        self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate)).collect()
+        let rates = self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate));
+        rates.filter(|rate| !rate.is_nan()).collect()
     }
 
     /// Returns the results in held-out cases, if any.
@@ -138,6 +139,9 @@ impl Alike<'_> {
             return tested.found.get(case).map_or((f64::NAN, String::new(), [f64::NAN; 2]), |case| {
                 (mean, format!("{} of {}", case.findings.successes, case.findings.trials), case.interval)
             });
+        }
+        if rates.is_empty() {
+            return (f64::NAN, String::new(), [f64::NAN; 2]);
         }
         let ends = rates.iter().fold([1.0, 0.0], |[low, high], x| [x.min(low), x.max(high)]);
         let [low, high] = ends.map(|share: f64| format!("{:.0}", 100.0 * share));
@@ -244,8 +248,8 @@ impl Alike<'_> {
         }
         let mut table = Table::new(&["case", "median", "quartiles", "lowest", "highest"]);
         for (number, case) in self.cases.iter().enumerate() {
-            let rates = self.rates(number);
-            let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&rates) else { continue };
+            let gap = Quartiles { lower: f64::NAN, median: f64::NAN, upper: f64::NAN };
+            let Quartiles { lower, median, upper } = Quartiles::from_values(&self.rates(number)).unwrap_or(gap);
             let (_, _, ends) = self.share(number);
             let held_out = if case.held_out { ", held out" } else { "" };
             let mut row = vec![format!("{}{held_out}", case.name()), percent(median)];

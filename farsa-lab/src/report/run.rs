@@ -153,9 +153,9 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// Gets the share of successful trials of the test.
+    /// Gets the share of successful trials of the test, unless all of them broke down.
     pub(crate) fn success(&self) -> Option<f64> {
-        self.test.as_ref().map(|Tested { findings, .. }| findings.part(findings.successes))
+        self.test.as_ref().map(|Tested { findings, .. }| findings.rate()).filter(|rate| !rate.is_nan())
     }
 
     /// Computes the time of all sessions [s].

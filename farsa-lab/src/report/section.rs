@@ -154,7 +154,11 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             }
         }
     }
-    let mut table = Table::new(&["run", "champion of", "trials", "success", "trial by trial", "fitness"]);
+    let tests = groups.iter().flat_map(|group| &group.runs).filter_map(|run| run.test.as_ref());
+    let broken_down = tests.clone().any(|test| test.findings.broken_down > 0);
+    let mut table = Table::new(&["run", "champion of", "trials"]);
+    table.head.extend(broken_down.then(|| "broken down".to_owned()));
+    table.head.extend(["success", "trial by trial", "fitness"].map(str::to_owned));
     table.head.extend(names.iter().map(|&name| name.to_owned()));
     let mut missing = Vec::new();
     for group in groups {
@@ -173,17 +177,15 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
                 }
             };
             let by_trial = findings.by_trial.values();
-            let by_trial: Vec<String> =
-                by_trial.map(|share| percent(share.successes as f64 / share.of.max(1) as f64)).collect();
-            let mut row = vec![
-                run.name(),
-                champion,
-                findings.trials.to_string(),
-                percent(findings.part(findings.successes)),
+            let by_trial: Vec<String> = by_trial.map(|share| percent(share.rate())).collect();
+            let mut row = vec![run.name(), champion, findings.trials.to_string()];
+            row.extend(broken_down.then(|| findings.broken_down.to_string()));
+            row.extend([
+                percent(findings.rate()),
                 // Many kinds of trials are only counted.
                 if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") },
                 short(findings.fitness),
-            ];
+            ]);
             for &name in &names {
                 let found = findings.notes.iter().find(|note| note.0 == name);
                 row.push(match found.map(|note| &note.1) {
@@ -198,17 +200,17 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             }
             rows.push(row);
         }
-        let middle = (rows.len() > 1).then(|| middle(group, &names));
+        let middle = (rows.len() > 1).then(|| middle(group, &names, broken_down));
         table.rows.append(&mut rows);
         table.rows.extend(middle);
     }
     let mut blocks = Vec::new();
     if !table.rows.is_empty() {
-        blocks.push(Block::Text(
-            "Success as the experiment defines it, of all trials and of each kind of trial, and means over the trials. The \
-             last row of a condition is the median of its runs."
-                .into(),
-        ));
+        let without = if broken_down { " that did not break down" } else { "" };
+        blocks.push(Block::Text(format!(
+            "Success as the experiment defines it, of all trials and of each kind of trial, and means over the \
+             trials{without}. The last row of a condition is the median of its runs."
+        )));
         blocks.push(Block::Table(table));
     }
     if !missing.is_empty() {
@@ -219,17 +221,20 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
 }
 
 /// Lists the medians of a group's tests.
-fn middle(group: &Group<'_>, names: &[&str]) -> Vec<String> {
+fn middle(group: &Group<'_>, names: &[&str], broken_down: bool) -> Vec<String> {
     let findings: Vec<_> = group.runs.iter().filter_map(|run| Some(&run.test.as_ref()?.findings)).collect();
-    let shown = |values: Vec<f64>, show: fn(f64) -> String| median(&values).map(show).unwrap_or_default();
-    let mut row = vec![
-        format!("median, {}", group.label),
-        String::new(),
-        String::new(),
-        shown(findings.iter().map(|found| found.part(found.successes)).collect(), percent),
+    // A test in which every trial broke down has no value.
+    let shown = |values: Vec<f64>, show: fn(f64) -> String| {
+        let values: Vec<f64> = values.into_iter().filter(|x| !x.is_nan()).collect();
+        median(&values).map_or_else(|| "–".into(), show)
+    };
+    let mut row = vec![format!("median, {}", group.label), String::new(), String::new()];
+    row.extend(broken_down.then(String::new));
+    row.extend([
+        shown(findings.iter().map(|found| found.rate()).collect(), percent),
         String::new(),
         shown(findings.iter().map(|found| found.fitness).collect(), short),
-    ];
+    ]);
     for &name in names {
         let means = findings.iter().filter_map(|found| match found.notes.iter().find(|note| note.0 == name)?.1 {
             Finding::Mean(mean) => Some(mean),

@@ -96,7 +96,7 @@ impl Counts {
         let Sample { parameters, seed, generation, .. } = sample;
         let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
         let opponents = Opponents { parameters: &opponents, each: sample.populations - 1, told_apart: None };
-        // Trials in lanes live as long as their evaluator, so no shorter borrow fits.
+        // The evaluator owns the trials in its lanes, so no shorter borrow fits.
         let stop: &'static AtomicBool = Box::leak(Box::default());
         let mut counts = Self::default();
         let started = Instant::now();

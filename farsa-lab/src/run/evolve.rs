@@ -22,7 +22,7 @@ use crate::run::search_state::{GenerationResult, SearchState};
 use crate::run::summary::{Summary, Winner};
 use crate::store::append_log::Mark;
 use crate::store::directory::Directory;
-use crate::store::failures::FailedEvaluation;
+use crate::store::failures::{self, FailedEvaluation};
 use crate::store::identity::Identity;
 use crate::store::lineage::{Lineage, rows};
 use crate::store::lock::Lock;
@@ -91,7 +91,7 @@ pub(crate) fn continue_locked(
         ended
     })?;
     drop(progress);
-    Ok(run.summary())
+    run.summary()
 }
 
 /// A run in progress.
@@ -260,22 +260,23 @@ impl<'d> Run<'d> {
         replace(&directory.plot(), self.curves.draw(&self.title, &self.names).as_bytes())
     }
 
-    fn summary(&self) -> Summary {
+    fn summary(&self) -> Result<Summary, Error> {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
         let champions: Vec<Winner> =
             self.champions.iter().flat_map(|all| Winner::from_champions(all, &self.names)).collect();
-        Summary {
+        Ok(Summary {
             directory: self.directory.path().display().to_string(),
             experiment,
             condition,
             seed,
             generations: self.search_state.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
+            failed: failures::count(&self.directory.failures())?,
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),
             champions: if champions.len() > 1 { champions } else { Vec::new() },
-        }
+        })
     }
 }
 

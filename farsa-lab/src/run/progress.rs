@@ -77,9 +77,12 @@ fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
     let format_population = |(name, statistics): &(&str, &Statistics)| {
         let Statistics { best, mean, worst, failed, .. } = statistics;
         let name = if all.len() > 1 { format!("{name} ") } else { String::new() };
+        if !best.is_finite() {
+            return format!("{name}all {failed} failed");
+        }
         let [best, mean, worst] = [best, mean, worst].map(|x| significant(*x));
         let rest = if whole { format!(", worst {worst}") } else { String::new() };
-        let lost = if whole && *failed > 0 { format!(", {failed} failed") } else { String::new() };
+        let lost = if *failed > 0 { format!(", {failed} failed") } else { String::new() };
         format!("{name}best {best}, mean {mean}{rest}{lost}")
     };
     all.iter().map(format_population).collect::<Vec<_>>().join("; ")
@@ -115,6 +118,8 @@ mod tests {
         let text =
             "hunter best 1.000, mean 0.6250, worst 0.2500; prey best -2.000, mean -2.000, worst -2.000, 1 failed";
         assert_eq!(in_words(&both, true), text);
-        assert_eq!(in_words(&both, false), "hunter best 1.000, mean 0.6250; prey best -2.000, mean -2.000");
+        let text = "hunter best 1.000, mean 0.6250; prey best -2.000, mean -2.000, 1 failed";
+        assert_eq!(in_words(&both, false), text);
+        assert_eq!(in_words(&[("0", &of(&[f64::NAN; 3]))], true), "all 3 failed");
     }
 }

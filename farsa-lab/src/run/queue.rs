@@ -13,6 +13,7 @@ use crate::run::pool::Pool;
 use crate::run::records::{Champions, Checkpoint};
 use crate::run::summary::{Summary, Winner};
 use crate::store::directory::{Directory, vacant};
+use crate::store::failures;
 use crate::store::lock::Lock;
 
 /// One of the runs.
@@ -141,14 +142,6 @@ impl State {
     pub(crate) fn is_elsewhere(&self) -> bool {
         matches!(self, Self::Elsewhere(_))
     }
-
-    /// Gets the champion's fitness of a finished run.
-    pub(crate) fn fitness(&self) -> Option<f64> {
-        match self {
-            Self::Finished { summary, .. } => summary.champion.as_ref().map(|champion| champion.fitness),
-            Self::Elsewhere(_) => None,
-        }
-    }
 }
 
 /// Opens the directory of a run, and returns whether this process has created it.
@@ -201,6 +194,7 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
         seed: identity.seed,
         generations: done,
         evaluations: 0,
+        failed: failures::count(&directory.failures())?,
         seconds: 0.0,
         champion: champions.first().cloned(),
         champions: if champions.len() > 1 { champions } else { Vec::new() },

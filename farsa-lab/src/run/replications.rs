@@ -96,7 +96,6 @@ pub(crate) fn run<'e>(
     queue.check()?;
     let states = queue.work(stop())?;
     queue.tell_of_others(&states);
-    let fitness = states.iter().filter_map(State::fitness).collect::<Vec<_>>();
     let (mut runs, mut elsewhere) = (Vec::new(), Vec::new());
     for state in states {
         match state {
@@ -104,26 +103,35 @@ pub(crate) fn run<'e>(
             State::Elsewhere(path) => elsewhere.push(path.display().to_string()),
         }
     }
+    let fitness = runs.iter().filter_map(|run: &Replication| run.summary.fitness()).collect::<Vec<_>>();
     Ok(Replications { median: median(&fitness), runs, elsewhere })
 }
 
 impl Replications {
     /// Formats a table with a line for each replication and the statistics of their champions.
     pub(crate) fn text(&self) -> String {
-        let mut rows = vec![["directory", "seed", "generations", "champion", "fitness"].map(str::to_owned).to_vec()];
+        let failed = self.runs.iter().any(|run| run.summary.failed > 0);
+        let head = ["directory", "seed", "generations", "champion", "fitness"];
+        let mut rows = vec![head.into_iter().chain(failed.then_some("failed")).map(str::to_owned).collect::<Vec<_>>()];
         rows.extend(self.runs.iter().map(|Replication { summary, .. }| {
             let Summary { directory, seed, generations, champion, .. } = summary;
-            let [individual, fitness] = champion.as_ref().map_or_else(Default::default, |champion| {
-                [champion.individual.to_string(), significant(champion.fitness)]
-            });
-            vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual, fitness]
+            let individual = champion.as_ref().map(|champion| champion.individual.to_string()).unwrap_or_default();
+            let fitness = summary.fitness().map_or_else(|| "–".into(), significant);
+            let mut row = vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual];
+            row.push(fitness);
+            row.extend(failed.then(|| summary.failed.to_string()));
+            row
         }));
         let mut text = text_table(&rows, 1..4);
-        let fitness = self.runs.iter().filter_map(|replication| Some(replication.summary.champion.as_ref()?.fitness));
-        if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness.collect::<Vec<_>>()) {
+        let fitness: Vec<f64> = self.runs.iter().filter_map(|run| run.summary.fitness()).collect();
+        if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness) {
             // Writing into a string cannot fail.
             let [lower, median, upper] = [lower, median, upper].map(significant);
             let _ = writeln!(text, "champions' fitness: median {median}, quartiles {lower} and {upper}");
+        }
+        if fitness.len() < self.runs.len() {
+            let (without, all) = (self.runs.len() - fitness.len(), self.runs.len());
+            let _ = writeln!(text, "champions without a fitness: {without} of {all}");
         }
         text
     }

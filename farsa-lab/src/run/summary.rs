@@ -16,6 +16,8 @@ pub(crate) struct Summary {
     pub(crate) generations: u32,
     /// Evaluations by this process, without those of earlier sessions.
     pub(crate) evaluations: u64,
+    /// Failed evaluations of all sessions.
+    pub(crate) failed: u64,
     pub(crate) seconds: f64,
     /// Champion of the first population. `None` if no generation was left.
     pub(crate) champion: Option<Winner>,
@@ -35,6 +37,15 @@ pub(crate) struct Winner {
 }
 
 impl Winner {
+    /// Formats the fitness, unless every evaluation of its generation failed.
+    fn scored(&self) -> String {
+        if self.fitness.is_finite() {
+            format!("fitness {}", significant(self.fitness))
+        } else {
+            "no fitness, all evaluations of this generation failed".into()
+        }
+    }
+
     /// Lists the champions of all populations with the given names.
     pub(crate) fn from_champions(champions: &Champions, names: &[String]) -> Vec<Self> {
         let Champions { generation, best, .. } = champions;
@@ -53,20 +64,36 @@ impl Summary {
     pub(crate) fn text(&self) -> String {
         let (directory, generations) = (OneLine(&self.directory), self.generations);
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
-            let all = self.champions.iter().map(|Winner { population, individual, fitness, .. }| {
-                let name = population.as_deref().unwrap_or_default();
-                format!("{} individual {individual}, fitness {}", OneLine(name), significant(*fitness))
+            let all = self.champions.iter().map(|winner| {
+                let (name, individual) = (winner.population.as_deref().unwrap_or_default(), winner.individual);
+                format!("{} individual {individual}, {}", OneLine(name), winner.scored())
             });
             let all = all.collect::<Vec<_>>().join("; ");
-            return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
+            let champions = format!("champions of generation {generation}: {all}");
+            return format!("{directory}: {generations} generations; {champions}{}", self.failures());
         }
         match &self.champion {
             None => format!("{directory}: all {generations} generations are finished already"),
-            Some(Winner { generation, individual, fitness, .. }) => format!(
+            Some(winner @ Winner { generation, individual, .. }) => format!(
                 "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
-                 fitness {}",
-                significant(*fitness)
+                 {}{}",
+                winner.scored(),
+                self.failures()
             ),
         }
+    }
+
+    /// Formats the number of failed evaluations, if there are any.
+    fn failures(&self) -> String {
+        match self.failed {
+            0 => String::new(),
+            1 => "; 1 evaluation failed".into(),
+            failed => format!("; {failed} evaluations failed"),
+        }
+    }
+
+    /// Gets the fitness of the first champion, unless every evaluation of its generation failed.
+    pub(crate) fn fitness(&self) -> Option<f64> {
+        self.champion.as_ref().map(|champion| champion.fitness).filter(|fitness| fitness.is_finite())
     }
 }

@@ -187,23 +187,34 @@ impl<'s, 'e> Sweep<'s, 'e> {
 
 impl Point {
     fn fitness(&self) -> Vec<f64> {
-        self.runs.iter().filter_map(|run| Some(run.champion.as_ref()?.fitness)).collect()
+        self.runs.iter().filter_map(Summary::fitness).collect()
+    }
+
+    /// Counts the failed evaluations of its finished runs.
+    fn failed(&self) -> u64 {
+        self.runs.iter().map(|run| run.failed).sum()
     }
 }
 
 impl Found {
     /// Formats a table with a line for each point.
     pub(crate) fn text(&self) -> String {
-        let mut rows = vec![["point", "finished", "median", "quartiles", "directory"].map(str::to_owned).to_vec()];
+        let some = self.points.iter().any(|point| point.failed() > 0);
+        let mut head = ["point", "finished", "median", "quartiles"].map(str::to_owned).to_vec();
+        head.extend(some.then(|| "failed".to_owned()).into_iter().chain(["directory".to_owned()]));
+        let mut rows = vec![head];
         rows.extend(self.points.iter().map(|point| {
             let [median, quartiles] = match Quartiles::from_values(&point.fitness()) {
-                None => Default::default(),
+                None => ["–".to_owned(), "–".to_owned()],
                 Some(Quartiles { lower, median, upper }) => {
                     [significant(median), format!("{} to {}", significant(lower), significant(upper))]
                 }
             };
             let finished = format!("{} of {}", point.runs.len(), point.replications);
-            vec![point.number.to_string(), finished, median, quartiles, point.directory.clone()]
+            let mut row = vec![point.number.to_string(), finished, median, quartiles];
+            row.extend(some.then(|| point.failed().to_string()));
+            row.push(point.directory.clone());
+            row
         }));
         text_table(&rows, 0..3)
     }

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::evaluation::protocols::table::ProtocolTable;
-use crate::evaluation::test_table::{Finding, Findings, as_map, own_columns};
+use crate::evaluation::test_table::{Finding, Findings, Share, as_map, own_columns};
+use crate::evaluation::trials::NO_VALUE;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::proportion::Proportion;
 use crate::figures::significant::significant;
@@ -17,9 +18,9 @@ pub(crate) struct CaseSummary {
     pub(crate) row: String,
     pub(crate) column: String,
     pub(crate) held_out: bool,
-    /// Share of the trials that succeeded.
+    /// Share of the trials that succeeded, NaN if all broke down.
     pub(crate) rate: f64,
-    /// Its interval of 95 %, by Wilson's score.
+    /// Its interval of 95 %, by Wilson's score. NaN without a share.
     pub(crate) interval: [f64; 2],
     /// Means of the terms of the fitness, where there are several.
     #[serde(serialize_with = "as_map")]
@@ -37,24 +38,16 @@ impl CaseSummary {
     fn new(case: &Case, mut findings: Findings, terms: &[String]) -> Self {
         let (terms, notes) = std::mem::take(&mut findings.notes).into_iter().partition(|note| terms.contains(&note.0));
         findings.notes = notes;
-        if findings.broken_down == findings.trials {
-            // There is nothing to take a mean of.
-            findings.fitness = f64::NAN;
-        }
         let share = Proportion { successes: findings.successes, of: findings.trials };
         let Case { row, column, held_out } = case.clone();
-        let rate = findings.part(findings.successes);
-        Self { row, column, held_out, rate, interval: share.interval(), terms, findings }
+        let rate = findings.rate();
+        let interval = if rate.is_nan() { [f64::NAN; 2] } else { share.interval() };
+        Self { row, column, held_out, rate, interval, terms, findings }
     }
 
     /// Gets the case.
     pub(crate) fn case(&self) -> Case {
         Case { row: self.row.clone(), column: self.column.clone(), held_out: self.held_out }
-    }
-
-    /// Trials that succeeded, of how many.
-    fn share(&self) -> Proportion {
-        Proportion { successes: self.findings.successes, of: self.findings.trials }
     }
 
     /// Iterates over the means of terms and notes, by name.
@@ -73,20 +66,28 @@ pub(crate) fn rows(protocol: &Protocol, found: &[CaseSummary]) -> (Vec<Vec<Strin
     head.extend(columns.then(|| named(column, "column")));
     head.extend(held_out.then(|| "kind".to_owned()));
     let words = head.len();
-    head.extend(["trials", "success", "rate", "95 % interval", "fitness"].map(str::to_owned));
+    let broken_down = found.iter().any(|case| case.findings.broken_down > 0);
+    head.push("trials".into());
+    head.extend(broken_down.then(|| "broken down".to_owned()));
+    head.extend(["success", "rate", "95 % interval", "fitness"].map(str::to_owned));
     let names = means(found);
     head.extend(names.iter().map(|&name| name.to_owned()));
     let line = |case: &CaseSummary| {
         let mut line = vec![case.row.clone()];
         line.extend(columns.then(|| case.column.clone()));
         line.extend(held_out.then(|| if case.held_out { "held out" } else { "trained" }.to_owned()));
-        let [low, high] = case.interval.map(|share| format!("{:.1}", 100.0 * share));
         let Findings { trials, successes, fitness, .. } = &case.findings;
-        line.extend([trials.to_string(), successes.to_string(), format!("{:.1} %", 100.0 * case.rate)]);
-        line.push(format!("{low} to {high} %"));
+        line.push(trials.to_string());
+        line.extend(broken_down.then(|| case.findings.broken_down.to_string()));
+        if case.rate.is_nan() {
+            line.extend(["–"; 3].map(str::to_owned));
+        } else {
+            let [low, high] = case.interval.map(|share| format!("{:.1}", 100.0 * share));
+            line.extend([successes.to_string(), format!("{:.1} %", 100.0 * case.rate), format!("{low} to {high} %")]);
+        }
         line.push(if fitness.is_finite() { significant(*fitness) } else { "–".into() });
         line.extend(names.iter().map(|&name| match case.means().find(|mean| mean.0 == name) {
-            Some((_, Finding::Mean(mean))) if fitness.is_finite() => significant(*mean),
+            Some((_, Finding::Mean(mean))) if mean.is_finite() => significant(*mean),
             _ => "–".into(),
         }));
         line
@@ -111,15 +112,23 @@ pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
         text.push('\n');
         for (held_out, kind) in [(false, "trained"), (true, "held out")] {
             let cases = found.iter().filter(|case| case.held_out == held_out);
-            let (successes, of) = cases.fold((0, 0), |(successes, of), case| {
-                let share = case.share();
-                (successes + share.successes, of + share.of)
+            let total = cases.fold(Share::default(), |total, case| {
+                let Findings { trials, successes, broken_down, .. } = &case.findings;
+                Share {
+                    successes: total.successes + successes,
+                    of: total.of + trials,
+                    broken_down: total.broken_down + broken_down,
+                }
             });
-            if of > 0 {
-                let rate = 100.0 * successes as f64 / of as f64;
-                // Writing into a string cannot fail.
-                let _ = writeln!(text, "{kind}: {successes} of {of} ({rate:.1} %)");
-            }
+            let Share { successes, of, broken_down } = total;
+            let rate = 100.0 * total.rate();
+            // Writing into a string cannot fail.
+            let _ = match broken_down {
+                _ if of == 0 => Ok(()),
+                _ if rate.is_nan() => writeln!(text, "{kind}: {NO_VALUE}, all {of} trials broke down"),
+                0 => writeln!(text, "{kind}: {successes} of {of} ({rate:.1} %)"),
+                _ => writeln!(text, "{kind}: {successes} of {of} ({rate:.1} %), {broken_down} broke down"),
+            };
         }
     }
     text
@@ -128,6 +137,7 @@ pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::Value;
     use std::path::Path;
 
     fn found(body: &str) -> Vec<CaseSummary> {
@@ -149,11 +159,11 @@ mod tests {
         let protocol = Protocol::new("x", "").with_axes("action", "object");
         assert_eq!(
             text(&protocol, &found),
-            "action  object  kind      trials  success     rate    95 % interval  fitness    find     act     way\n\
-             TOUCH   red     trained        2        2  100.0 %  34.2 to 100.0 %    1.000  0.7500  0.2500   2.000\n\
-             MOVE    red     held out       2        1   50.0 %    9.5 to 90.5 %    2.000   1.000   1.000  0.5000\n\
+            "action  object  kind      trials  broken down  success     rate    95 % interval  fitness    find     act     way\n\
+             TOUCH   red     trained        2            0        2  100.0 %  34.2 to 100.0 %    1.000  0.7500  0.2500   2.000\n\
+             MOVE    red     held out       2            1        1   50.0 %    9.5 to 90.5 %    2.000   1.000   1.000  0.5000\n\
              \n\
-             trained: 2 of 2 (100.0 %)\nheld out: 1 of 2 (50.0 %)\n"
+             trained: 2 of 2 (100.0 %)\nheld out: 1 of 2 (50.0 %), 1 broke down\n"
         );
         let json = serde_json::to_value(&found[0]).unwrap();
         assert_eq!((&json["row"], &json["successes"]), (&"TOUCH".into(), &2.into()));
@@ -169,10 +179,14 @@ mod tests {
         assert!(found[1].findings.fitness.is_nan());
         assert_eq!(
             text(&Protocol::new("x", ""), &found),
-            "case    trials  success     rate    95 % interval  fitness   find     act    way\n\
-             intact       1        1  100.0 %  20.7 to 100.0 %    1.500  1.000  0.5000  3.000\n\
-             cut          1        0    0.0 %    0.0 to 79.3 %        –      –       –      –\n"
+            "case    trials  broken down  success     rate    95 % interval  fitness   find     act    way\n\
+             intact       1            0        1  100.0 %  20.7 to 100.0 %    1.500  1.000  0.5000  3.000\n\
+             cut          1            1        –        –                –        –      –       –      –\n"
         );
-        assert_eq!(serde_json::to_value(&found[1]).unwrap()["fitness"], serde_json::Value::Null);
+        let json = serde_json::to_value(&found[1]).unwrap();
+        assert_eq!((&json["fitness"], &json["rate"], &json["broken_down"]), (&Value::Null, &Value::Null, &1.into()));
+        let held_out = self::found("0,cut,,true,0,0,0,false,NaN,NaN,NaN,,\n0,cut,,true,1,1,0,false,NaN,NaN,NaN,,\n");
+        let text = text(&Protocol::new("x", ""), &held_out);
+        assert!(text.ends_with("\nheld out: no value, all 2 trials broke down\n"), "{text}");
     }
 }

@@ -12,9 +12,8 @@ use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
-use crate::evaluation::trials::{came_to, facts, fitness};
+use crate::evaluation::trials::{came_to, facts, fitness, scored, why_failed};
 use crate::experiment::outcome::Outcome;
-use crate::figures::significant::significant;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
@@ -52,7 +51,6 @@ struct ReplayedCase {
 
 impl CasesSummary {
     fn new(plan: &Plan<'_>, directory: &Directory, trials: &CaseTrials, outcomes: &[Outcome]) -> Self {
-        let terms = trials.evaluator().info().terms;
         let cases = trials.cases.iter().zip(outcomes).map(|(number, outcome)| {
             let case = trials.case(*number);
             ReplayedCase {
@@ -63,7 +61,7 @@ impl CasesSummary {
                 steps: outcome.steps,
                 fitness: fitness(trials.evaluator(), std::slice::from_ref(outcome)),
                 success: outcome.success,
-                failure: outcome.why_failed(&terms),
+                failure: why_failed(trials.evaluator(), outcome),
             }
         });
         let Subject { generation, individual, .. } = trials.subject();
@@ -89,10 +87,10 @@ impl InWords for CasesSummary {
         for ReplayedCase { name, steps, fitness, success, failure, .. } in &self.cases {
             let came = if *success { "success" } else { "no success" };
             // Writing into a string cannot fail.
-            let _ = write!(text, "\n{name}: {came}, {steps} steps, fitness {}", significant(*fitness));
-            if let Some(why) = failure {
-                let _ = write!(text, ", failed: {why}");
-            }
+            let _ = match failure {
+                None => write!(text, "\n{name}: {came}, {steps} steps, {}", scored(*fitness)),
+                Some(why) => write!(text, "\n{name}: broken down after {steps} steps: {why}"),
+            };
         }
         text
     }

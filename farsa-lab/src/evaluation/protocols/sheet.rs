@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::test::Subject;
+use crate::evaluation::trials::why_failed;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::svg::{FONT, INK, MARGIN, OUTLINE, PAPER};
 use crate::run::plan::Plan;
@@ -58,6 +59,7 @@ struct DrawnCase {
     column: String,
     held_out: bool,
     success: bool,
+    broken_down: bool,
     #[serde(skip)]
     picture: Picture,
 }
@@ -120,7 +122,9 @@ fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, 
             .and_then(|tick| recording.picture(tick))
             .ok_or_else(|| Error::Usage(format!("trials of `{}` have no bodies to draw", plan.name())))?;
         let Case { row, column, held_out } = trials.case(number);
-        cases.push(DrawnCase { row, column, held_out, success: outcome.success, picture });
+        let broken_down = why_failed(trials.evaluator(), &outcome).is_some();
+        let success = outcome.success && !broken_down;
+        cases.push(DrawnCase { row, column, held_out, success, broken_down, picture });
     }
     let corners: Vec<[f64; 3]> = cases.iter().flat_map(|case| case.picture.extent()).collect();
     for case in &mut cases {
@@ -139,7 +143,11 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
     let draw = |number: usize, case: &DrawnCase| -> Markup {
         let [x, y] = [(number % columns) as u32, (number / columns) as u32];
         let [x, y] = [margin + x * (width + GAP), HEAD + LABEL + y * (height + LABEL + GAP)];
-        let result = if case.success { "succeeded" } else { "failed" };
+        let result = match (case.success, case.broken_down) {
+            (true, _) => "success",
+            (_, true) => "broken down",
+            _ => "no success",
+        };
         let name = if case.column.is_empty() { case.row.clone() } else { format!("{} {}", case.row, case.column) };
         let held_out = if case.held_out { ", held out" } else { "" };
         html! {

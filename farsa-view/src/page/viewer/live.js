@@ -32,8 +32,8 @@ function inWorker() {
 		ask: ({request}) => acts.session(request),
 		// Without the recording.
 		earned({request}) {
-			const {success, error} = acts.session(request);
-			return {success, error};
+			const {success, fitness, error} = acts.session(request);
+			return {success, fitness, error};
 		},
 	};
 	onmessage = ({data: {id, act, ...rest}}) => {
@@ -137,7 +137,7 @@ function compared({digests}, {stride, digests: run}) {
 
 const NONE = "a node or link of the network";
 const button = (text, act = null) => Object.assign(make("button", "", text), {onclick: act});
-const earnedBy = ({fitness, success}) => `${success ? "success" : "no success"}, ${fitness === null ? "failed" : +fitness.toPrecision(4)}`;
+const earnedBy = ({fitness, success}) => fitness === null ? "broken down" : `${success ? "success" : "no success"}, ${+fitness.toPrecision(4)}`;
 
 function pick(label, some, act) {
 	const list = make("select");
@@ -172,6 +172,9 @@ function controlsOf({live: {script}}, acts) {
 	return own;
 }
 
+// Formats a number of successes with the number of trials that broke down. Without any other trial there is no share.
+const shareOf = (successes, failed, of) => failed === of ? `all ${of} broke down` : `${successes} of ${of}${failed ? `, ${failed} broke down` : ""}`;
+
 // Counts successes in a hundred fresh trials, intact and with changes, and caches them in `counted`. Ten are run in parallel, but
 // with moved or pushed bodies each is run alone.
 async function hundred(individual, changed, counted, say) {
@@ -181,14 +184,18 @@ async function hundred(individual, changed, counted, say) {
 		const {lesion, moves, pushes} = change;
 		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "intact"];
 		const by = moves?.[0] || pushes?.[0] ? 1 : 10;
-		for (let [first, successes] = [0, 0]; !counted.has(key); first += by) {
-			successes += by > 1 ? (await answerOf({do: "fresh", individual, lesion, seed: 1, first, count: by})).successes
-				: +(await answerOf({do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change}, "earned")).success;
-			say([...text, `${whose}: ${successes} of ${first + by} ...`].join("; "));
-			if (first + by === 100) counted.set(key, successes);
+		for (let [first, successes, failed] = [0, 0, 0]; !counted.has(key); first += by) {
+			const request = by > 1 ? {do: "fresh", individual, lesion, seed: 1, first, count: by}
+				: {do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change};
+			const answer = await answerOf(request, by > 1 ? undefined : "earned");
+			successes += by > 1 ? answer.successes : +answer.success;
+			failed += [answer.fitness].flat().filter((fitness) => fitness === null).length;
+			say([...text, `${whose}: ${shareOf(successes, failed, first + by)} ...`].join("; "));
+			if (first + by === 100) counted.set(key, [successes, failed]);
 		}
-		found.push(counted.get(key));
-		text.push(`${whose}: ${counted.get(key)} of 100`);
+		const [successes, failed] = counted.get(key);
+		found.push(successes);
+		text.push(`${whose}: ${shareOf(successes, failed, 100)}`);
 	}
 	say(text.join("; "));
 	return found;
