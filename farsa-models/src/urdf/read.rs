@@ -209,6 +209,7 @@ fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadE
     let ignored = [
         ("mimic", "joints do not follow each other: it moves on its own"),
         ("calibration", "of a real robot"),
+        ("joint_properties", "an old element that other programs skip; `dynamics` gives damping"),
         ("safety_controller hardwareInterface", "of a real robot"),
     ];
     let read = ["origin", "parent", "child", "axis", "limit", "dynamics"];

@@ -80,9 +80,8 @@ impl Tree {
         let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| {
             let place = SourceLocation { file: file.into(), line: error.pos().row as usize };
-            // The parser's message ends with its own place, which ours already has.
-            let message = error.to_string();
-            let why = message.rsplit_once(" at ").map_or(message.as_str(), |(why, _)| why).to_owned();
+            // The parser's message contains its own place, which ours already has.
+            let why = error.to_string().replace(&format!(" at {}", error.pos()), "");
             ReadError::Malformed { place, why }
         })?;
         let starts: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect();
@@ -216,9 +215,7 @@ impl<'t> Element<'t> {
         let mut elements = self.all(tag);
         let first = elements.next();
         match (first, elements.next()) {
-            (Some(first), Some(second)) => {
-                Err(repeated(second.place(), &format!("{tag} of"), &self.label(), first.node().line))
-            }
+            (Some(first), Some(second)) => Err(self.second(tag, second.place(), first.node().line)),
             _ => Ok(first),
         }
     }
@@ -284,6 +281,14 @@ impl<'t> Element<'t> {
         match self.attribute("name") {
             Some(name) => format!("{} `{name}`", self.tag()),
             None => self.tag().to_owned(),
+        }
+    }
+
+    /// The error of a second part `what` of the element.
+    pub(crate) fn second(&self, what: &str, place: SourceLocation, first: usize) -> ReadError {
+        match self.attribute("name") {
+            Some(name) => repeated(place, &format!("{what} of {}", self.tag()), name, first),
+            None => repeated(place, &format!("{what} of"), self.tag(), first),
         }
     }
 

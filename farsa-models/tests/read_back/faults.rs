@@ -73,6 +73,8 @@ fn faults_of_a_urdf_are_told_with_place_and_nearest_name() {
             "text line 5: joint `j`: planar joints cannot be described; two or three joints can",
         ),
         (("<limit", "<limits"), "text line 5: unknown element of joint `limits`; the nearest is `limit`"),
+        (("<limit", "<limit/><limit"), "text line 5: a second limit of joint `j`, the first is in line 5"),
+        (("<mass", "<mass value=\"1\"/><mass"), "text line 2: a second mass of `inertial`, the first is in line 2"),
         (("upper=", "uper="), "text line 5: unknown attribute of limit `uper`; the nearest is `upper`"),
         (("upper=\"1\"", "upper=\"-2\""), "text line 5: limit: upper is \"-2\", but must not be below lower"),
         (("upper=\"1\"", "upper=\"one\""), "text line 5: limit: upper is \"one\", but must be of numbers"),
@@ -96,6 +98,7 @@ fn faults_of_a_urdf_are_told_with_place_and_nearest_name() {
     }
     assert_eq!(message("<robots/>"), "text line 1: unknown root of a model `robots`; the nearest is `robot`");
     assert_eq!(message("<robot/>"), "text line 1: robot has no link");
+    assert_eq!(message("<robot>\n<!-- a -- b --></robot>"), "text line 2: comment contains '--'");
     assert_eq!(
         message(&urdf(&hinge("j", "a", "b"))),
         "text line 4: 2 links hang on nothing (a, c); a robot has one root"
@@ -111,6 +114,15 @@ fn faults_of_a_urdf_are_told_with_place_and_nearest_name() {
     let repair = Repair { least_mass: 0.1, least_inertia: 1e-4, balance: false };
     let repaired = Imported::from_text(&massless, &ReadOptions { repair, ..ReadOptions::default() }).unwrap();
     assert_eq!(repaired.robot.segments[1].mass, 0.1);
+}
+
+#[test]
+fn the_old_properties_of_a_joint_are_listed() {
+    let text = urdf(&(hinge("j", "a", "b") + &hinge("k", "b", "c")));
+    let old = read(&text.replacen("<limit", "<joint_properties damping=\"0.5\"/><limit", 1)).unwrap();
+    // Pinocchio 4.1.0 skips them, too.
+    assert_eq!(old.robot, read(&text).unwrap().robot);
+    assert!(old.warnings.iter().any(|note| note.what == "joint_properties"), "{:?}", old.warnings);
 }
 
 /// An MJCF with this in the body `b`.
