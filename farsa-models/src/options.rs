@@ -67,7 +67,7 @@ pub enum Meshes {
 /// Treatment of masses and inertias that are physically impossible. By default they are errors.
 ///
 /// Note that the `compiler` element of MJCF has the same settings (`boundmass`, `boundinertia`, `balanceinertia`). These
-/// are always respected.
+/// are always respected, and also change fixed bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Repair {

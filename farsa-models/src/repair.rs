@@ -9,6 +9,8 @@ use crate::mesh::principal_axes::principal_axes;
 use crate::options::Repair;
 use crate::warnings::Warnings;
 
+pub(crate) const CHANGED: &str = "changed to what a body can have, as asked for";
+
 /// Gives each moving segment a mass, if the links fixed to it have one or the caller chose one. Refuses masses that no
 /// body can have.
 ///
@@ -36,7 +38,7 @@ pub(crate) fn check_masses(
         if let Some(changed) = repaired(&body, moves, repair) {
             body = changed;
             MassProperties { mass: segment.mass, centre: segment.centre, inertia: segment.inertia } = body;
-            warnings.add(place.clone(), "mass or inertia", "changed to what a body can have, as asked for");
+            warnings.add(place.clone(), "mass or inertia", CHANGED);
         }
         if !body.is_physical(moves) {
             let MassProperties { mass, inertia, .. } = body;

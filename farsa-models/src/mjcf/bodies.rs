@@ -13,11 +13,12 @@ use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
 use crate::mjcf::geoms::{CONDITIONAL, MeshAssets, check_geom, geom};
-use crate::mjcf::inertials::body_mass;
+use crate::mjcf::inertials::{body_mass, bounded};
 use crate::mjcf::items::{Item, items};
 use crate::mjcf::joints::{BodyJoint, check_joint, joint};
 use crate::mjcf::names::Names;
 use crate::mjcf::reasons::SHOW;
+use crate::repair::CHANGED;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
@@ -190,7 +191,11 @@ impl<'t, 'c> Bodies<'t, 'c> {
         let (carrying, carrying_frame) = self.frames_of(parent);
         let placed = within.compose(&self.compiler.pose(Some(element), Some(element))?);
         let placement = carrying_frame.compose(&placed);
-        let mass = body_mass(element, &items, self.compiler, self.classes, &self.meshes, context)?;
+        let mut mass = body_mass(element, &items, self.compiler, self.classes, &self.meshes, context)?;
+        if let Some(changed) = bounded(&mass, &self.compiler.repair, placed.position) {
+            mass = changed;
+            context.warnings.add(element.place(), "mass or inertia", CHANGED);
+        }
         let joints = self.joints_of(element, &items, context)?;
         check_free(element, parent, &joints)?;
 

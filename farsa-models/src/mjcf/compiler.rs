@@ -24,6 +24,7 @@ pub(crate) struct Compiler {
     /// True if inertias come from geoms: always, never, or where there is no `inertial`.
     pub(crate) inertia_from_geom: Option<bool>,
     pub(crate) inertia_groups: [f64; 2],
+    /// Bounds of every body, whether it moves or not.
     pub(crate) repair: Repair,
     pub(crate) total_mass: f64,
     pub(crate) mesh_folder: String,
@@ -51,11 +52,6 @@ impl Compiler {
         for element in model.all("compiler") {
             settings.add(element, context)?;
         }
-        // The stricter of the file's bounds and the caller's apply.
-        let asked = context.options.repair;
-        settings.repair.least_mass = settings.repair.least_mass.max(asked.least_mass);
-        settings.repair.least_inertia = settings.repair.least_inertia.max(asked.least_inertia);
-        settings.repair.balance |= asked.balance;
         Ok(settings)
     }
 

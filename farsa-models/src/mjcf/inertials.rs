@@ -4,12 +4,14 @@ use farsa_body::Pose;
 use farsa_body::robot::{MassProperties, Shape};
 
 use crate::context::Context;
-use crate::error::{ReadError, repeated};
+use crate::error::ReadError;
 use crate::mesh::solid::{MeshFit, Solid};
 use crate::mjcf::classes::Classes;
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
 use crate::mjcf::geoms::{MeshAssets, geom};
 use crate::mjcf::items::Item;
+use crate::options::Repair;
+use crate::repair::repaired;
 use crate::xml::tree::Element;
 
 /// Gets the mass of a body in its frame.
@@ -24,8 +26,7 @@ pub(crate) fn body_mass<'t>(
     let mut given = items.iter().filter(|(element, ..)| element.tag() == "inertial");
     let inertial = given.next();
     if let (Some((first, ..)), Some((second, ..))) = (inertial, given.next()) {
-        let (name, first) = (body.label(), first.place().line);
-        return Err(repeated(second.place(), "inertial of", &name, first));
+        return Err(body.second("inertial", second.place(), first.place().line));
     }
     let none = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
     // `inertiafromgeom`: "true" overrides an `inertial`, "false" makes do with it, "auto" infers what is not given.
@@ -62,6 +63,15 @@ pub(crate) fn body_mass<'t>(
             Ok(sum)
         }
     }
+}
+
+/// Applies the file's bounds to a body, or returns `None` if nothing changes.
+///
+/// MuJoCo repeats the body's `position` in its parent as the center of a body without mass.
+pub(crate) fn bounded(mass: &MassProperties, bounds: &Repair, position: [f64; 3]) -> Option<MassProperties> {
+    let empty = mass.mass == 0.0 && mass.inertia == [0.0; 6];
+    let centre = if empty { position } else { mass.centre };
+    repaired(&MassProperties { centre, ..*mass }, true, bounds)
 }
 
 /// Reads the mass that an `inertial` gives, in the body's frame.

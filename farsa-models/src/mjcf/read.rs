@@ -59,7 +59,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts,
     bodies.read(&mut robot, &mut locations, context)?;
     move_fixed_masses(&mut robot, &locations, &mut context.warnings);
     bodies.share_masses(&mut robot, context.options.between);
-    check_masses(&mut robot, &locations, &compiler.repair, &mut context.warnings)?;
+    check_masses(&mut robot, &locations, &context.options.repair, &mut context.warnings)?;
     if compiler.total_mass > 0.0 {
         let sum: f64 = robot.segments.iter().map(|segment| segment.mass).sum();
         for segment in robot.segments.iter_mut().filter(|_| sum > 0.0) {

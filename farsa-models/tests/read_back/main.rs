@@ -1,6 +1,8 @@
 //! Written robots are read unchanged. Wrong, hostile or damaged files are refused with the place of the fault.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+/// Bounds of masses.
+mod bounds;
 /// MuJoCo's classes of defaults.
 mod defaults;
 /// Faults with their place and the nearest name, and MuJoCo's rules.
