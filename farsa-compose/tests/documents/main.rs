@@ -5,6 +5,7 @@ mod drawn;
 
 mod damaged;
 mod groups;
+mod keys;
 mod networks;
 mod parts;
 mod placements;
