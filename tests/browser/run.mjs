@@ -17,6 +17,7 @@ import { pathToFileURL } from "node:url";
 import { elsewhere } from "./elsewhere.mjs";
 import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
+import { newcomers, phoned } from "./newcomers.mjs";
 import { isFirefox, KEY, startDriver } from "./webdriver.mjs";
 
 // Whatever hangs, the whole does not.
@@ -353,7 +354,7 @@ async function handled(browser, url, trial) {
     await browser.drag([[graph.left + node.x, graph.top + node.y]]);
     await settled(browser);
     const about = await browser.run(() => document.querySelector("#about").textContent);
-    const numbers = await browser.run(() => [...document.querySelectorAll("#about td + td")].map((cell) => Math.abs(Number(cell.textContent))));
+    const numbers = await browser.run(() => [...document.querySelectorAll("#about tr:not(.soft) td:nth-child(2)")].map((cell) => Math.abs(Number(cell.textContent))));
     check("the strongest link comes first", numbers.length > 2 && numbers.slice(1, 6).every((x, i) => x <= numbers[i]), numbers.join());
     check("a click on a node tells its name and its links", about.includes(node.name) && /strongest in \(\d+\)/.test(about), about);
   }
@@ -451,7 +452,10 @@ async function labelled(browser) {
   const hostile = '<img src=x onerror="window.struck = 1">';
   const labels = { J1: "shoulder adduction", J4: "elbow extension", J7: hostile, "J4.agonist": "elbow flexor", "torque J1": "forearm supination torque" };
   const trials = [armTrial(0), armTrial(1)];
-  for (const channel of trials.flatMap((trial) => trial.channels)) if (channel.name in labels) channel.label = labels[channel.name];
+  for (const channel of trials.flatMap((trial) => trial.channels)) {
+    if (channel.name in labels) channel.label = labels[channel.name];
+    if (channel.name === "ds") channel.about = "distance to the target";
+  }
   await opened(browser, write("labels.html", compose(pageOf(trials))));
   const rows = () => browser.run(() => [...document.querySelectorAll(".row")].map((row) => {
     const name = row.querySelector(".name");
@@ -466,6 +470,8 @@ async function labelled(browser) {
     // J1, J4 and J7 are joints and sensors.
     check(`${what}: strips show labels`, named.length === 8 && named.every(({ name, text }) => text === labels[name]), JSON.stringify(named));
     check(`${what}: and have the names at the pointer`, named.every(({ group, name, title }) => title.startsWith(`${group} ${name} within `)), JSON.stringify(named));
+    const explained = plain.find(({ name }) => name === "ds").title;
+    check(`${what}: an explanation is at the pointer`, /^fitness ds within .* cm: distance to the target$/.test(explained), explained);
     check(`${what}: labels are shown whole`, named.every(({ clipped, text }) => !clipped || text === hostile), JSON.stringify(named));
     check(`${what}: what has no label is shown by its name`, plain.length > 80 && plain.every(({ name, text }) => name.endsWith(text) && text), JSON.stringify(plain));
   }
@@ -682,6 +688,7 @@ async function looks(driver, url, name, size, phone) {
       const scene = await rectOf(browser, ".scene");
       const colours = coloursIn(picture, Object.fromEntries(Object.entries(scene).map(([k, v]) => [k, v * ratio])));
       check(`${title}: the scene has ${colours} colours`, colours > 300);
+      if (size[1] > 560 && size[0] > 820) check(`${title}: the scene has 60 % of the height`, scene.height >= 0.6 * size[1], scene.height / size[1]);
       // Words in the scene stand beside its middle, which they would hide.
       const [caption, tools] = [await rectOf(browser, "figcaption"), await rectOf(browser, "#tools")];
       const free = (caption.top - tools.bottom) / scene.height;
@@ -917,6 +924,20 @@ async function lives(browser) {
   check("fresh trials with the change and without are those of `farsa test --lesion`", earned.join() === cases.map((one) => one.successes).join(), `${earned} ${cases.map((one) => one.successes)}`);
   if (shots) writeFileSync(join(shots, "live.png"), await browser.screenshot());
 
+  await browser.run(() => void farsa.live.undo());
+  await until("farsa.trials.length === 1");
+  const summary = await browser.run(async () => {
+    const { successes } = await farsa.live.summarize(20);
+    const counted = JSON.parse(JSON.stringify([successes, document.querySelectorAll("#summary path").length, document.querySelector("#summary p").textContent]));
+    document.querySelectorAll("#summary path")[7].dispatchEvent(new MouseEvent("click", { bubbles: true }));
+    return counted;
+  });
+  check("fresh trials are summarized by start", summary[1] === 20 && summary[2].startsWith(`Intact: success in ${summary[0]} of 20 fresh trials, mean fitness 0.`), summary.join());
+  await until("farsa.trials[0].name.startsWith('fresh trial 7')");
+  check("a click on a start opens its trial", true);
+  await browser.run((part) => farsa.live.set(part, ""), part);
+
+  await browser.run(() => farsa.live.start({ number: 0 }));
   await press("New start");
   await until("farsa.trials.length === 2 && farsa.trials[0].name.startsWith('fresh trial 0')");
   await press("Undo all");
@@ -1169,6 +1190,10 @@ async function moves(browser) {
   await press("Verify");
   await browser.until(() => /Equal to the run|Differs/.test(document.querySelector("#live p.soft").textContent));
   check("without the moves the trial is that of the run again", (await browser.run(() => document.querySelector("#live p.soft").textContent)).startsWith("Equal to the run"));
+  const phases = await browser.run(async () => (await farsa.live.summarize(2)).phases.map(({ word, seconds, reached }) => [word, seconds, reached]));
+  const lasting = await browser.run(() => (farsa.ticks - 1) * (farsa.trials[0].times[1] - farsa.trials[0].times[0]));
+  const sum = phases.reduce((total, [, seconds]) => total + seconds, 0);
+  check("the summary tells the time in each phase", phases.map(([word]) => word).join() === "reach,grasp,lift" && phases[0][2] === 2 && sum > 0 && sum < 1.01 * lasting + 0.02, JSON.stringify([phases, lasting]));
   await pushes(browser, { press, seen });
   await keyed(browser, { press });
   await silent(browser, "moves");
@@ -1234,6 +1259,7 @@ try {
     await part("mouse and keys", () => handled(browser, url, trial));
     await part("scales", () => scales(browser));
     await part("labels", () => labelled(browser));
+    await part("layout and moments", () => newcomers(browser, { check, write, opened, settled, rectOf, silent }));
     if (livePage) await part("live", () => lives(browser));
     if (evolvingPage) await part("evolution", () => evolves(browser));
     if (servedPage) await part("served", () => serves(browser));
@@ -1255,6 +1281,7 @@ try {
     await part("looks", () => looks(driver, url, "page", size, phone));
     await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))), "arena", size, phone));
   }
+  if (livePage && !isFirefox) await part("phone", () => phoned(driver, { check, write, opened, silent, dataOf, withData }, readFileSync(livePage, "utf8")));
   if (!isFirefox) await part("names on low screens", () => lettered(driver));
   if (!isFirefox) await part("without WebGL", () => withoutWebGL(driver, url));
   if (livePage && !isFirefox) await part("without WebAssembly", () => withoutWebAssembly(driver));

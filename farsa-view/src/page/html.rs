@@ -27,8 +27,12 @@ const SCRIPTS: &[&str] = &[
 const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
 /// Additional permissions of a served page: also to connect to its server.
 const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";
-const LIVE_SCRIPT: &str =
-    concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"), include_str!("viewer/move.js"));
+const LIVE_SCRIPT: &str = concat!(
+    include_str!("viewer/live.js"),
+    include_str!("viewer/summary.js"),
+    include_str!("viewer/evolve.js"),
+    include_str!("viewer/move.js")
+);
 
 /// A page for the browser that shows recorded episodes. Bodies in space, time series and the network share a single
 /// clock.

@@ -32,12 +32,14 @@ const shownAt = (matrix, p) => {
 
 const boundsOf = (balls) => [[min, -1], [max, 1]].map(([most, sign]) => [0, 1, 2].map((i) => most(...balls.map((b) => b.at[i] + sign*b.radius))));
 const middleOf = ([low, high]) => mul(add(low, high), 0.5);
+const spanOf = (balls) => hypot(...sub(...boundsOf(balls)));
+const sizeOf = ({half, radius = 0, half_length: long = 0}) => (half ? hypot(...half) : radius + long);
 
 // Prepares a trial. From above, every body of a robot counts as a robot.
 function survey(trial, fromAbove) {
 	const {ticks, bodies, shapes} = trial;
 	const step = max(1, floor(ticks/60));
-	const [balls, floors] = [[], []];
+	const [floors, series] = [[], []];
 	for (const {body, role, kind, half, radius = hypot(...half || []), half_length: long = 0, position, rotation} of shapes) {
 		if (body < 0 && ["ground", "area"].includes(role)) {
 			const [x, y] = half || [radius, radius];
@@ -45,29 +47,39 @@ function survey(trial, fromAbove) {
 			continue;
 		}
 		// A long shape counts by its two ends, so that the view is no wider than needed.
-		for (let t = 0; t < (body < 0 ? 1 : ticks); t += step) {
-			const pose = body < 0 ? HOME : trial.pose(t, body);
-			for (const z of new Set([-long, long])) {
+		for (const z of new Set([-long, long])) {
+			series.push(list(body < 0 ? 1 : ceil(ticks/step), (k) => {
+				const pose = body < 0 ? HOME : trial.pose(k*step, body);
 				const at = add(pose.position, turn(pose.rotation, add(position, turn(rotation, [0, 0, z]))));
-				balls.push({at, radius, thing: role === "thing", body});
-			}
+				return {at, radius, thing: role === "thing", body, t: k*step};
+			}));
 		}
 	}
-	if (!balls.length) balls.push({at: [0, 0, 0], radius: 1});
+	if (!series[0]) series.push([{at: [0, 0, 0], radius: 1}]);
+	const balls = series.flat();
+	// The parts that move, and things.
+	const ways = series.map((some) => spanOf(some.map(({at}) => ({at, radius: 0}))));
+	const focus = series.filter((some, i) => some[0].thing || ways[i] >= 0.2*max(...ways)).flat();
 	// Only the farthest moving body of a robot of many bodies has a trail.
-	const tints = Object.values(WORDS);
+	const own = (body) => shapes.filter((s) => s.body === body && s.color).sort((a, b) => sizeOf(b) - sizeOf(a))[0]?.color;
 	const moving = bodies.flatMap((name, body) => {
 		const role = shapes.find((s) => s.body === body)?.role;
 		const path = [];
 		if (role) for (let t = 0; t < ticks; t += max(1, floor(ticks/1500))) path.push({t, at: trial.pose(t, body).position});
 		const way = max(...path.map(({at}) => hypot(...sub(at, path[0].at))));
-		return way > 1e-3 ? [{name, body, path, way, top: 2*max(...balls.filter((b) => b.body === body).map((b) => b.radius)), thing: role === "thing", tint: tints[body%tints.length]}] : [];
+		return way > 1e-3 ? [{name, body, path, way, top: 2*max(...balls.filter((b) => b.body === body).map((b) => b.radius)), thing: role === "thing", tint: own(body)}] : [];
 	});
 	const robot = moving.filter((m) => !m.thing).sort((a, b) => b.way - a.way);
+	// Robots of one color are told apart by others.
+	if (new Set(robot.map(({tint}) => tint)).size < robot.length) for (const one of robot) one.tint = WORDS[one.body%WORDS.length];
 	const trails = [...moving.filter((m) => m.thing), ...robot.slice(0, fromAbove ? 24 : robot.length > 6 ? 1 : 6)];
 	const forces = list(ticks, (t) => trial.contacts(t).map((c) => hypot(...c.force))).flat().sort((a, b) => a - b);
 	const has = {forces: forces.length, points: trial.points.length, rays: trial.rayStarts.some((start) => trial.words[start])};
-	Object.assign(trial, {balls, floors, moving, trails, has, force: forces[floor(forces.length*0.95)] || 1});
+	// A robot that travels far is followed, and its parts are seen relative to its first body.
+	const [root] = fromAbove ? [] : moving.filter((m) => !m.thing);
+	const parts = root ? focus.map((ball) => ({...ball, at: sub(ball.at, trial.pose(ball.t, root.body).position)})) : focus;
+	const travels = spanOf(focus) > 2.5*spanOf(parts) ? {body: root.body, balls: parts} : null;
+	Object.assign(trial, {balls, focus, floors, moving, trails, travels, has, force: forces[floor(forces.length*0.95)] || 1});
 }
 
 // One camera for both views, so that trials are compared from the same viewpoint.
@@ -81,10 +93,13 @@ class Camera {
 		return top ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : axesOf([cos(yaw)*level, sin(yaw)*level, sin(pitch)]);
 	}
 
-	// Fits the view to what moves, with things in front or from a named direction. `near` is the present place of a thing.
-	frame(trials, aspect, near) {
+	// Fits the view to what moves, with things in front or from a named direction. `near` is the present place of a thing, `place`
+	// that of the followed body.
+	frame(trials, aspect, near, place) {
 		this.top = this.name === "top";
-		const all = trials.flatMap((trial) => trial.balls);
+		const carried = place && trials.some(({travels}) => travels?.body === this.followed) ? place : null;
+		const focused = (trial) => (carried ? (trial.travels?.balls ?? []).map((ball) => ({...ball, at: add(ball.at, carried)})) : this.top ? trial.balls : trial.focus);
+		const all = trials.flatMap(focused);
 		const bounds = boundsOf(all);
 		const middle = middleOf(bounds);
 		this.force = max(...trials.map((trial) => trial.force));
@@ -110,11 +125,11 @@ class Camera {
 		}
 		// The view from above includes walls and areas, unless they are much larger than the moving bodies.
 		const span = ([low, high]) => max(high[0] - low[0], high[1] - low[1]);
-		const wide = boundsOf([...all, ...trials.flatMap((trial) => trial.floors)]);
+		const wide = boundsOf([...all, ...carried ? [] : trials.flatMap((trial) => trial.floors)]);
 		const flat = span(wide) < 4*span(bounds) ? wide : bounds;
 		this.middle = middleOf(flat);
 		this.half = 0.54*max(flat[1][1] - flat[0][1], (flat[1][0] - flat[0][0])/aspect, 1e-6);
-		this.carried = null;
+		this.carried = carried;
 	}
 
 	// Moves with the followed body at this place. Centers it first, except from above.

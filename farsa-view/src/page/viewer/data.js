@@ -136,8 +136,11 @@ class Trial {
 		});
 	}
 
-	readNetwork({nodes, links, values}, block, of) {
-		nodes = nodes.map((node) => ({...node, label: this.channels[node.channel].label || node.name, values: [], links: []}));
+	readNetwork({nodes, links, values, direct = []}, block, of) {
+		nodes = nodes.map((node) => {
+			const {label, about = ""} = this.channels[node.channel];
+			return {...node, label: label || node.name, about, values: [], links: []};
+		});
 		const size = ([a, b]) => (whole(a) && a <= b && b <= nodes.length ? b - a : NaN);
 		let [end, sum] = [0, 0];
 		for (const [first, count] of [...links.map((l) => [l.first, size(l.from)*size(l.to)]), ...values.map((v) => [v.first, size(v.nodes)])]) {
@@ -156,6 +159,12 @@ class Trial {
 					for (const node of new Set([link.from, link.to])) node.links.push(link);
 				}
 			}
+		}
+		for (const [a, b] of direct) {
+			const link = {from: nodes[a], to: nodes[b], weight: 1, direct: true};
+			need(link.from && link.to, `the network ${of} is out of range`);
+			made.push(link);
+			for (const node of [link.from, link.to]) node.links.push(link);
 		}
 		for (const {name, nodes: [a, b], first} of values) {
 			for (let n = a; n < b; n++) nodes[n].values.push([name, weights[first + n - a]]);

@@ -35,8 +35,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	panel.id = "evolution";
 	$("network").before(panel);
 	panel.hidden = !rows.length && !standing;
-	own.go.disabled = !standing;
-	own.go.hidden = served;
+	own.go.hidden = served || !standing;
 	if (served) hear();
 	else if (about.standstill) status.textContent = `Evolution cannot continue here: ${about.standstill}.`;
 

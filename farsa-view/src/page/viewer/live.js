@@ -30,6 +30,20 @@ function inWorker() {
 		// Opens a temporary session.
 		once: ({script, request}) => opened(script)(request),
 		ask: ({request}) => acts.session(request),
+		// The ticks in each phase and the bodies at the first tick.
+		brief({request}) {
+			const {film, success, fitness, error} = acts.session(request);
+			if (error) return {error};
+			const {ticks, bodies, channels, blocks, position_origin: origin, position_unit: unit} = film;
+			const {buffer} = bytesOf(film.data);
+			const [values, times] = [new Uint16Array(buffer, 0, buffer.byteLength >> 1), new Float32Array(buffer, blocks.times, ticks)];
+			const at = channels.findIndex((channel) => channel.words);
+			const {words = [], minimum} = channels[at] ?? {};
+			const counts = words.map(() => 0);
+			for (let t = 0; words[0] && t < ticks; t++) counts[minimum + values[blocks.channels/2 + at*ticks + t]]++;
+			const starts = bodies.map((_, body) => [0, 1, 2].map((i) => origin[i] + unit*values[blocks.poses/2 + 7*body + i]));
+			return {success, fitness, bodies, starts, words, counts, step: ticks > 1 ? (times[ticks - 1] - times[0])/(ticks - 1) : times[0]};
+		},
 		// Without the recording.
 		earned({request}) {
 			const {success, fitness, error} = acts.session(request);
@@ -98,7 +112,8 @@ async function liveOf(page) {
 	// The best trial of the run is shown first.
 	const told = individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
+	const {trial} = momentOf();
+	const state = {individual: individuals.length - 1, trial: trialNamed(trial, page.live.about) ?? {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
 	const request = {do: "film", ...asked(state), lesion: ""};
 	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
@@ -115,6 +130,12 @@ async function liveOf(page) {
 	return (player) => attach(page, state, whole, player, open);
 }
 
+// The trial of a name in the address: a number of the run, or `fresh-` and a number.
+function trialNamed(name, {trials}) {
+	const [, fresh, number] = /^(fresh-)?(\d{1,9})$/.exec(name) ?? [];
+	return fresh ? {fresh: {number: +number, seed: 1}} : number < trials ? {number: +number} : null;
+}
+
 const asked = ({individual, trial, watched}) => ({individual, trial, watched});
 // As `farsa test --lesion` takes it.
 const listOf = ({changes}) => [...changes].map(([part, value]) => (value === "" ? part : `${part}=${value}`)).join(",");
@@ -124,6 +145,7 @@ const KINDS = ["sensor", "neuron", "output"];
 // The name of a node or link in a list of changes.
 function partOf(chosen) {
 	const name = ({layer, name}) => `${KINDS[layer]} ${bare(name)}`;
+	if (chosen.direct) return partOf(chosen.from);
 	return chosen.links ? `${KINDS[chosen.layer]}:${bare(chosen.name)}` : `link:${name(chosen.from)}-${name(chosen.to)}`;
 }
 
@@ -148,7 +170,7 @@ function pick(label, some, act) {
 }
 
 // Creates the panel with its controls.
-function controlsOf({live: {script}}, acts) {
+function controlsOf({live: {script, about: {robots}}}, acts) {
 	const value = Object.assign(make("input"), {type: "number", step: "any", placeholder: "value"});
 	value.setAttribute("aria-label", "Value");
 	const own = {
@@ -159,15 +181,19 @@ function controlsOf({live: {script}}, acts) {
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
 		move: Object.assign(button("Move bodies"), {disabled: true}), push: Object.assign(button("Push bodies"), {disabled: true}), body: pick("Body that keys move or push", [], null),
-		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), verify: button("Verify", acts.verify),
+		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), behavior: button("Behavior", () => acts.summarize(100)), summary: make("div"), verify: button("Verify", acts.verify),
 		earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
 	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh"), make("p", "", "Change: ", own.part),
-		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "body", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
+		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "body", "undo"), own.chips, bar("hundred", "behavior", "verify"), own.earned, own.status, own.summary,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
 	own.status.setAttribute("role", "status");
+	own.behavior.title = "Time in each phase and success by start, in 100 fresh trials";
+	own.summary.id = "summary";
+	own.robot.replaceChildren(...options([["", "robot ..."], ...robots.map((name, i) => [i, name])]));
+	own.robot.hidden = !robots[1];
 	$("network").before(panel);
 	return own;
 }
@@ -237,6 +263,27 @@ function tellControls(own, state, about) {
 	own.undo.disabled = !changesOf(state);
 }
 
+// Names the trials of the page in its address.
+function addressed(player, state, about, change) {
+	const named = () => (state.trial.fresh ? `fresh-${state.trial.fresh.number}` : `${state.trial.number}`);
+	Object.defineProperty(player, "number", {get: named});
+	player.choose = async (name) => {
+		const trial = trialNamed(name, about);
+		if (trial && name !== named()) await change({trial});
+		return !!trial;
+	};
+}
+
+// Summarizes fresh trials, with the changes if there are any.
+async function behaviorOf(count, state, own, change) {
+	own.behavior.disabled = true;
+	const request = {individual: state.individual, watched: state.watched, ...changesOf(state) ?? {lesion: ""}};
+	const open = (number) => change({trial: {fresh: {number, seed: 1}}});
+	const found = await summarized(count, request, own.summary, open).catch((error) => own.summary.replaceChildren(error.message));
+	own.behavior.disabled = false;
+	return found;
+}
+
 // Attaches the panel. Returns a function that shows the whole trial.
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
@@ -250,8 +297,9 @@ function attach(page, state, whole, player, open) {
 	const change = (what) => (Object.assign(state, what), show());
 	const undo = () => (state.changes.clear(), (state.moves = []), (state.pushes = []), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
-	const own = controlsOf(page, {set, change, undo, fresh, choose, test, verify, alter: (to) => chosen && set(chosen, to)});
+	const own = controlsOf(page, {set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
+	const summarize = (count) => behaviorOf(count, state, own, change);
 
 	function choose(name) {
 		chosen = name;
@@ -326,8 +374,7 @@ function attach(page, state, whole, player, open) {
 		return change({individual: place, trial: {number: state.trial.number ?? 0}});
 	}
 
-	own.robot.replaceChildren(...options([["", "robot ..."], ...about.robots.map((name, i) => [i, name])]));
-	own.robot.hidden = !about.robots[1];
+	addressed(player, state, about, change);
 	const {put, push} = movable(page, player, state, own, show, say);
 
 	graphChosen = (node) => node && choose(partOf(node));
@@ -335,6 +382,6 @@ function attach(page, state, whole, player, open) {
 	choose("");
 	marks();
 	const {run, rows} = evolutionOf(page, open, showMore);
-	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), test, verify};
+	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), test, summarize, verify};
 	return begin;
 }

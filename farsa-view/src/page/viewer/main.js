@@ -30,6 +30,12 @@ function fail(text, remedy = " Make it again with farsa replay --html.") {
 	$("message").textContent = `This page cannot be shown: ${text}.${remedy}`;
 }
 
+// Shows a message above the page.
+function warn(text) {
+	$("message").hidden = false;
+	$("message").textContent = text;
+}
+
 // The functions for the console and tests.
 function openConsole(player, trials) {
 	const find = (list, what, test) => {
@@ -84,7 +90,7 @@ function actsOf(player) {
 		"+": [() => player.faster(1)], "-": [() => player.faster(-1)],
 		t: [() => player.setView(player.camera.top ? "overview" : "top")],
 		f: toggle("forces"), y: toggle("rays"), p: toggle("points"), r: toggle("trails"),
-		c: [() => player.frameCamera(), "frame"], v: [() => player.record(), "record"], d: [() => player.setTheme(theme() === "dark" ? "light" : "dark"), "theme"],
+		c: [() => player.frameCamera(), "frame"], v: [() => player.record(), "record"], l: [() => player.link(), "link"], d: [() => player.setTheme(theme() === "dark" ? "light" : "dark"), "theme"],
 		"?": [() => $("keys").showModal(), "help"],
 	};
 }
@@ -113,6 +119,18 @@ const seen = () => new Promise((done) => {
 	frames(3);
 });
 
+// The moment in the address, such as `#trial=1&t=2.0`.
+const momentOf = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
+
+// Shows the moment in the address. Returns false if there is none.
+async function visit(player) {
+	const {trial, t} = momentOf();
+	if (trial !== undefined && !(await player.choose(trial))) warn(`The address names trial ${trial}, which this page does not hold.`);
+	else if (t !== undefined && !(+t >= 0)) warn(`The address names the time ${t}, which is no number of seconds.`);
+	else if (t !== undefined) player.go(round(player.clock.tickAt(+t)));
+	return t !== undefined;
+}
+
 async function main() {
 	const page = readPage($("data"));
 	const {trials} = page;
@@ -140,7 +158,9 @@ async function main() {
 	if (whole) await whole();
 	else player.fill();
 	farsa.ready = true;
-	if (!prefers("reduced-motion: reduce").matches) player.play();
+	const visited = await visit(player);
+	window.onhashchange = () => visit(player);
+	if (!visited && !prefers("reduced-motion: reduce").matches) player.play();
 }
 
 window.onerror = (message) => fail(`the viewer failed (${message})`);

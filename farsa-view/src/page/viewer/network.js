@@ -37,20 +37,30 @@ function nearestLink(links, x, y) {
 // A node's name if it differs from its label.
 const nameOf = ({name, label}) => (name === label ? "" : `${name} `);
 
-// The numbers of a node or link. `say` returns a node's present value.
-function aboutOf(chosen, links, say) {
+// The product of a link's weight and its source's activation.
+const productOf = ({weight, direct}, activation) => `${direct ? "direct" : signed(weight)} × ${activation.toFixed(3)} = ${signed(weight*activation)}`;
+
+// The text at the pointer on a node or link.
+function titleOf(over, say, valueOf) {
+	if (!over) return "";
+	return over.links ? `${over.label}: ${say(over)}` : `${over.from.label} → ${over.to.label}: ${productOf(over, valueOf(over.from))}`;
+}
+
+// The numbers of a node or link. `say` returns a node's present value as text, `valueOf` as a number.
+function aboutOf(chosen, links, say, valueOf) {
 	if (!chosen) return [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
 	if (!chosen.links) {
 		const {from, to, weight} = chosen;
-		return [make("h3", "", `${from.label} → ${to.label}`, make("b", "", signed(weight))), make("p", "", `source ${nameOf(from)}${say(from)}, target ${nameOf(to)}${say(to)}`)];
+		return [make("h3", "", `${from.label} → ${to.label}`, make("b", "", signed(weight))), make("p", "", `weight × activation: ${productOf(chosen, valueOf(from))}`), make("p", "", `source ${nameOf(from)}${say(from)}, target ${nameOf(to)}${say(to)}`)];
 	}
 	const table = (head, here, there) => {
 		const some = links.filter((l) => l[here] === chosen).reverse();
-		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].label), make("td", "", signed(l.weight))));
-		return make("table", "", make("caption", "", `${head} (${some.length})`), ...rows);
+		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].label), make("td", "", signed(l.weight)), make("td", "", signed(l.weight*valueOf(l.from)))));
+		const heads = rows[0] ? [make("tr", "soft", make("td", "", ""), make("td", "", "weight"), make("td", "", "× activation"))] : [];
+		return make("table", "", make("caption", "", `${head} (${some.length})`), ...heads, ...rows);
 	};
 	return [
-		make("h3", "", chosen.label, make("b", "", say(chosen))), make("p", "", nameOf(chosen), chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")),
+		make("h3", "", chosen.label, make("b", "", say(chosen))), make("p", "", nameOf(chosen), chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")), make("p", "soft", chosen.about),
 		make("div", "tables", table("strongest in", "to", "from"), table("strongest out", "from", "to")),
 	];
 }
@@ -65,10 +75,10 @@ function curveOf({from: a, to: b}) {
 
 // Draws links with an opacity that depends on the relative weight.
 function paintLinks(c, links, some, alpha) {
-	const strongest = abs(links.at(-1)?.weight) || 1;
-	for (const {weight, curve: [x, y, ...rest]} of some) {
-		const part = abs(weight)/strongest;
-		Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + 2.4*part, strokeStyle: colorOf(weight < 0 ? "--a" : "--b")});
+	const strongest = max(...links.map(({weight, direct}) => (direct ? 0 : abs(weight)))) || 1;
+	for (const {weight, direct, curve: [x, y, ...rest]} of some) {
+		const part = direct ? 0.7 : abs(weight)/strongest;
+		Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + (direct ? 1 : 2.4*part), strokeStyle: colorOf(direct ? "--soft" : weight < 0 ? "--a" : "--b")});
 		c.beginPath();
 		c.moveTo(x, y);
 		c.bezierCurveTo(...rest);
@@ -127,7 +137,7 @@ function graphOf() {
 
 	function choose(a, b) {
 		if (a === over && b === pinned) return;
-		[over, pinned, canvas.title] = [a, b, a?.label ?? ""];
+		[over, pinned] = [a, b];
 		graphChosen(nodes[choice.value = nodes.indexOf(pinned)]);
 		draw();
 		tell();
@@ -169,8 +179,7 @@ function graphOf() {
 	function update(now) {
 		if (now === tick || !trial) return;
 		tick = now;
-		draw();
-		tell();
+		draw(), tell();
 	}
 
 	function draw() {
@@ -200,7 +209,8 @@ function graphOf() {
 	}
 
 	function tell() {
-		$("about").replaceChildren(...aboutOf(over || pinned, links, say));
+		$("about").replaceChildren(...aboutOf(over || pinned, links, say, valueOf));
+		canvas.title = titleOf(over, say, valueOf);
 	}
 
 	return {set, layout, update};

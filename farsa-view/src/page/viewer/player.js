@@ -2,7 +2,7 @@
 
 class Player {
 	constructor({trials, view, made_by: maker}) {
-		Object.assign(this, {maker, shown: [trials[0]], clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
+		Object.assign(this, {maker, trials, shown: [trials[0]], led: false, clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
 		this.camera = new Camera(view === "top");
 		this.visible = {forces: true, rays: true, points: false, trails: view === "top"};
 		this.strips = stripsOf((part) => {
@@ -44,14 +44,14 @@ class Player {
 			this.ask();
 		}
 		const {camera} = this;
-		camera.carry(camera.followed === null ? null : shown[0].between(this.tickOf(shown[0]), camera.followed).position);
+		camera.carry(this.followedPlace());
 		shown.forEach((trial, i) => this.views[i].draw(trial, this.tickOf(trial), this.visible));
 		this.film?.take();
 		const tick = floor(this.tick);
-		const seconds = `${clock.times[tick].toFixed(2)} s`;
 		$("slider").value = tick;
-		$("slider").setAttribute("aria-valuetext", seconds);
-		$("clock").textContent = `${seconds} · tick ${tick} of ${clock.ticks - 1}`;
+		const text = clockOf(clock, tick);
+		$("slider").setAttribute("aria-valuetext", text.split(" · ")[0]);
+		$("clock").textContent = text;
 		const part = (this.now - clock.times[0])/(clock.end - clock.times[0] || 1);
 		const ticks = shown.map((trial) => this.tickOf(trial));
 		this.strips.update(ticks, part, farsa.playing);
@@ -90,6 +90,42 @@ class Player {
 		this.tick = floor(this.tick);
 		farsa.playing = false;
 		this.marks();
+		this.note();
+	}
+
+	// The name of the first trial in the address.
+	get number() {
+		return numbersOf(this.trials)[this.trials.indexOf(this.shown[0])];
+	}
+
+	// Shows a trial by its name in the address. Returns false if there is none.
+	choose(number) {
+		const trial = this.trials[numbersOf(this.trials).indexOf(number)];
+		if (trial && trial !== this.shown[0]) this.show(trial);
+		return !!trial;
+	}
+
+	// Writes the moment to the address, seldom enough for browsers.
+	note() {
+		clearTimeout(this.noting);
+		this.noting = setTimeout(() => this.write(), 300);
+	}
+
+	write() {
+		clearTimeout(this.noting);
+		// A page within another one may have no address.
+		try {
+			history.replaceState(null, "", `#trial=${this.number}&t=${+this.now.toFixed(4)}`);
+		} catch {}
+	}
+
+	// Copies the address of the moment. Without permission it is in the address bar alone.
+	async link() {
+		this.pause();
+		this.write();
+		await navigator.clipboard?.writeText(location.href).catch(() => {});
+		$("link").textContent = "Copied";
+		setTimeout(() => ($("link").textContent = "Link"), 1500);
 	}
 
 	go(to) {
@@ -123,8 +159,19 @@ class Player {
 		this.marks();
 	}
 
+	followedPlace() {
+		const {camera: {followed}, shown: [trial]} = this;
+		return followed === null ? null : trial.between(this.tickOf(trial), followed).position;
+	}
+
 	// Follows a body by its name, or none for "".
 	follow(name) {
+		this.led = true;
+		this.attend(name);
+		if (this.shown[0].travels) this.frameCamera();
+	}
+
+	attend(name) {
 		const body = this.shown[0].bodies.indexOf(name);
 		Object.assign(this.camera, {followed: body < 0 ? null : body, carried: null});
 		$("follow").value = body < 0 ? "" : name;
@@ -145,7 +192,7 @@ class Player {
 		const [trial] = this.shown;
 		const thing = trial.shapes.find((shape) => shape.role === "thing");
 		// The camera is not fitted to a changed trial, in which bodies may fly away.
-		this.camera.frame(this.shown.filter((one) => !one.changed), w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position);
+		this.camera.frame(this.shown.filter((one) => !one.changed), w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position, this.followedPlace());
 		this.ask();
 	}
 
@@ -182,13 +229,15 @@ class Player {
 		$("trial").value = a.index;
 		$("beside").value = two ? b.index : "";
 		$("slider").max = this.clock.ticks - 1;
+		// The slider keeps its width.
+		$("clock").style.setProperty("--wide", `${wide("600 14", [clockOf(this.clock, this.clock.ticks - 1)]) + 4}px`);
 		$("slider").style.setProperty("--track", `linear-gradient(90deg, ${trackOf(a, this.clock)})`);
 		for (const name of ["forces", "rays", "points"]) $(name).hidden = !shown.some((trial) => trial.has[name]);
 		$("camera").replaceChildren(...options(Object.keys(VIEWS).filter((name) => name !== "close" || a.balls.some((ball) => ball.thing)).map((name) => [name, name])));
 		const moving = [...new Set(a.moving.map((one) => one.name))];
 		$("follow").replaceChildren(...options([["", "follow"], ...moving.map((name) => [name, name])]));
 		$("follow").hidden = !moving.length;
-		this.follow(a.bodies[this.camera.followed] ?? "");
+		this.attend(a.bodies[this.led ? this.camera.followed : a.travels?.body] ?? "");
 		$("network").hidden = !a.network;
 		this.frameCamera();
 		this.marks();
@@ -205,6 +254,14 @@ class Player {
 	}
 }
 
+const clockOf = ({times, ticks}, tick) => `${times[tick].toFixed(2)} s · tick ${tick} of ${ticks - 1}`;
+
+// The numbers of trials in the address: those of the run, or their places if two are the same.
+function numbersOf(trials) {
+	const numbers = trials.map(({name}) => /\btrial (\d+)/.exec(name)?.[1]);
+	return numbers.includes(undefined) || new Set(numbers).size < trials.length ? trials.map((_, i) => `${i}`) : numbers;
+}
+
 // The colors of the track under the slider, by phase if the trial has them.
 function trackOf(trial, clock) {
 	const words = trial === clock && trial.channels.find((c) => c.words);
@@ -216,5 +273,5 @@ function trackOf(trial, clock) {
 function factsOf(trial, mark) {
 	return make("div", "", make("h2", mark, trial.name),
 		make("dl", "", ...trial.facts.flatMap(([name, text]) => [make("dt", "", name), make("dd", "", text)])),
-		make("p", "soft", `Positions within ${length(trial.position_unit/2)}, forces within ${short(trial.force_unit/2, "N")} of what was recorded; for channels point at their names.`));
+		make("p", "soft", `Positions within ${length(trial.position_unit/2)}${trial.has.forces ? `, forces within ${short(trial.force_unit/2, "N")}` : ""} of what was recorded; for channels point at their names.`));
 }

@@ -142,7 +142,7 @@ function trailsAt({trails}, tick, {followed}) {
 	const chosen = trails.some((trail) => trail.body === followed);
 	return trails.map(({path, thing, body, top, tint}) => ({
 		path,
-		color: many && !thing ? rgb(tint) : paint(thing ? "thing" : "trail"),
+		color: tint ? rgb(tint) : paint(thing ? "thing" : "trail"),
 		part: chosen && body !== followed ? 0.25 : 1,
 		// The mark of the robot.
 		end: many && !thing && add(path.findLast(({t}) => t <= tick).at, [0, 0, top]),

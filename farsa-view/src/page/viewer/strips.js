@@ -205,7 +205,7 @@ function stripsOf(seek) {
 	function row(group, name, label, mode) {
 		const channels = trials.map((trial) => trial.channels.find((c) => c.name === name && c.group === group));
 		const some = channels.filter(Boolean);
-		const {words, unit = "", scale} = some[0];
+		const {words, unit = "", scale, about = ""} = some[0];
 		// One scale for both trials.
 		const ends = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
 		const [low, high] = scaleOf(...ends);
@@ -217,7 +217,7 @@ function stripsOf(seek) {
 		const title = make("span", "name", label);
 		const element = make("div", `row ${kind}`, title, make("span", "values", ...values), make("span", "unit", unit), canvas, make("span", "unit", told));
 		element.dataset.name = name;
-		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}`;
+		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}${about && `: ${about}`}`;
 		const row = element.row = {canvas, channels, kind, values, title, label, unit, told, scale: {words, low, high, whole}};
 		rows.push(row);
 		watch.observe(element);

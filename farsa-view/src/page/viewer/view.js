@@ -72,7 +72,9 @@ function viewOf(camera, ask) {
 			if (at) labels.children[p].style.transform = `translate(${at[0]*element.clientWidth + 9}px, ${at[1]*element.clientHeight - 20 + 15*p}px)`;
 		});
 		const {long, newtons} = camera.arrow();
+		const words = trial.channels.filter((channel) => channel.words).map((channel) => show(channel, channel.values[floor(tick)]));
 		note.textContent = [
+			words.join(" "),
 			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
 			visible.trails ? `trails: ${namesOf(trial.trails)}` : "",
 			farsa.ready && tick >= trial.ticks - 1 ? "ended" : "",
