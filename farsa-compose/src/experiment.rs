@@ -78,7 +78,8 @@ impl ComposedExperiment {
     /// # Errors
     /// Returns [`Error::Io`] and [`Error::File`] for files that cannot be read, and the errors of
     /// [`from_text`](Self::from_text).
-    pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
+    pub fn from_file(path: impl AsRef<Path>, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
+        let path = path.as_ref();
         let text = read_text_file(path, MAX_BYTES)?;
         Self::read(Limits::default(), &path.display().to_string(), &text, path.parent(), strategies)
     }

@@ -81,7 +81,8 @@ impl Imported {
     ///
     /// # Errors
     /// Returns the fault and its line, see [`ReadError`].
-    pub fn from_file(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
+    pub fn from_file(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
+        let path = path.as_ref();
         let mut files = ModelFiles::new(path.parent(), options)?;
         let text = files.model(path)?;
         Self::read(&path.display().to_string(), &text, files, options)

@@ -150,7 +150,7 @@ fn models_of_others_are_what_other_programs_read_in_them() {
     let (mut worst_place, mut worst_number, mut compared) = (0.0_f64, 0.0_f64, 0);
     for (name, model) in models {
         let options = options(&folder, model["how"].as_str().unwrap());
-        let reading = Imported::from_file(&folder.join(name), &options).unwrap_or_else(|error| panic!("{error}"));
+        let reading = Imported::from_file(folder.join(name), &options).unwrap_or_else(|error| panic!("{error}"));
         compared += places(name, model, &reading, &mut worst_place);
         joints(name, model, &reading.robot, &mut worst_number);
         if model["bodies"].is_object() {

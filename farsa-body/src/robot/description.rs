@@ -331,7 +331,7 @@ impl Robot {
         self.pairs.iter().filter_map(|pair| pair.group).max().map_or(0, |group| group.saturating_add(1))
     }
 
-    /// Adds an actuator that drives `joint`.
+    /// Adds an actuator that drives `joint`. The efforts of all actuators of a joint add up.
     pub fn add_actuator(&mut self, name: &str, joint: JointId, law: Law<f64>) -> ActuatorId {
         self.actuators.push(Actuator { name: name.into(), joint, law });
         ActuatorId((self.actuators.len() - 1) as u16)

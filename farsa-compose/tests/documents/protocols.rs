@@ -326,7 +326,7 @@ fn in_lanes_as_alone(mut evaluator: Box<dyn Evaluator>) {
 
 fn shown(name: &str) -> ComposedExperiment {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments");
-    ComposedExperiment::from_file(&folder.join(name), farsa_lab::strategy::strategies()).expect("an experiment")
+    ComposedExperiment::from_file(folder.join(name), farsa_lab::strategy::strategies()).expect("an experiment")
 }
 
 fn prepared(experiment: &ComposedExperiment) -> Box<dyn Evaluator> {

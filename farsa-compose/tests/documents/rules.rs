@@ -452,7 +452,7 @@ fn a_scene_stands_in_a_file_of_its_own() {
     let read = |scene: &str, text: &str| {
         std::fs::write(folder.join("rooms.toml"), scene).expect("a scene");
         std::fs::write(folder.join("own.toml"), text).expect("a file");
-        ComposedExperiment::from_file(&folder.join("own.toml"), farsa_lab::strategy::strategies())
+        ComposedExperiment::from_file(folder.join("own.toml"), farsa_lab::strategy::strategies())
     };
     let apart = read(scene, &text("scene = \"rooms.toml\"\n")).unwrap_or_else(|error| panic!("{error}"));
     let inline = read(scene, &format!("{}{scene}", text(""))).unwrap_or_else(|error| panic!("{error}"));

@@ -28,7 +28,7 @@ fn experiment(model: &str, base: f64, rest: &str) -> String {
 
 fn read(folder: &Path, text: &str) -> Result<ComposedExperiment, Error> {
     fs::write(folder.join("cube.toml"), text).expect("a file");
-    ComposedExperiment::from_file(&folder.join("cube.toml"), farsa_lab::strategy::strategies())
+    ComposedExperiment::from_file(folder.join("cube.toml"), farsa_lab::strategy::strategies())
 }
 
 fn terms(made: &ComposedExperiment) -> Vec<f64> {

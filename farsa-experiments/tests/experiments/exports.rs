@@ -241,7 +241,7 @@ fn json_holds_the_parameters_of_every_kind() {
 fn the_board_of_the_e_puck_has_what_this_program_makes() {
     const RECORDED: usize = 300;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/e-puck");
-    let file = ComposedExperiment::from_file(&folder.join("e-puck.toml"), farsa_lab::strategy::strategies());
+    let file = ComposedExperiment::from_file(folder.join("e-puck.toml"), farsa_lab::strategy::strategies());
     let experiment = file.unwrap_or_else(|error| panic!("{error}"));
     let settings = Settings::new(experiment.settings("")).expect("its settings");
     let mut evaluator = experiment.prepare("", &settings).unwrap_or_else(|error| panic!("{error}"));

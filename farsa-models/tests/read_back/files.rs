@@ -242,11 +242,11 @@ fn the_model_itself_may_come_from_a_pipe() {
     let folder = folder("piped");
     let robot = "<robot name='r'><link name='a'/></robot>";
     pipe(&folder.join("whole.urdf"), robot.into());
-    let reading = Imported::from_file(&folder.join("whole.urdf"), &ReadOptions::default()).unwrap();
+    let reading = Imported::from_file(folder.join("whole.urdf"), &ReadOptions::default()).unwrap();
     assert_eq!(reading.robot.segments.len(), 1);
     pipe(&folder.join("long.urdf"), format!("{robot}{}", " ".repeat(10_000_000)));
     let limits = Limits { bytes: 1000, ..Limits::default() };
-    let error = Imported::from_file(&folder.join("long.urdf"), &ReadOptions { limits, ..ReadOptions::default() });
+    let error = Imported::from_file(folder.join("long.urdf"), &ReadOptions { limits, ..ReadOptions::default() });
     assert!(matches!(error, Err(ReadError::TooMuch { what: "bytes in a file", limit: 1000, .. })), "{error:?}");
     for (path, why) in [("/dev/zero", "is a device or socket; only files are read"), ("/dev", "is a folder")] {
         let error = Imported::from_file(Path::new(path), &ReadOptions::default()).unwrap_err();
