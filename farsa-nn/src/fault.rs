@@ -41,7 +41,9 @@ impl fmt::Display for ParameterFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotFinite => f.write_str(" is not finite"),
-            Self::Leak(value) => write!(f, ", a leak, is {value}: outside [0, 1]"),
+            Self::Leak(value) => {
+                write!(f, ", a leak, is {value}: outside [0, 1]; give leaks another gene range than weights")
+            }
             Self::QuantizedLeak(units) => Self::Leak(f32::from(units) / 16384.0).fmt(f),
             Self::Weight(value) => write!(f, " times the slope is {value}: outside [-32767, 32767]"),
             Self::TimeConstant { value, least } if value > 0.0 => write!(

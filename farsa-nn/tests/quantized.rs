@@ -224,7 +224,10 @@ fn construction_names_the_mistake() {
     );
     assert_eq!(
         build(&[0, 0, 0, 0, -1], &mut state).map(|error| error.to_string()),
-        Some("parameter 4, a leak, is -0.000061035156: outside [0, 1]".into())
+        Some(
+            "parameter 4, a leak, is -0.000061035156: outside [0, 1]; give leaks another gene range than weights"
+                .into()
+        )
     );
 
     let bits = |of, found, least, most| Err(Error::Layout(LayoutFault::FractionBits { of, found, least, most }));

@@ -77,7 +77,7 @@ fn errors_say_what_is_wrong() {
         (Error::Parameter { index: 3, fault: ParameterFault::NotFinite }, "parameter 3 is not finite"),
         (
             Error::Parameter { index: 3, fault: ParameterFault::Leak(1.5) },
-            "parameter 3, a leak, is 1.5: outside [0, 1]",
+            "parameter 3, a leak, is 1.5: outside [0, 1]; give leaks another gene range than weights",
         ),
         (Error::Layout(LayoutFault::Slope(f32::NAN)), "the slope of the logistic function is NaN: not finite"),
         (
