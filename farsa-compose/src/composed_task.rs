@@ -91,7 +91,7 @@ impl<E: Body> Task for ComposedTask<E> {
             observations: agents.spec.inputs.len(),
             protocols: agents.interventions.protocols(),
             anatomy,
-            warnings: agents.ledger.warning.iter().cloned().collect(),
+            warnings: agents.ledger.warnings.clone(),
             ..info
         }
     }

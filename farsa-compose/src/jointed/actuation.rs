@@ -44,6 +44,25 @@ pub(crate) fn limit(scene: &Scene, joint: JointId) -> Option<f64> {
     }
 }
 
+/// Lists motors that added an actuator to a joint on which another one acts without a command.
+pub(crate) fn warnings(scene: &Scene) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (added, place) in &scene.added {
+        let actuators = &scene.robot.actuators;
+        let new = &actuators[added.index()];
+        let others = actuators.iter().enumerate().filter(|(number, other)| {
+            let driven = scene.driven.iter().any(|id| id.index() == *number);
+            other.joint == new.joint && !driven && !is_torque(&other.law)
+        });
+        warnings.extend(others.map(|(_, other)| {
+            let joint = scene.joint_name(new.joint);
+            let model = &other.name;
+            format!("{place}: `{joint}` has two actuators, the new one and the model's `{model}` with the command 0")
+        }));
+    }
+    warnings
+}
+
 /// Returns the actuator of the motor at a path: the joint's own of a kind, or a new one with the given law.
 fn taken(
     scene: &mut Scene,
@@ -56,7 +75,9 @@ fn taken(
     let actuator = if let Some((law, word)) = law {
         let called = format!("{name} {word}");
         let existing = scene.robot.actuator(&called);
-        (existing.unwrap_or_else(|| scene.robot.add_actuator(&called, joint, law)), law)
+        let actuator = existing.unwrap_or_else(|| scene.robot.add_actuator(&called, joint, law));
+        scene.added.push((actuator, source.of(path)));
+        (actuator, law)
     } else {
         let why = format!("lacks the key {lacking}: `{name}` has no such motor of its own");
         own(scene, joint, kind).ok_or_else(|| source.wrong(path, why))?

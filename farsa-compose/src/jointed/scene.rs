@@ -30,6 +30,8 @@ pub(crate) struct Scene {
     floor: Option<usize>,
     /// Actuators with a motor.
     pub(crate) driven: Vec<ActuatorId>,
+    /// Actuators that motors added, with the place of the motor in the file.
+    pub(crate) added: Vec<(ActuatorId, String)>,
 }
 
 /// Names of the robot and of the floor.
@@ -60,7 +62,8 @@ impl Scene {
             }
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
-        let mut scene = Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new() };
+        let mut scene =
+            Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new(), added: Vec::new() };
         scene.pair(document, touches);
         Ok(scene)
     }

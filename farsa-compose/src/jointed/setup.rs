@@ -7,6 +7,7 @@ use farsa_physics::articulated::Options;
 
 use crate::check::source::Source;
 use crate::document::{Document, Ending, Engine, SensorKind};
+use crate::jointed::actuation;
 use crate::jointed::driving::{Driving, motor};
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::sensing::{Sensing, sensor};
@@ -57,7 +58,8 @@ impl Setup {
         let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
         let groups = Groups::new([(ROBOT.to_owned(), 1)], false);
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let ledger = Ledger::new(&document, &of_steps, &groups, source)?;
+        let mut ledger = Ledger::new(&document, &of_steps, &groups, source)?;
+        ledger.warnings.extend(actuation::warnings(&scene));
         let starting = Starting::new(&document, &scene, source)?;
         let segments = scene.robot.segments.iter().enumerate();
         let floating = segments.filter(|(_, segment)| segment.joint.kind == JointKind::Floating);

@@ -33,8 +33,8 @@ pub(crate) struct Ledger {
     most_steps: u32,
     product: bool,
     trials: Trials,
-    /// Doubt about the fitness, if any.
-    pub(crate) warning: Option<String>,
+    /// Doubts about the fitness or the motors.
+    pub(crate) warnings: Vec<String>,
     /// Steps of this trial.
     pub(crate) steps: u32,
     /// Result of the trial.
@@ -86,7 +86,7 @@ impl Ledger {
             most_steps: document.episode.steps,
             product: document.fitness.product,
             trials: document.fitness.trials,
-            warning: warning(document, groups, source),
+            warnings: warning(document, groups, source).into_iter().collect(),
             steps: 0,
             failed: false,
             succeeded: false,

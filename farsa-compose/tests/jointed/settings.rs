@@ -1,6 +1,6 @@
 //! Settings of an MJCF that change the robot or its world.
 
-use crate::{close, measured, outcome, refused};
+use crate::{close, made, measured, outcome, refused};
 
 /// A cart of 1 kg on a rail through its box, at this height, with a motor of 10 N.
 fn cart(option: &str, height: f64, world: &str) -> String {
@@ -42,4 +42,21 @@ fn the_gravity_of_a_model_is_never_replaced_silently() {
     }
     let text = cart(&format!("gravity=\"0 0 -9.81\">{without}"), 1.0, "");
     close(2.0 * measured(&outcome(&text, 0.6), "sensor"), 1.0, 0.011);
+}
+
+#[test]
+fn a_second_actuator_on_a_joint_is_warned_about() {
+    let with = |model: &str, motor: &str| {
+        let text = cart(">", 1.0, "floor = false").replace("<motor joint=\"slide\" ctrlrange=\"-10 10\"/>", model);
+        let text = text.replace("kind = \"joint-torque\"", motor).replace("weight = 0.0", "weight = 1.0");
+        made(&text).unwrap_or_else(|error| panic!("{error}\n{text}")).info().warnings
+    };
+    let spring = "<position name=\"spring\" joint=\"slide\" kp=\"100\"/>";
+    let servo = "kind = \"servo\"\nstiffness = 50.0\ndamping = 5.0";
+    let found = with(spring, servo);
+    let why = "line 12: `slide` has two actuators, the new one and the model's `spring` with the command 0";
+    assert!(found.len() == 1 && found[0].ends_with(why), "{found:?}");
+    // A motor without a command exerts no force, and a driven servo is no second one.
+    assert_eq!(with("<motor joint=\"slide\"/>", servo), Vec::<String>::new());
+    assert_eq!(with(spring, "kind = \"servo\""), Vec::<String>::new());
 }
