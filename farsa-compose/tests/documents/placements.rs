@@ -98,3 +98,11 @@ fn contacts_end_trials() {
     let error = refused(&format!("protocols = [\"team-size\"]\n{}", text(1.5)));
     assert!(error.contains("has `team-size`, which is for one group of robots"), "{error}");
 }
+
+#[test]
+fn trials_of_the_template_begin_away_from_the_lamp() {
+    let text = farsa_compose::FILES.templates[0].text.replace("steps = 400", "steps = 1");
+    let mut evaluator = made(&text).expect("an experiment");
+    let near = |trial: &u32| rested(&mut *evaluator, *trial, 0).0.terms[0] > 0.0;
+    assert_eq!((0..200).filter(near).count(), 0);
+}
