@@ -61,7 +61,7 @@ function survey(trial, fromAbove) {
 	const ways = series.map((some) => spanOf(some.map(({at}) => ({at, radius: 0}))));
 	const focus = series.filter((some, i) => some[0].thing || ways[i] >= 0.2*max(...ways)).flat();
 	// Only the farthest moving body of a robot of many bodies has a trail.
-	const own = (body) => shapes.filter((s) => s.body === body && s.color).sort((a, b) => sizeOf(b) - sizeOf(a))[0]?.color;
+	const own = (body) => shapes.filter((s) => s.body === body && s.color && s.role !== "area").sort((a, b) => sizeOf(b) - sizeOf(a))[0]?.color;
 	const moving = bodies.flatMap((name, body) => {
 		const role = shapes.find((s) => s.body === body)?.role;
 		const path = [];

@@ -6,7 +6,7 @@ const PUSH = 0.1;
 // The mass of a thing or robot with the density of water [kg].
 function weightOf({shapes}, body) {
 	const thing = shapes.find((shape) => shape.body === body).role === "thing";
-	const own = shapes.filter((shape) => (thing ? shape.body === body : shape.role === "robot"));
+	const own = shapes.filter((shape) => (thing ? shape.body === body : shape.role === "robot" && shape.body >= 0));
 	return own.reduce((sum, {kind, half, radius: r, half_length: long = 0}) => {
 		const round = 2*Math.PI*r*r*long + (kind === "cylinder" ? 0 : 4/3*Math.PI*r**3);
 		return sum + 1000*(kind === "box" ? 8*half[0]*half[1]*half[2] : round);

@@ -110,7 +110,8 @@ function paintHead(c, column, side) {
 	if (!column[0]) return;
 	c.textAlign = side("right", "center", "left");
 	const canvas = c.canvas.clientWidth;
-	const text = `${column.length} ${side("sensors", canvas < 400 ? "" : "neurons", "outputs")}`;
+	const kind = side("sensors", canvas < 400 ? "" : "neurons", "outputs");
+	const text = `${column.length} ${column[1] ? kind : kind.slice(0, -1)}`;
 	const wide = c.measureText(text).width;
 	c.fillText(text, side(max(wide, column[0].x + 6), column[0].x, min(canvas - wide, column[0].x - 6)), max(7, column[0].y - 18));
 }

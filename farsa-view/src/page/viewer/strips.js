@@ -180,7 +180,7 @@ function stripsOf(seek) {
 		// A common prefix of all names, such as "force on sphere.", is omitted.
 		let cut = 0;
 		while (names[1] && names.every(([, label]) => label[cut] && label[cut] === names[0][1][cut])) cut++;
-		const body = make("div", "rows", ...names.map(([name, label]) => row(group, name, label.slice(cut > 7 ? cut : 0), names.length > 10 ? "heat" : "lines")));
+		const body = make("div", "rows", ...names.map(([name, label]) => row(group, name, label.slice(cut > 7 ? cut : 0), names.length > 11 ? "heat" : "lines")));
 		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length), ...legendOf(trials, group));
 		const made = make("section", "", fold, body);
 		// Columns of a narrow page are as wide as their content.
