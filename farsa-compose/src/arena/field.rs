@@ -119,12 +119,6 @@ impl Field {
         self.robots.iter().map(|forager| forager.carried).sum()
     }
 
-    /// Gets the number of pieces on the field.
-    #[cfg(test)]
-    pub(crate) fn left(&self) -> usize {
-        self.food.iter().filter(|food| **food).count()
-    }
-
     /// Gets the number of dead robots.
     pub(crate) fn deaths(&self) -> usize {
         self.robots.iter().filter(|forager| !forager.alive).count()
@@ -136,6 +130,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::collections::BTreeSet;
+
+    /// Counts the pieces on the field.
+    fn left(field: &Field) -> usize {
+        field.food().iter().filter(|food| **food).count()
+    }
 
     #[test]
     fn a_robot_lives_a_hundred_steps_away_from_the_nest() {
@@ -151,9 +150,38 @@ mod tests {
         field.step(1, [0.1, 0.1]);
         assert_eq!((field.robots()[0].alive, field.robots()[0].energy, field.deaths()), (true, 1.0, 1));
         // The first took the food of its cell and of the nest's cell. The second found none.
-        assert_eq!((field.collected(), field.lost(), field.left()), (2, 0, 398));
+        assert_eq!((field.collected(), field.lost(), left(&field)), (2, 0, 398));
         field.step(1, [2.5, 2.5]);
-        assert_eq!((field.deaths(), field.collected(), field.left()), (1, 2, 398));
+        assert_eq!((field.deaths(), field.collected(), left(&field)), (1, 2, 398));
+    }
+
+    /// Cells of 0.5 m by 0.25 m begin at the origin and end before the far sides.
+    #[test]
+    fn cells_are_parts_of_the_width_and_of_the_depth() {
+        let taken = |at| {
+            let mut field = Field::new([2.0, 1.0], 4, 0.01, 0.05, 1);
+            field.begin([9.0, 9.0]);
+            field.step(0, at);
+            field.food().iter().position(|food| !food)
+        };
+        for (at, cell) in [
+            ([0.0, 0.0], Some(0)),
+            ([0.49, 0.24], Some(0)),
+            ([0.5, 0.24], Some(1)),
+            ([0.49, 0.25], Some(4)),
+            ([1.3, 0.6], Some(2 + 4 * 2)),
+            ([1.99, 0.99], Some(15)),
+            ([2.0, 0.5], None),
+            ([0.5, 1.0], None),
+            ([-0.01, 0.5], None),
+            ([0.5, -0.01], None),
+        ] {
+            assert_eq!(taken(at), cell, "{at:?}");
+        }
+        // The edge of the nest belongs to it.
+        let mut field = Field::new([2.0, 1.0], 4, 0.01, 0.5, 1);
+        field.begin([1.0, 0.5]);
+        assert!(field.in_nest([1.5, 0.5]) && !field.in_nest([1.5001, 0.5]) && !field.in_nest([1.4, 0.9]));
     }
 
     proptest! {
@@ -196,8 +224,8 @@ mod tests {
                 }
             }
             prop_assert_eq!((field.collected() as usize, field.lost() as usize), (paid.len(), lost.len()));
-            prop_assert_eq!(field.left(), 64 - taken.len());
-            prop_assert_eq!(field.left() + (field.collected() + field.lost() + field.carried()) as usize, 64);
+            prop_assert_eq!(left(&field), 64 - taken.len());
+            prop_assert_eq!(left(&field) + (field.collected() + field.lost() + field.carried()) as usize, 64);
             for (robot, forager) in field.robots().iter().enumerate() {
                 prop_assert_eq!(forager.carried as usize, bags[robot].len());
                 prop_assert_eq!(forager.alive, !dead[robot]);

@@ -147,6 +147,44 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|tick| seen(tick, 1, is_bar)), [0; 4]);
     }
 
+    /// An e-puck has a radius of 0.035 m and a height of 0.05 m. Its load is a ball of 0.35 radii on top, and the cover of a
+    /// dead one is 2 % larger, with a bar of 1 % of the height on it.
+    #[test]
+    fn marks_have_the_sizes_of_their_robots() {
+        let found = marks(1, &MobileRobot::e_puck(), "e-puck 2");
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} where {b} is wanted");
+        let [load, cover, bar] = &found[..] else { panic!("{found:?}") };
+        let Geometry::Sphere { radius } = load.geometry else { panic!("{load:?}") };
+        close(radius, 0.01225);
+        let Geometry::Cylinder { radius, half_length } = cover.geometry else { panic!("{cover:?}") };
+        [(radius, 0.0357), (half_length, 0.0255)].map(|(a, b)| close(a, b));
+        let Geometry::Box { half } = bar.geometry else { panic!("{bar:?}") };
+        half.into_iter().zip([0.0056, 0.02625, 0.0005]).for_each(|(a, b)| close(a, b));
+        for (mark, name, height, color, shown) in [
+            (load, "e-puck 2 load", 0.06225, [0, 158, 115], ("carried 2", 1.0, 1e9)),
+            (cover, "e-puck 2 dead", 0.0255, [22, 22, 25], ("energy 2", 0.0, 0.0)),
+            (bar, "e-puck 2 dead", 0.0515, [235, 235, 230], ("energy 2", 0.0, 0.0)),
+        ] {
+            assert_eq!((&*mark.name, mark.body, mark.color), (name, Some(BodyId(1)), Some(color)));
+            mark.placement.position.into_iter().zip([0.0, 0.0, height]).for_each(|(a, b)| close(a, b));
+            let condition = mark.shown.as_ref().expect("a condition");
+            assert_eq!((&*condition.channel, condition.low, condition.high), shown, "{name}");
+        }
+        let field = Field::new([2.0, 1.0], 4, 0.25, 0.1, 2);
+        let channels: Vec<_> = field.channels().into_iter().map(|channel| (channel.name, channel.range)).collect();
+        let (energy, food) = (Some([0.0, 1.0]), None);
+        let wanted = [("energy 1", energy), ("carried 1", food), ("energy 2", energy), ("carried 2", food)];
+        assert_eq!(channels, wanted.map(|(name, range)| (name.to_owned(), range)));
+        let schema = field.shown_in(Schema::default(), &[]);
+        let [image] = &schema.images[..] else { panic!("{:?}", schema.images) };
+        assert_eq!((image.size, image.ground), ([4, 4], Some([[0.0, 0.0], [2.0, 1.0]])));
+        let mut recording = Recording::new(schema);
+        field.record(0, &mut recording);
+        recording.tick(0.0);
+        let color = recording.image_at(0, 0).and_then(|mut pixels| pixels.next()).expect("a pixel");
+        color.into_iter().zip([0.0, 158.0, 115.0]).for_each(|(a, b)| assert!((255.0 * a - b).abs() < 1.0, "{color:?}"));
+    }
+
     #[test]
     fn what_nobody_could_tell_apart_is_not_shown() {
         let robot = MobileRobot::khepera();

@@ -4,6 +4,7 @@
 mod drawn;
 
 mod damaged;
+mod files;
 mod groups;
 mod keys;
 mod networks;
@@ -11,5 +12,7 @@ mod parts;
 mod placements;
 mod protocols;
 mod rules;
+mod settings;
+mod sizes;
 mod steps;
 mod warnings;

@@ -102,3 +102,23 @@ fn leds_are_seen_in_their_colors() {
     let trial = Trial::new(&file(&optional, &[0.5, 0.5, 0.4], &khepera));
     close(trial.column("output.leds")[0], 0.4, 1e-6, "the output");
 }
+
+/// A robot that drives at 45 degrees against the wall y = 0 slides along it, or stays where it is. It moves 0.8 of 0.144
+/// m/s, of which the part along the wall is cos 45 degrees.
+#[test]
+fn robots_slide_along_walls_or_stay() {
+    for (rule, slides) in [("collisions = \"circles\", ", true), ("collisions = \"undone\", ", false), ("", false)] {
+        let rest = "robot = { kind = \"e-puck\" }\nsensors = [{ kind = \"body-pose\" }]\n\
+            start = [{ place = \"robot\", at = \"fixed\", point = [1.0, 0.039], heading = -45 }]\n";
+        let text =
+            file("{ kind = \"wheels\" }", &[0.9, 0.9], rest).replace("world = { ", &format!("world = {{ {rule}"));
+        let trial = Trial::new(&text);
+        for step in 1..=3 {
+            let way = if slides { 0.8 * SPEED * TIME_STEP * f64::sqrt(0.5) * f64::from(step) } else { 0.0 };
+            let tick = step as usize - 1;
+            close(trial.column("x [m]")[tick], 1.0 + way, 1e-4, &format!("x after step {step}: {rule}"));
+            let y = if slides { 0.035 } else { 0.039 };
+            close(trial.column("y [m]")[tick], y, 1e-4, &format!("y after step {step}: {rule}"));
+        }
+    }
+}

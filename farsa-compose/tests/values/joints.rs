@@ -30,13 +30,13 @@ const BALL: [f64; 3] = [0.8, 0.5, 1.6];
 /// A point of the limb.
 const TIP: [f64; 3] = [0.2, -0.1, 0.4];
 
-type Vector = [f64; 3];
+pub(crate) type Vector = [f64; 3];
 
-fn add(a: Vector, b: Vector) -> Vector {
+pub(crate) fn add(a: Vector, b: Vector) -> Vector {
     [0, 1, 2].map(|k| a[k] + b[k])
 }
 
-fn minus(a: Vector, b: Vector) -> Vector {
+pub(crate) fn minus(a: Vector, b: Vector) -> Vector {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
@@ -44,7 +44,7 @@ fn times(a: f64, b: Vector) -> Vector {
     b.map(|x| a * x)
 }
 
-fn dot(a: Vector, b: Vector) -> f64 {
+pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|k| a[k] * b[k]).sum()
 }
 
@@ -58,7 +58,7 @@ fn about_y(angle: f64, [x, y, z]: Vector) -> Vector {
     [c * x + s * z, y, c * z - s * x]
 }
 
-fn about_z(angle: f64, [x, y, z]: Vector) -> Vector {
+pub(crate) fn about_z(angle: f64, [x, y, z]: Vector) -> Vector {
     let (s, c) = angle.sin_cos();
     [c * x - s * y, s * x + c * y, z]
 }
@@ -235,7 +235,7 @@ const PAIR: &str = r#"<robot name="pair"><link name="base"/>
 </robot>"#;
 const INERTIAS: [f64; 2] = [0.22, 1.5];
 
-fn pair(motor: &str, bias: &[f64], steps: u32, rest: &str) -> String {
+pub(crate) fn pair(motor: &str, bias: &[f64], steps: u32, rest: &str) -> String {
     format!(
         "world = {{ engine = \"articulated\", floor = false, time_step = {TIME_STEP}, substeps = 5, gravity = [0, 0, 0], stiffness = 10.0 }}\n\
          robot = {{ kind = \"model\", file = \"pair.urdf\", base = [0.2, -0.3, 0.1] }}\nmotors = [{{ {motor} }}]\n\

@@ -6,11 +6,16 @@
 // Expected values do not depend on farsa-num.
 #![allow(clippy::disallowed_methods)]
 
+#[cfg(feature = "rapier")]
+mod blocks;
 mod drives;
+mod exports;
 mod joints;
 mod kinds;
+mod recordings;
 mod senses;
 mod starts;
+mod surroundings;
 mod teams;
 mod totals;
 mod wheels;

@@ -6,7 +6,7 @@ use crate::wheels::{HEADING, HULL, LAMP, LAMP_RADIUS, OUTPUTS, SPEED, START, TIM
 use crate::{Trial, all_close, close, distance, refused, yes};
 
 /// Directions of the infrared sensors of an e-puck [deg].
-const RING: [f64; 8] = [90.0, 54.0, 18.0, -18.0, -54.0, -90.0, -150.0, 150.0];
+pub(crate) const RING: [f64; 8] = [90.0, 54.0, 18.0, -18.0, -54.0, -90.0, -150.0, 150.0];
 
 /// Kinds with a value in this file, in `teams.rs` or in `wheels.rs`.
 pub(crate) const SENSORS: &[&str] = &[
@@ -34,11 +34,11 @@ pub(crate) const SENSORS: &[&str] = &[
 
 const STEPS: &str = "[[reward]]\nkind = \"steps\"\n";
 
-fn along(angle: f64) -> [f64; 2] {
+pub(crate) fn along(angle: f64) -> [f64; 2] {
     [angle.cos(), angle.sin()]
 }
 
-fn ahead(from: [f64; 2], direction: [f64; 2], far: f64) -> [f64; 2] {
+pub(crate) fn ahead(from: [f64; 2], direction: [f64; 2], far: f64) -> [f64; 2] {
     [from[0] + far * direction[0], from[1] + far * direction[1]]
 }
 

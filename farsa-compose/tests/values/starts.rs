@@ -1,21 +1,38 @@
 //! Placements: all draws are within their limits, and come near to them.
 
 use farsa_body::ports::BodyId;
+use farsa_body::{Pose, Recorder};
 use farsa_lab::advanced::Recording;
 use farsa_lab::{EpisodeId, Evaluation};
 
-use crate::{distance, made};
+use crate::{distance, made, refused};
+
+/// Poses of all bodies after the first step.
+#[derive(Default)]
+struct First(Vec<Pose>, bool);
+
+impl Recorder for First {
+    fn pose(&mut self, body: BodyId, pose: Pose) {
+        if !self.1 {
+            self.0.resize(self.0.len().max(body.index() + 1), Pose::identity());
+            self.0[body.index()] = pose;
+        }
+    }
+    fn tick(&mut self, _: f64) {
+        self.1 = true;
+    }
+}
 
 /// Poses x, y and heading of these bodies at the start of 400 trials in which nothing moves.
-fn places(text: &str, bodies: &[u16]) -> Vec<Vec<[f64; 3]>> {
+pub(crate) fn places(text: &str, bodies: &[u16]) -> Vec<Vec<[f64; 3]>> {
     let mut evaluator = made(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let parameters = vec![0.0; evaluator.info().parameters.len()];
     let trial = |trial| {
-        let mut recording = Recording::new(evaluator.info().schema);
+        let mut first = First::default();
         let id = EpisodeId { trial, ..EpisodeId::default() };
-        evaluator.evaluate(Evaluation::new(&parameters, id), Some(&mut recording));
+        evaluator.evaluate(Evaluation::new(&parameters, id), Some(&mut first));
         let place = |body: &u16| {
-            let pose = recording.pose_at(0, BodyId(*body)).expect("a body");
+            let pose = first.0[usize::from(*body)];
             let [x, y, _] = pose.position.map(f64::from);
             [x, y, f64::from(pose.heading())]
         };
@@ -26,7 +43,7 @@ fn places(text: &str, bodies: &[u16]) -> Vec<Vec<[f64; 3]>> {
 
 /// All values are within these ends, and some are within a twentieth of the range from each.
 #[track_caller]
-fn spans(values: impl Iterator<Item = f64>, [low, high]: [f64; 2], what: &str) {
+pub(crate) fn spans(values: impl Iterator<Item = f64>, [low, high]: [f64; 2], what: &str) {
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
     let room = 0.05 * (high - low);
     assert!(least >= low - 1e-5 && most <= high + 1e-5, "{what}: {least} to {most}, not within {low} to {high}");
@@ -166,4 +183,148 @@ fn things_and_joints_start_within_their_limits() {
     let least = apart.fold(f64::INFINITY, f64::min);
     // From the surface of the ball to the center of the marker.
     assert!((0.35 - 1e-6..0.42).contains(&least), "{least}");
+}
+
+/// A margin of more than half the depth leaves the middle: 1.2 m from walls that are 3 m and 2 m apart.
+#[test]
+fn areas_without_room_are_in_the_middle() {
+    let area = |start: &str| {
+        file(&format!(
+            "[robot]\nkind = \"e-puck\"\n{POST}[[objects]]\nname = \"spot\"\nkind = \"disc\"\nradius = 0.25\ncolor = [0, 0, 0]\n\
+             [[start]]\nplace = \"spot\"\n{start}\n"
+        ))
+    };
+    let found = places(&area("at = \"anywhere\"\nwalls = 0.95"), &[2]);
+    spans(found.iter().map(|bodies| bodies[0][0]), [1.2, 1.8], "x");
+    assert!(found.iter().all(|bodies| (bodies[0][1] - 1.0).abs() < 1e-6), "y");
+    // Near the post, and 0.25 m or 0.35 m from the walls.
+    let corner =
+        area("at = \"near\"\nof = \"post\"\nwithin = 0.5\nwalls = 0.1").replace("at = [1.2, 0.9]", "at = [0.4, 0.3]");
+    let found = places(&corner, &[2]);
+    spans(found.iter().map(|bodies| bodies[0][0]), [0.35, 0.9], "x near a corner");
+    spans(found.iter().map(|bodies| bodies[0][1]), [0.35, 0.8], "y near a corner");
+    let far = |bodies: &Vec<[f64; 3]>| distance(flat(bodies[0]), [0.4, 0.3]);
+    assert!(found.iter().map(far).all(|far| far <= 0.5 + 1e-6));
+    let found = places(&area("at = \"near\"\nof = \"post\"\nwithin = 0.5"), &[2]);
+    spans(found.iter().map(|bodies| distance(flat(bodies[0]), [1.2, 0.9])), [0.0, 0.5], "distance");
+    // Areas have no heading.
+    assert!(found.iter().all(|bodies| bodies[0][2] == 0.0));
+}
+
+/// Two discs of 0.9 m that keep 0.5 m apart need 2.3 m between centers, which are at most sqrt(1.2^2 + 0.2^2) m apart.
+#[test]
+fn the_missing_room_is_told() {
+    let text = file(
+        "[robot]\nkind = \"e-puck\"\n[[objects]]\nname = \"spots\"\nkind = \"disc\"\nradius = 0.9\ncount = 2\ncolor = [0, 0, 0]\n\
+         [[start]]\nplace = \"spots\"\nat = \"anywhere\"\napart = 0.5\n",
+    );
+    let error = refused(&text);
+    assert!(error.contains("no free place for a disc of 0.9 m in 1000 tries"), "{error}");
+    let (_, lacked) = error.split_once("the best lacked ").expect("a length");
+    let lacked: f64 = lacked.trim_end_matches(" m").parse().expect("a number");
+    let least = 2.3 - f64::hypot(1.2, 0.2);
+    assert!((least..least + 0.62).contains(&lacked), "{error}");
+    // Without a distance they may overlap.
+    let found = places(&text.replace("apart = 0.5\n", ""), &[1, 2]);
+    spans(found.iter().map(|bodies| distance(flat(bodies[0]), flat(bodies[1]))), [0.0, 1.2], "distance");
+}
+
+/// Populations start alike if the file asks for it. There are four individuals each.
+#[test]
+fn populations_start_alike_if_asked() {
+    for common in [true, false] {
+        let text = file(&format!(
+            "team = {{ coevolution = true, common_starts = {common} }}\n\
+             robots = [{{ name = \"a\", kind = \"e-puck\" }}, {{ name = \"b\", kind = \"e-puck\" }}]\n"
+        ))
+        .replace(
+            "network = { kind = \"wired\", bias = [0.5, 0.5], wires = [] }",
+            "network = { kind = \"perceptron\" }",
+        );
+        let made =
+            farsa_compose::ComposedExperiment::from_text("values.toml", &text, farsa_lab::strategy::strategies());
+        let made = made.unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let mut settings = farsa_lab::Experiment::settings(&made, "");
+        settings.push(farsa_lab::Setting::whole("evolution.population", 4, 1..=100));
+        let settings = farsa_lab::Settings::new(settings).expect("settings");
+        let mut evaluator = farsa_lab::Experiment::prepare(&made, "", &settings).expect("an evaluator");
+        let parameters = vec![0.0; evaluator.info().parameters.len()];
+        let opponents = [&parameters[..]];
+        let mut start = |individual| {
+            let mut recording = Recording::new(evaluator.info().schema);
+            let id = EpisodeId { individual, ..EpisodeId::default() };
+            let evaluation = Evaluation { opponents: &opponents, ..Evaluation::new(&parameters, id) };
+            evaluator.evaluate(evaluation, Some(&mut recording));
+            recording.pose_at(0, BodyId(0)).expect("a body").position
+        };
+        let found = [1, 5, 2].map(&mut start);
+        assert_eq!((found[0] == found[1], found[0] == found[2]), (common, false), "{found:?}");
+    }
+}
+
+/// Placements that cannot be, with their places in the file.
+#[test]
+fn impossible_starts_are_refused() {
+    let teams = "robots = [{ name = \"a\", kind = \"e-puck\", count = 2 }, { name = \"b\", kind = \"e-puck\" }]\n";
+    let two = "robot = { kind = \"e-puck\", count = 2 }\n";
+    let spots = "[[objects]]\nname = \"spots\"\nkind = \"disc\"\nradius = 0.1\ncount = 2\ncolor = [0, 0, 0]\n";
+    let start = |place: &str, keys: &str| format!("[[start]]\nplace = \"{place}\"\n{keys}\n");
+    let (fixed, anywhere) = ("at = \"fixed\"\npoint = [0.4, 0.5]", "at = \"anywhere\"");
+    let one_of = "at = \"one-of\"\npoints = [[0.4, 0.5], [0.9, 0.5]]";
+    for (text, why) in [
+        (format!("{two}{}", start("robot", fixed)), Some("`start.1`: puts 2 robots on one point")),
+        (format!("{two}{}", start("robot-2", fixed)), None),
+        (format!("{two}{}", start("robot-3", fixed)), Some("`start.1.place`: is robot 3 of 2")),
+        (format!("{two}{}", start("robot-0", fixed)), Some("`start.1.place`: is robot 0 of 2")),
+        (format!("{two}{}", start("robot-x", fixed)), Some("unknown object `robot-x`; the nearest is `robot-1`")),
+        (format!("{teams}{}", start("a", fixed)), Some("`start.1`: puts 2 robots on one point")),
+        (format!("{teams}{}", start("b", fixed)), None),
+        (format!("{teams}{}", start("a", one_of)), None),
+        (
+            format!("{teams}{}{}", start("a", anywhere), start("robot-2", anywhere)),
+            Some("`start.2.place`: `robot-2` is placed twice"),
+        ),
+        (format!("{teams}{}{}", start("a", anywhere), start("robot-3", anywhere)), None),
+        (
+            format!("{two}{spots}{}{}", start("spots", one_of), start("robot", &format!("{one_of}\nlike = \"spots\""))),
+            Some("`start.2`: puts 2 robots on one point"),
+        ),
+        (format!("{two}{spots}{}", start("spots", fixed)), Some("`start.1.place`: puts 2 things on one point")),
+        (format!("{two}{spots}"), Some("`objects.1`: lacks the key `at`, and no `[[start]]` places it")),
+        (
+            format!("{two}{POST}{}", start("robot", "at = \"around\"\nof = \"post\"\ndistance = [0.7, 0.4]")),
+            Some("`start.1.distance`: runs backwards"),
+        ),
+        (format!("{two}{POST}{}", start("robot", "at = \"around\"\nof = \"post\"\ndistance = [0.6, 0.6]")), None),
+        (
+            format!("{two}{}", start("robot", "at = \"turned\"\nlow = 0.0\nhigh = 1.0")),
+            Some("`start.1.at`: is for robots with joints"),
+        ),
+        (
+            format!(
+                "{two}{}{}",
+                start("robot-1", anywhere),
+                start("robot-2", "at = \"near\"\nof = \"robot-1\"\nwithin = 0.5")
+            ),
+            None,
+        ),
+        (
+            format!("{two}{}", start("robot-2", "at = \"near\"\nof = \"robot-1\"\nwithin = 0.5")),
+            Some("`start.1.of`: `robot-1` has to be placed before"),
+        ),
+        (format!("{two}{POST}{}", start("post", anywhere)), None),
+        (
+            format!(
+                "{two}[[objects]]\nname = \"bar\"\nkind = \"wall\"\nsize = [0.3, 0.1]\nat = [1.0, 1.0]\n{}",
+                start("bar", anywhere)
+            ),
+            Some("`start.1.place`: `bar` is a wall, which has no middle"),
+        ),
+        (format!("{two}{}", start("robot", "at = \"one-of\"\npoints = [[0.4, 0.5]]")), Some("no free place")),
+    ] {
+        match why {
+            Some(why) => assert!(refused(&file(&text)).contains(why), "{}\nwhere\n{why}", refused(&file(&text))),
+            None => assert!(made(&file(&text)).is_ok(), "{text}"),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::wheels::{Step, TIME_STEP, driven};
-use crate::{Trial, all_close, close, distance, yes};
+use crate::{Trial, all_close, close, distance, refused, yes};
 
 /// Starts [m] and headings [deg] of three robots, and the radius of their hulls [m].
 const STARTS: [([f64; 2], f64); 3] = [([0.7, 0.5], 20.0), ([0.9, 1.1], 140.0), ([1.9, 0.8], -75.0)];
@@ -248,4 +248,29 @@ fn what_is_held_counts_for_the_robot_that_holds() {
         }
         assert_eq!([1, 2, 3].map(|step| trial.sensor("attachment", step)[0]), [0.0, held, held]);
     }
+}
+
+/// Robots are numbered from 1, and a term names one of them or a group.
+#[test]
+fn terms_name_robots_that_there_are() {
+    let term = |keys: &str| file(&format!("[[reward]]\nkind = \"distance\"\nobject = \"yard\"\n{keys}\n"));
+    assert_eq!(Trial::new(&term("robot = 3")).outcome.steps, 24);
+    for (keys, why) in [
+        ("robot = 4", "`reward.1.robot`: is robot 4 of 3"),
+        ("robot = 9", "`reward.1.robot`: is robot 9 of 3"),
+        ("of = \"robots\"", "`reward.1.of`"),
+        ("object = \"yart\"", "unknown object `yart`; the nearest is `yard`"),
+        ("object = \"robot-4\"", "unknown object `robot-4`; the nearest is `robot-1`"),
+    ] {
+        let text = if keys.starts_with("object") { term("").replace("object = \"yard\"", keys) } else { term(keys) };
+        let found = refused(&text);
+        assert!(found.contains(why) || why.ends_with("of`") && found.contains("unknown group of robots"), "{found}");
+    }
+    // A robot alone is not a thing for its own measures.
+    let alone = crate::wheels::file(
+        crate::wheels::OUTPUTS,
+        crate::wheels::NOTHING,
+        "[[reward]]\nkind = \"moved\"\nobject = \"robot-2\"\n",
+    );
+    assert!(!refused(&alone).contains("robot-1"), "{}", refused(&alone));
 }
