@@ -7,13 +7,18 @@ import subprocess
 # A function up to its brace. Lengths of arrays have semicolons.
 HEAD = re.compile(r"\bfn \w+(?:[^{;\[]|\[(?:[^\[\]]|\[[^\[\]]*\])*\])*\{")
 HIDDEN = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])'")
-# The number of the mutant that is taken, 0 for none.
+# The number of the mutant that is taken, 0 for none. On request the first panic ends the program.
 SWITCH = """
 mod mutant_switch {
     extern crate std;
     pub(crate) fn on(number: u32) -> bool {
         static TAKEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
-        let read = || std::env::var("MUTANT").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
+        let read = || {
+            if std::env::var_os("MUTANT_ENDS").is_some() {
+                std::panic::set_hook(std::boxed::Box::new(|_| std::process::exit(101)));
+            }
+            std::env::var("MUTANT").ok().and_then(|text| text.parse().ok()).unwrap_or(0)
+        };
         *TAKEN.get_or_init(read) == number
     }
 }

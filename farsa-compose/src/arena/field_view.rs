@@ -157,7 +157,8 @@ mod tests {
         let Geometry::Sphere { radius } = load.geometry else { panic!("{load:?}") };
         close(radius, 0.01225);
         let Geometry::Cylinder { radius, half_length } = cover.geometry else { panic!("{cover:?}") };
-        [(radius, 0.0357), (half_length, 0.0255)].map(|(a, b)| close(a, b));
+        close(radius, 0.0357);
+        close(half_length, 0.0255);
         let Geometry::Box { half } = bar.geometry else { panic!("{bar:?}") };
         half.into_iter().zip([0.0056, 0.02625, 0.0005]).for_each(|(a, b)| close(a, b));
         for (mark, name, height, color, shown) in [

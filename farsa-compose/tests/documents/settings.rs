@@ -127,7 +127,7 @@ fn values_of_a_file_are_settings() {
     assert_eq!(sorted, keys.len(), "each key is there once");
 }
 
-/// A condition changes the defaults of its own settings, with the place where it says so.
+/// A condition changes the defaults of some settings, and is the place of the new defaults.
 #[test]
 fn conditions_have_their_own_defaults() {
     let made = made(TEXT);
@@ -202,7 +202,7 @@ fn set_values_replace_those_of_the_file() {
 #[test]
 fn joints_with_other_names_are_numbered() {
     let joints = ["left.knee", "Right knee", "a..b", ".", "hip-1_x"];
-    let links: String = (0..joints.len())
+    let links: Vec<String> = (0..joints.len())
         .map(|number| {
             format!(
                 "<link name=\"l{number}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
@@ -211,10 +211,11 @@ fn joints_with_other_names_are_numbered() {
             )
         })
         .collect();
-    let starts: String = joints
+    let starts: Vec<String> = joints
         .iter()
         .map(|joint| format!("[[start]]\nplace = \"{joint}\"\nat = \"turned\"\nlow = -0.5\nhigh = 0.5\n"))
         .collect();
+    let (links, starts) = (links.concat(), starts.concat());
     let text = format!(
         "world = {{ engine = \"articulated\" }}\nrobot = {{ kind = \"model\", file = \"legs.urdf\" }}\n\
          sensors = [{{ kind = \"joint-speed\" }}]\nmotors = [{{ kind = \"joint-torque\" }}]\nnetwork = {{ kind = \"perceptron\" }}\n\
@@ -223,4 +224,52 @@ fn joints_with_other_names_are_numbered() {
     let keys: Vec<String> = made(&text).settings("").iter().map(|setting| setting.key().to_owned()).collect();
     let found: Vec<&str> = keys.iter().filter_map(|key| key.strip_prefix("start.")?.strip_suffix(".low")).collect();
     assert_eq!(found, ["left.knee", "2", "3", "4", "hip-1_x"]);
+}
+
+/// Values that a file leaves out, as the guide has them.
+#[test]
+fn values_left_out_are_those_of_the_guide() {
+    let wheels = made(
+        "world = { engine = \"rapier\" }\nrobot = { kind = \"e-puck\" }\nmotors = [{ kind = \"wheels\" }]\nreward = [{ kind = \"steps\" }]\n\
+         sensors = [{ kind = \"light\" }, { kind = \"laser-distance\", beams = 3, field_of_view = 90, range = 0.3 }, { kind = \"signal\", range = 0.4 }, \
+         { kind = \"camera\", field_of_view = 90, sectors = 2, range = 0.3, colors = [{ name = \"red\", low = [0.5, 0, 0], high = [1, 1, 1] }] }]\n\
+         network = { kind = \"blocks\", links = [{ from = \"sensors\", to = \"motors\" }], clusters = [{ name = \"a\", neurons = 2 }] }\n\
+         objects = [{ name = \"post\", kind = \"cylinder\", radius = 0.1, at = [0.5, 0.5] }, \
+         { name = \"bar\", kind = \"wall\", size = [0.1, 0.1], at = [0.2, 0.5] }, \
+         { name = \"crate\", kind = \"block\", size = [0.1, 0.1, 0.1], mass = 0.3, at = [0.8, 0.5] }]\n",
+    );
+    let evonet = made(
+        "robot = { kind = \"e-puck\" }\nmotors = [{ kind = \"wheels\" }]\nsensors = [{ kind = \"touch\" }]\nreward = [{ kind = \"steps\" }]\n\
+         network = { kind = \"evonet\" }\n",
+    );
+    let joints = made(
+        "world = { engine = \"articulated\" }\nrobot = { kind = \"arm-and-hand\" }\nmotors = [{ kind = \"muscles\" }]\n\
+         sensors = [{ kind = \"joint-speed\" }]\nreward = [{ kind = \"steps\" }]\nnetwork = { kind = \"perceptron\" }\n\
+         objects = [{ name = \"ball\", kind = \"ball\", radius = 0.1, mass = 0.3, at = [5, 5, 5] }, { name = \"mark\", kind = \"marker\", at = [1, 1, 1] }]\n",
+    );
+    let number = Value::Number;
+    let gray = || Value::Numbers(vec![0.5; 3]);
+    for (file, key, default) in [
+        (&wheels, "objects.post.height", number(0.1)),
+        (&wheels, "objects.post.color", gray()),
+        (&wheels, "objects.bar.height", number(0.1)),
+        (&wheels, "objects.crate.friction", number(0.5)),
+        (&wheels, "sensors.light.reference", number(0.25)),
+        (&wheels, "sensors.laser-distance.height", number(0.02)),
+        (&wheels, "sensors.signal.sectors", Value::Whole(4)),
+        (&wheels, "sensors.camera.rays", Value::Whole(9)),
+        (&wheels, "network.weights", Value::Numbers(vec![-5.0, 5.0])),
+        (&wheels, "network.leaks", Value::Numbers(vec![0.0, 1.0])),
+        (&wheels, "network.clusters.a.slope", number(1.0)),
+        (&wheels, "network.output_biases", Value::Flag(true)),
+        (&wheels, "robot.count", Value::Whole(1)),
+        (&wheels, "reward.steps.weight", number(1.0)),
+        (&evonet, "network.largest_bias", number(5.0)),
+        (&evonet, "network.largest_gain", number(5.0)),
+        (&joints, "objects.ball.friction", number(0.5)),
+        (&joints, "objects.mark.radius", number(0.02)),
+        (&joints, "objects.mark.color", gray()),
+    ] {
+        assert_eq!(setting(file, "", key).default_value(), &default, "{key}");
+    }
 }

@@ -68,7 +68,7 @@ fn networks_have_at_most_the_given_numbers_of_values() {
     }
 }
 
-/// What is counted with the state: neurons of blocks, and links with a delay.
+/// The state has the neurons of blocks, and the values of links with a delay.
 #[test]
 fn blocks_keep_their_neurons_and_delays() {
     for network in [
@@ -113,8 +113,8 @@ fn lists_texts_and_names_have_a_longest() {
     let error = with(&failures(1001)).expect("an error");
     assert!(error.contains("failure: has 1001 values where 0 to 1000 are wanted"), "{error}");
     let files = |count: usize| {
-        let lines: String = (0..count).map(|number| format!("\"f{number}\" = \"\"\n")).collect();
-        format!("[files]\n{lines}")
+        let lines: Vec<String> = (0..count).map(|number| format!("\"f{number}\" = \"\"\n")).collect();
+        format!("[files]\n{}", lines.concat())
     };
     assert_eq!(with(&files(1000)), None);
     assert!(with(&files(1001)).expect("an error").contains("files: has 1001 keys; at most 1000"));
@@ -158,15 +158,15 @@ fn parameters_are_only_fixed_or_only_shared() {
         names("shared = [[\"bias of wheels left\", \"bias of wheels right\"]]\n"),
         without("bias of wheels right")
     );
-    let every: String = all.iter().map(|name| format!("\"{name}\" = 0.25, ")).collect();
-    assert_eq!(names(&format!("fixed = {{ {} }}\n", every.trim_end_matches(", "))), ["none"]);
+    let every: Vec<String> = all.iter().map(|name| format!("\"{name}\" = 0.25")).collect();
+    assert_eq!(names(&format!("fixed = {{ {} }}\n", every.join(", "))), ["none"]);
     for table in ["fixed = { \"bias\" = 0.5 }\n", "shared = [[\"bias\"]]\n"] {
         let error = made(&format!("{REST}[network]\nkind = \"perceptron\"\n{table}")).err().expect("an error");
         assert!(error.contains("unknown parameter bias; "), "{error}");
     }
 }
 
-/// A network file of the 2013 program has at most 1000 neurons and 1000 blocks, and says all that flags would say.
+/// A network file of the 2013 program has at most 1000 neurons and 1000 blocks, and replaces all flags.
 #[test]
 fn network_files_are_limited() {
     let net = |hidden: usize, blocks: usize| {
@@ -201,5 +201,34 @@ fn network_files_are_limited() {
         let (key, _) = flag.split_once(' ').expect("a key");
         let error = with(&format!("{flag}\n"), &net(2, 5)).expect("an error");
         assert!(error.contains(&format!("network.{key}: says nothing beside file: own.net says it")), "{error}");
+    }
+}
+
+/// Beams, sectors times rays, and columns times rows. Infrared sensors send out five rays each, whatever their number.
+#[test]
+fn rays_of_sensors_are_counted() {
+    let rest = "reward = [{ kind = \"steps\" }]\nnetwork = { kind = \"perceptron\" }\n";
+    let wheels = format!("{rest}robot = {{ kind = \"e-puck\" }}\nmotors = [{{ kind = \"wheels\" }}]\n");
+    let joints = format!(
+        "{rest}robot = {{ kind = \"arm-and-hand\" }}\nmotors = [{{ kind = \"muscles\" }}]\nworld = {{ engine = \"articulated\" }}\n"
+    );
+    let eye = "eye = { columns = 3, rows = 4, field_of_view = 60, range = 1.0 }";
+    let colors = "colors = [{ name = \"red\", low = [0.5, 0, 0], high = [1, 1, 1] }]";
+    for (text, sensor, rays) in [
+        (&wheels, "kind = \"laser-distance\"\nbeams = 6\nfield_of_view = 90\nrange = 1.0".to_owned(), 6),
+        (&wheels, format!("kind = \"camera\"\nsectors = 2\nrays = 5\nfield_of_view = 90\nrange = 1.0\n{colors}"), 10),
+        (&wheels, "kind = \"infrared\"\nmodel = \"rays\"\nfirst = 2".into(), 40),
+        (&joints, format!("kind = \"camera-image\"\n{eye}"), 12),
+        (&joints, format!("kind = \"color-blobs\"\n{eye}\n{colors}"), 12),
+    ] {
+        let limited = |most: usize| {
+            let mut limits = Limits::default();
+            limits.rays = most;
+            made_within(limits, &format!("{text}[[sensors]]\n{sensor}\n")).err()
+        };
+        assert_eq!(limited(rays), None, "{sensor}");
+        let error = limited(rays - 1).expect("an error");
+        let why = format!("and those before it send out {rays} rays from 1 robots; at most {} in all", rays - 1);
+        assert!(error.contains(&why), "{sensor}: {error}");
     }
 }

@@ -117,6 +117,29 @@ fn eyes_see_what_is_before_them_and_recordings_have_their_images() {
     close(found[1], 0.0, 1e-6);
     assert!(recording.schema().images.is_empty());
 
+    // Moved and turned about x, then y, then z, it is R = Rz Ry Rx.
+    let (at, turned) = ([0.1, 0.2, 0.3], [20.0, -15.0, 25.0]);
+    let eye = EYE.replace("columns", &format!("at = {at:?}, turned = {turned:?}, columns"));
+    let recording = recorded(&eyed(&format!("kind = \"visual-offset\"\n{eye}\nof = \"pear\"\nfrom = \"apple\"")));
+    let [[sa, ca], [sb, cb], [sc, cc]] =
+        turned.map(|angle: f64| <[f64; 2]>::from(farsa_num::sin_cos(angle.to_radians())));
+    let axes = [
+        [cc * cb, sc * cb, -sb],
+        [cc * sb * sa - sc * ca, sc * sb * sa + cc * ca, cb * sa],
+        [cc * sb * ca + sc * sa, sc * sb * ca - cc * sa, cb * ca],
+    ];
+    let projected = |place: [f64; 3]| {
+        // The body is 1 m above the origin.
+        let way = [place[0] - at[0], place[1] - at[1], place[2] - 1.0 - at[2]];
+        let [ahead, left, up] = axes.map(|axis| (0..3).map(|k| axis[k] * way[k]).sum::<f64>());
+        [left / ahead / half, up / ahead / half]
+    };
+    let (of, from) = (projected([2.0, 0.5, 1.0]), projected([2.0, 0.0, 1.0]));
+    for (k, found) in sensed(&recording, "visual-offset").into_iter().enumerate() {
+        close(found, 0.5 * (of[k] - from[k]), 1e-5);
+    }
+    assert!((of[1] - from[1]).abs() > 0.02, "{of:?} {from:?}");
+
     // Turned back it sees nothing.
     let back = EYE.replace("columns", "turned = [0.0, 0.0, 180.0], columns");
     let recording = recorded(&eyed(&format!("kind = \"color-blobs\"\n{back}\n{colors}")));

@@ -2,6 +2,7 @@
 
 mod eyes;
 mod merged;
+mod refusals;
 mod settings;
 
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Quantities of the channels of exported controllers, and the robots and options that are exported with them.
 
 use farsa_lab::Evaluator;
-use farsa_lab::exports::{MotorDrive, SensorReading};
+use farsa_lab::exports::{Exports, MotorDrive, SensorReading};
 
 use crate::made;
 
@@ -90,6 +90,15 @@ fn rings_of_sensors_are_described_by_their_directions() {
     assert_eq!(sensed(tables), angles.map(|angle| near(angle, "0.050 to 0.000, curved")));
     let light = |degrees: i32| format!("light, at {degrees} degrees to the left of ahead, 1");
     assert_eq!(sensed("kind = \"light\""), angles.map(light));
+}
+
+/// A file may change the reach of infrared sensors.
+#[test]
+fn infrared_sensors_reach_as_far_as_the_file_says() {
+    let text = "robot = { kind = \"e-puck\", infrared_range = 0.12 }\nsensors = [{ kind = \"infrared\", model = \"rays\", first = 1 }]\n\
+        motors = [{ kind = \"wheels\" }]\nnetwork = { kind = \"perceptron\" }\nreward = [{ kind = \"steps\" }]\n";
+    let [sensors, _] = channels(made(text).unwrap_or_else(|error| panic!("{error}")).as_ref());
+    assert_eq!(sensors, ["distance of what is near, at 90 degrees to the left of ahead, m, 0.120 to 0.000"]);
 }
 
 /// The largest speed of a wheel is 0.144 / 0.0205 rad/s.
@@ -195,7 +204,7 @@ fn motors_of_wheeled_robots_are_described() {
     }
 }
 
-/// Groups of robots have the quantities of their own robots: 7.024 rad/s of an e-puck and 10 of a `MarXbot`.
+/// Each group has the quantities of its kind of robot: 7.024 rad/s of an e-puck and 10 of a `MarXbot`.
 #[test]
 fn populations_have_the_quantities_of_their_robots() {
     let text = "team = { coevolution = true }\n\
@@ -292,7 +301,7 @@ fn sensors_of_robots_with_joints_are_described() {
 #[test]
 fn motors_of_robots_with_joints_are_described() {
     for (keys, wanted) in [
-        // Of the model's own limits, 4 N m and 5 N.
+        // The limits of the model are 4 N m and 5 N.
         (
             "kind = \"joint-torque\"",
             &["torque of hinge, N m, -4.000 to 4.000", "torque of rail, N, -5.000 to 5.000"][..],
@@ -355,7 +364,7 @@ fn motors_of_a_model_drive_the_joints_of_their_kind() {
         check(&motors, &[wanted], keys);
         assert_eq!(sensors.len(), 3);
         // MuJoCo makes the steps of the dynamics.
-        let options = evaluator.exports().and_then(|exports| exports.mjcf_options()).expect("options");
+        let options = evaluator.exports().and_then(Exports::mjcf_options).expect("options");
         assert_eq!((options.time_step, options.gravity), (0.06 / 4.0, [0.1, 0.2, -0.3]));
     }
 }

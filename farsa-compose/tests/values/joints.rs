@@ -392,6 +392,9 @@ fn a_resting_body_presses_with_its_weight() {
         close(trial.sensor(name, 100)[0], 2.0001 * 3.7, 5e-3, name);
     }
     assert_eq!((trial.sensor("touch", 100), trial.column("touch")[99]), (vec![1.0], 1.0));
+    // The floor is no thing that a robot collides with.
+    let ends = Trial::new(&text.replace("trials = 1", "trials = 1, ends = [\"collision\"]"));
+    assert_eq!(ends.outcome.steps, 100);
 }
 
 /// A joint of an MJCF model may be anywhere on its body. Here the hinge is at (0.3, 0, 0.1) of a body at (0.5, 0.2, 0.4).

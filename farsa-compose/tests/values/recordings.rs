@@ -1,5 +1,7 @@
 //! Recordings of robots on wheels: names and links, rays, outputs of dead robots, the robot that is watched, smaller teams.
 
+use std::fmt::Write as _;
+
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Recorder};
 use farsa_evo::ObservationStatistics;
@@ -81,11 +83,14 @@ fn a_task_is_described_with_its_channels() {
     assert_eq!(names, ["1", "2", "3"]);
 }
 
-/// Rays of each step, with `true` for those that hit something.
+/// Both ends of a ray, and `true` if it hits something.
+type Ray = ([f32; 3], [f32; 3], bool);
+
+/// Rays of each step.
 #[derive(Default)]
 struct Rays {
-    steps: Vec<Vec<([f32; 3], [f32; 3], bool)>>,
-    now: Vec<([f32; 3], [f32; 3], bool)>,
+    steps: Vec<Vec<Ray>>,
+    now: Vec<Ray>,
 }
 
 impl Recorder for Rays {
@@ -110,8 +115,8 @@ fn at_wall(place: [f64; 2], heading: f64) -> [f64; 8] {
     })
 }
 
-/// A ray begins at the hull, at half the height of 0.05 m, and is as long as the sensor says. Sensors in groups show the
-/// whole ring. Of robots that are not watched, rays that hit nothing are left out.
+/// A ray begins at the hull, at half the height of 0.05 m, and has the length of the sensor value. Sensors in groups
+/// show the whole ring. Robots that are not watched show only rays that hit something.
 #[test]
 fn infrared_sensors_are_drawn_as_rays() {
     let text = |robot: &str, sensors: &str| {
@@ -133,7 +138,7 @@ fn infrared_sensors_are_drawn_as_rays() {
         assert_eq!(rays.steps[0], rays.steps[1]);
         rays.steps.remove(0)
     };
-    let same = |found: &[([f32; 3], [f32; 3], bool)], at: [f64; 2], heading: f64, reads: &[(f64, f64)]| {
+    let same = |found: &[Ray], at: [f64; 2], heading: f64, reads: &[(f64, f64)]| {
         assert_eq!(found.len(), reads.len(), "{found:?}");
         for ((from, to, hit), (degrees, x)) in found.iter().zip(reads) {
             let way = along((heading + degrees).to_radians());
@@ -207,14 +212,15 @@ fn team(rest: &str) -> String {
          network = {{ kind = \"wired\", bias = [0.95, 0.8], wires = [] }}\nepisode = {{ steps = 5, trials = 1 }}\n"
     );
     for kind in ["near-others", "dispersion", "clusters", "largest-cluster"] {
-        text.push_str(&format!("[[reward]]\nkind = \"{kind}\"\n"));
+        let _ = writeln!(text, "[[reward]]\nkind = \"{kind}\"");
     }
-    for (name, keys) in [("all", ""), ("third", "robot = 3\n")] {
-        text.push_str(&format!("[[reward]]\nname = \"{name}\"\nkind = \"position\"\nalong = [1, 0, 0]\n{keys}"));
+    text.push_str("[[reward]]\nname = \"spread\"\nkind = \"dispersion\"\nover = \"end\"\n");
+    for (name, keys) in [("all", ""), ("last", "over = \"end\"\n"), ("third", "robot = 3\n")] {
+        let _ = write!(text, "[[reward]]\nname = \"{name}\"\nkind = \"position\"\nalong = [1, 0, 0]\n{keys}");
     }
     for (number, (at, heading)) in STARTS.iter().enumerate() {
         let place = format!("place = \"robot-{}\"\nat = \"fixed\"", number + 1);
-        text.push_str(&format!("[[start]]\n{place}\npoint = {at:?}\nheading = {heading}\n"));
+        let _ = writeln!(text, "[[start]]\n{place}\npoint = {at:?}\nheading = {heading}");
     }
     text
 }
@@ -288,6 +294,8 @@ fn smaller_teams_lack_their_last_robots() {
             close(value("largest-cluster"), (1 + linked) as f64 / count, 1e-9, &what("largest-cluster"));
             let mean = places.iter().map(|[x, _]| x).sum::<f64>() / count;
             close(value("all"), mean, 1e-5, &what("position"));
+            // Terms of the end are recorded in each step, like others.
+            assert_eq!([value("last"), value("spread")], [value("all"), value("dispersion")], "{}", what("the end"));
             close(value("third"), yes(present == 3) * place(2, number)[0], 1e-5, &what("position of the third"));
             for robot in 0..3 {
                 let found =

@@ -274,3 +274,44 @@ fn signals_are_heard_by_sector() {
     assert_eq!(trial.sensor("four", 1), [0.0; 4], "nothing is sent before the first step");
     close(trial.column("output.signal")[0], 0.1 + 0.3 * at[0], 1e-6, "own signal");
 }
+
+/// Beams 0.05 m high end at things of 0.1 m, and those 0.15 m high pass over them. The gaps are 0.2 m less half the size.
+#[test]
+fn beams_pass_over_low_things() {
+    for (object, gap) in [
+        ("kind = \"wall\"\nsize = [0.02, 0.4]\nheight = 0.1\n", 0.2 - 0.01 - HULL),
+        ("kind = \"cylinder\"\nradius = 0.03\nheight = 0.1\n", 0.2 - 0.03 - HULL),
+    ] {
+        let sensor = |name: &str, height: f64| {
+            format!(
+                "[[sensors]]\nname = \"{name}\"\nkind = \"laser-distance\"\nbeams = 1\nfield_of_view = 10\nrange = 0.5\nheight = {height}\n"
+            )
+        };
+        let text = format!(
+            "world = {{ size = [3.1, 2.3] }}\nrobot = {{ kind = \"e-puck\" }}\nmotors = [{{ kind = \"wheels\" }}]\n\
+             network = {{ kind = \"wired\", bias = [0.5, 0.5], wires = [] }}\nepisode = {{ steps = 1, trials = 1 }}\n\
+             start = [{{ place = \"robot\", at = \"fixed\", point = [1.0, 1.0] }}]\n{STEPS}\
+             [[objects]]\nname = \"bar\"\nat = [1.2, 1.0]\n{object}{}{}",
+            sensor("low", 0.05),
+            sensor("high", 0.15)
+        );
+        let trial = Trial::new(&text);
+        close(trial.sensor("low", 1)[0], gap / 0.5, 1e-5, object);
+        assert_eq!(trial.sensor("high", 1), [1.0], "{object}");
+    }
+}
+
+/// A camera sees a robot by the color of its group, or else by its own.
+#[test]
+fn groups_have_their_colors() {
+    let text = "world = { size = [3.1, 2.3] }\nmotors = [{ kind = \"wheels\" }]\n\
+        robots = [{ name = \"a\", kind = \"e-puck\" }, { name = \"b\", kind = \"e-puck\", color = [0.6, 0.1, 0.8] }]\n\
+        network = { kind = \"wired\", bias = [0.5, 0.5], wires = [] }\nepisode = { steps = 1, trials = 1 }\n\
+        sensors = [{ kind = \"camera\", field_of_view = 6, sectors = 1, rays = 1, range = 1.0, colors = [\
+        { name = \"own\", low = [0.05, 0.35, 0.05], high = [0.15, 0.45, 0.15] }, \
+        { name = \"group\", low = [0.55, 0.05, 0.75], high = [0.65, 0.15, 0.85] }] }]\n\
+        start = [{ place = \"a\", at = \"fixed\", point = [1.0, 1.0] }, { place = \"b\", at = \"fixed\", point = [1.3, 1.0], heading = 180 }]\n";
+    let text = format!("{text}{STEPS}");
+    assert_eq!(Trial::new(&text).sensor("camera", 1), [0.0, 1.0]);
+    assert_eq!(Trial::new(&text.replace(", color = [0.6, 0.1, 0.8]", "")).sensor("camera", 1), [1.0, 0.0]);
+}

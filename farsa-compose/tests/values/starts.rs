@@ -211,7 +211,8 @@ fn areas_without_room_are_in_the_middle() {
     assert!(found.iter().all(|bodies| bodies[0][2] == 0.0));
 }
 
-/// Two discs of 0.9 m that keep 0.5 m apart need 2.3 m between centers, which are at most sqrt(1.2^2 + 0.2^2) m apart.
+/// Two discs of 0.9 m that keep 0.5 m apart need 2.3 m between centers. The centers are at most sqrt(1.2^2 + 0.2^2) m
+/// apart.
 #[test]
 fn the_missing_room_is_told() {
     let text = file(
@@ -229,7 +230,30 @@ fn the_missing_room_is_told() {
     spans(found.iter().map(|bodies| distance(flat(bodies[0]), flat(bodies[1]))), [0.0, 1.2], "distance");
 }
 
-/// Populations start alike if the file asks for it. There are four individuals each.
+/// Two discs of 0.2 m keep 0.06 m apart within 1 m. There is room unless the first is in the middle. A trial without
+/// room has failed, and has no step.
+#[test]
+fn trials_without_room_have_failed() {
+    let text = file(
+        "[robot]\nkind = \"e-puck\"\n[[objects]]\nname = \"spots\"\nkind = \"disc\"\nradius = 0.2\ncount = 2\ncolor = [0, 0, 0]\n\
+         [[start]]\nplace = \"spots\"\nat = \"anywhere\"\napart = 0.06\n",
+    )
+    .replace("size = [3.0, 2.0]", "size = [1.0, 1.0]");
+    let mut evaluator = made(&text).unwrap_or_else(|error| panic!("{error}"));
+    let parameters = vec![0.0; evaluator.info().parameters.len()];
+    let mut failures = 0;
+    for trial in 0..300 {
+        let mut recording = Recording::new(evaluator.info().schema);
+        let id = EpisodeId { trial, ..EpisodeId::default() };
+        let outcome = evaluator.evaluate(Evaluation::new(&parameters, id), Some(&mut recording));
+        let failed = !outcome.is_finite();
+        assert_eq!((failed, outcome.steps), (recording.times().is_empty(), u32::from(!failed)), "{outcome:?}");
+        failures += usize::from(failed);
+    }
+    assert!((1..60).contains(&failures), "{failures} of 300 have failed");
+}
+
+/// Populations of four individuals start alike with `common_starts`.
 #[test]
 fn populations_start_alike_if_asked() {
     for common in [true, false] {
@@ -262,7 +286,7 @@ fn populations_start_alike_if_asked() {
     }
 }
 
-/// Placements that cannot be, with their places in the file.
+/// Impossible placements, with their places in the file.
 #[test]
 fn impossible_starts_are_refused() {
     let teams = "robots = [{ name = \"a\", kind = \"e-puck\", count = 2 }, { name = \"b\", kind = \"e-puck\" }]\n";

@@ -4,9 +4,9 @@ use farsa_body::ports::BodyId;
 use farsa_body::robot::{Robot, Shape};
 
 use crate::joints::{Vector, about_z, add, dot, minus, pair};
-use crate::{Trial, all_close, close, made};
+use crate::{Trial, all_close, close, made, refused};
 
-/// A base that stands still, a bar on a hinge and a sled on a rail, each with a shape. The masses are 0.8 and 1.5 kg.
+/// A fixed base, a bar on a hinge and a sled on a rail, each with a shape. The masses are 0.8 and 1.5 kg.
 const MODEL: &str = r#"<robot name="pair"><link name="base"><collision><origin xyz="-0.3 0 0.5"/><geometry><sphere radius="0.04"/></geometry></collision></link>
 <link name="bar"><inertial><origin xyz="0.5 0 0"/><mass value="0.8"/><inertia ixx="0.01" iyy="0.01" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><origin xyz="0.9 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link>
@@ -33,8 +33,9 @@ fn exported(world: &str) -> Robot {
     evaluator.exports().and_then(|exports| exports.robot(None)).expect("a robot")
 }
 
-/// Damping is critical, 2 sqrt(k m), with the mass of the lighter partner. Between things the greater friction counts,
-/// otherwise that of the world for the robot, and that of the thing for the floor. What never moves needs no contact.
+/// Damping is critical, 2 sqrt(k m), with the mass of the lighter partner. Between things the greater friction
+/// counts. The robot has the friction of the world, and a thing on the floor its own. Two shapes that never move have
+/// no contact.
 #[test]
 fn contacts_have_the_friction_and_damping_of_their_partners() {
     let robot = exported("");
@@ -79,7 +80,8 @@ fn contacts_have_the_friction_and_damping_of_their_partners() {
     assert_eq!(names(&exported(", floor = false")), pairs);
 }
 
-/// A ball has 2 m r^2 / 5, and a block m (b^2 + c^2) / 12. Without a height, things stand on the floor.
+/// The inertia of a ball is 2 m r^2 / 5, and that of a block m (b^2 + c^2) / 12. Without a height, things rest on the
+/// floor.
 #[test]
 fn things_have_their_shapes_masses_and_places() {
     let robot = exported("");
@@ -243,5 +245,51 @@ fn bodies_about_skew_axes_are_measured_at_their_frames() {
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
             .map(|axis| 1.5 * dot(minus(mark, place(before, point)), turned(before, axis)));
         all_close(&trial.sensor("target-position", number), &[x, y, z], 5e-5, &format!("mark in step {number}"));
+    }
+}
+
+/// The fixed geometry of a model is a floor, too, and is no thing with which the robot collides. A ball of 2 kg rests on it,
+/// and one of another name does not touch it.
+#[test]
+fn fixed_geometry_of_a_model_is_a_floor() {
+    let model = r#"<mujoco><worldbody><geom name="slab" type="box" size="2 2 0.1" pos="0 0 0.4"/>
+<body name="ball" pos="0.3 0.2 0.599"><joint name="lift" type="slide" axis="0 0 1"/><geom type="sphere" size="0.1" mass="2"/></body>
+<body name="high" pos="-0.3 0.2 3"><joint name="pull" type="slide" axis="0 0 1"/><geom type="sphere" size="0.1" mass="0.5"/></body>
+</worldbody></mujoco>"#;
+    let text = |with: &str| {
+        format!(
+            "world = {{ engine = \"articulated\", floor = false, gravity = [0, 0, -3.7] }}\nrobot = {{ kind = \"model\", file = \"slab.xml\" }}\n\
+             motors = [{{ kind = \"joint-torque\", largest = 1.0 }}]\nsensors = [{{ kind = \"contact-force\", with = \"floor\" }}, \
+             {{ name = \"own\", kind = \"contact-force\", bodies = [\"ball\"], with = \"floor\" }}, \
+             {{ name = \"far\", kind = \"contact-force\", bodies = [\"high\"]{with} }}]\n\
+             network = {{ kind = \"wired\", bias = [0.5, 0.5], wires = [] }}\nepisode = {{ steps = 8, trials = 1, ends = [\"collision\"] }}\n\
+             reward = [{{ kind = \"touch\", with = \"floor\" }}, {{ name = \"far\", kind = \"touch\", bodies = [\"high\"], with = \"floor\" }}]\n\
+             [files]\n\"slab.xml\" = '''{model}'''\n"
+        )
+    };
+    let trial = Trial::new(&text(", with = \"floor\""));
+    assert_eq!(trial.outcome.steps, 8);
+    assert_eq!((trial.column("touch")[7], trial.column("far")[7]), (1.0, 0.0));
+    assert!(trial.sensor("contact-force", 8)[0] > 1.0 && trial.sensor("own", 8) == trial.sensor("contact-force", 8));
+    assert_eq!(trial.sensor("far", 8), [0.0]);
+    assert!(refused(&text(", with = \"flour\"")).contains("unknown object `flour`; the nearest is `floor`"));
+}
+
+/// A ball falls in rapier by the gravity, control step and dynamics steps of the file: g h^2 n (n + 1) / 2 after n steps
+/// of h = 0.01 s, up to single precision.
+#[cfg(feature = "rapier")]
+#[test]
+fn rapier_has_the_steps_of_the_file() {
+    let ball = "[[objects]]\nname = \"ball\"\nkind = \"ball\"\nradius = 0.1\nmass = 0.3\nat = [5.0, 0.2, 9.0]\n";
+    let rest = format!("{ball}[[reward]]\nkind = \"moved\"\nobject = \"ball\"\n");
+    let text = pair("kind = \"joint-torque\"", &[0.5, 0.5], 12, &rest)
+        .replace("gravity = [0, 0, 0]", "gravity = [0.0, 1.2, -2.3]");
+    for (engine, tolerance) in [("articulated", 1e-5), ("rapier", 1e-4)] {
+        let trial = Trial::new(&text.replace("\"articulated\"", &format!("\"{engine}\"")));
+        for step in 1..=12 {
+            let n = 5.0 * f64::from(step);
+            let wanted = f64::hypot(1.2, 2.3) * 1e-4 * n * (n + 1.0) / 2.0;
+            close(trial.column("moved")[step as usize - 1], wanted, tolerance, &format!("{engine} after step {step}"));
+        }
     }
 }

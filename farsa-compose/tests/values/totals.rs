@@ -86,7 +86,9 @@ fn totals_are_means_sums_ends_and_largest_values() {
 /// Conditions compare the last value of a term before its weight. All conditions of success have to hold.
 #[test]
 fn conditions_look_at_the_last_step() {
-    let trial = |conditions: &str| Trial::new(&file(OUTPUTS, NOTHING, &format!("{}{conditions}", terms()))).outcome;
+    let counted = "[[reward]]\nname = \"counted\"\nkind = \"steps\"\n";
+    let trial =
+        |conditions: &str| Trial::new(&file(OUTPUTS, NOTHING, &format!("{}{counted}{conditions}", terms()))).outcome;
     let one = |list: &str, range: &str| format!("[[{list}]]\nterm = \"mean\"\n{range}\n");
     // The time at the end is 3.2 s.
     for (conditions, success) in [
@@ -95,6 +97,11 @@ fn conditions_look_at_the_last_step() {
         (one("success", "below = 3.3"), true),
         (one("success", "below = 3.1"), false),
         (one("success", "above = 3.1\nbelow = 3.3"), true),
+        (one("success", "above = 3.3\nbelow = 3.4"), false),
+        // Ends do not count: the term `counted` is 1.
+        ("[[success]]\nterm = \"counted\"\nabove = 1.0\n".into(), false),
+        ("[[success]]\nterm = \"counted\"\nbelow = 1.0\n".into(), false),
+        ("[[success]]\nterm = \"counted\"\nabove = 0.9\nbelow = 1.1\n".into(), true),
         (one("success", "above = 3.1") + &one("success", "below = 3.1"), false),
         (String::new(), false),
     ] {
