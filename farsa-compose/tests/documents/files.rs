@@ -22,7 +22,7 @@ fn folder(name: &str) -> PathBuf {
 
 fn read(folder: &Path, text: &str) -> Result<ComposedExperiment, Error> {
     fs::write(folder.join("own.toml"), text).expect("a file");
-    ComposedExperiment::from_file(&folder.join("own.toml"), farsa_lab::strategy::strategies())
+    ComposedExperiment::from_file(folder.join("own.toml"), farsa_lab::strategy::strategies())
 }
 
 /// An infrared sensor with the table of walls and tables of bodies of these numbers.
