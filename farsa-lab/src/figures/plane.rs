@@ -32,8 +32,13 @@ impl Limits {
         }
         let part = if low.abs().max(high.abs()) > LARGE { PART } else { 1.0 };
         (low, high) = (low * part, high * part);
-        // A flat curve needs a range, too.
-        let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
+        // A flat curve needs a range with ticks that differ.
+        let flat = match (low < high, high == 0.0) {
+            (true, _) => 1e-9 * high.abs(),
+            (false, true) => 1.0,
+            (false, false) => 0.05 * high.abs(),
+        };
+        let margin = (0.05 * (high - low)).max(flat).max(f64::MIN_POSITIVE.sqrt());
         let largest = f64::MAX * part;
         Self { low: (low - margin).max(-largest), high: (high + margin).min(largest), part }
     }
@@ -62,9 +67,11 @@ impl Limits {
         ticks.take(2 * count).filter(|tick| tick.is_finite()).collect()
     }
 
-    /// Returns ticks with their labels.
+    /// Returns ticks with their labels, each label once.
     pub(crate) fn labels(&self, count: usize) -> Vec<(f64, String)> {
-        self.ticks(count).into_iter().map(|tick| (tick, label(tick))).collect()
+        let mut labels: Vec<(f64, String)> = self.ticks(count).into_iter().map(|tick| (tick, label(tick))).collect();
+        labels.dedup_by(|next, last| next.1 == last.1);
+        labels
     }
 }
 
@@ -130,5 +137,23 @@ impl Plane {
             text x=(at(middle)) y=(at(bottom + 46.0)) text-anchor="middle" fill=(INK) { (names[0]) }
             text transform=(format!("translate(24 {}) rotate(-90)", at(center))) text-anchor="middle" fill=(INK) { (names[1]) }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_a_flat_curve_differ() {
+        for value in [0.0, 1.0, -3.5, 1e9, 1e-7, 1.7e308, 5e-324] {
+            let labels = Limits::of([value, value].into_iter()).labels(LABELS);
+            for (number, (_, label)) in labels.iter().enumerate() {
+                assert!(labels[..number].iter().all(|(_, other)| other != label), "{value}: {labels:?}");
+            }
+        }
+        let labels = Limits::of([1.0, 1.0].into_iter()).labels(LABELS);
+        let labels: Vec<&str> = labels.iter().map(|(_, label)| label.as_str()).collect();
+        assert_eq!(labels, ["0.96", "0.98", "1", "1.02", "1.04"]);
     }
 }
