@@ -19,6 +19,7 @@ use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::any_strategy::AnyStrategy;
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
+use crate::strategy::known;
 use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
 /// Largest seed of a run. Bit 63 marks the trials of a test.
@@ -88,12 +89,17 @@ impl<'e> Plan<'e> {
         }
         for (key, Entry { value, place }) in &file.entries {
             match value {
-                Some(value) => self.settings.set(place, key, value.clone())?,
+                Some(value) => self.set(place, key, value.clone())?,
                 None => self.settings.section(place, key)?,
             }
         }
         let too_many = |place| Err(Error::Usage(format!("{place}: more keys than a configuration has")));
         file.beyond.as_ref().map_or(Ok(()), too_many)
+    }
+
+    pub(crate) fn set(&mut self, place: &str, key: &str, value: Value) -> Result<(), Error> {
+        known::check_key(self.definition(), &self.settings, place, key)?;
+        self.settings.set(place, key, value)
     }
 
     /// Plans the run of a complete configuration file.

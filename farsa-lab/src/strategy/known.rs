@@ -1,6 +1,8 @@
 //! Strategies that a run may be asked for by name.
 
 use crate::error::Error;
+use crate::escaped::Quoted;
+use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::generalist::GENERALIST;
 use crate::strategy::learning::Learning;
@@ -9,6 +11,9 @@ use crate::strategy::one_plus_one::OnePlusOne;
 use crate::strategy::random::RANDOM;
 use crate::strategy::reals;
 use crate::strategy::truncation::Truncation;
+
+/// Most strategies that a message lists.
+const MAX_LISTED: usize = 3;
 
 /// Ours.
 static KNOWN: [&dyn StrategyDefinition; 21] = [
@@ -53,10 +58,37 @@ pub(crate) fn find(
     strategy.ok_or_else(|| Error::unknown(place, "strategy", name, strategies.iter().map(|strategy| strategy.name())))
 }
 
+/// Checks that a key is not a setting of other strategies alone.
+///
+/// # Errors
+/// [`Error::Setting`] with both strategies and the keys of the given one.
+pub(crate) fn check_key(
+    strategy: &dyn StrategyDefinition,
+    settings: &Settings,
+    place: &str,
+    key: &str,
+) -> Result<(), Error> {
+    let has = |other: &&&dyn StrategyDefinition| other.settings().iter().any(|setting| setting.key() == key);
+    if settings.has(key) {
+        return Ok(());
+    }
+    let others: Vec<&str> = KNOWN.iter().filter(has).map(|other| other.name()).collect();
+    if others.is_empty() || others.contains(&strategy.name()) {
+        return Ok(());
+    }
+    let list = |names: &[&str]| names.iter().map(|name| Quoted(name).to_string()).collect::<Vec<_>>().join(", ");
+    let (listed, more) = others.split_at(others.len().min(MAX_LISTED));
+    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+    let own = strategy.settings();
+    let keys = list(&own.iter().map(Setting::key).collect::<Vec<_>>());
+    let (listed, name) = (list(listed), Quoted(strategy.name()));
+    let why = format!("is a setting of {listed}{more}, not of {name}; the settings of {name} are {keys}");
+    Err(Error::Setting { place: place.into(), key: key.into(), why })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::settings::Settings;
     use crate::limits::Limits;
     use crate::strategy::any_strategy::AnyStrategy;
     use crate::strategy::definition::StrategyStart;
