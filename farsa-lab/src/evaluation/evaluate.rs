@@ -176,7 +176,7 @@ pub(crate) fn evaluate(
     let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| genes.decode(pool.genotype())).collect();
     let parameters = parameters.unwrap_or_default();
     let size = if names.len() > 1 { plan.size()? } else { 0 };
-    let progress = Progress::new(0, trials as u64, quiet);
+    let progress = Progress::of_trials(trials, quiet);
     let given = Tested { parameters: &parameters, size, normalisation: None };
     let results = test::run_trials(&mut pool, given, Trials::plain(trials, seed), &progress);
     drop(progress);

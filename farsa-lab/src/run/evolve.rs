@@ -14,7 +14,7 @@ use crate::run::coordinator::{barrier, coordinate, facts, run_command};
 use crate::run::evaluation_backend::Unfinished;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
-use crate::run::progress::Progress;
+use crate::run::progress::{Progress, ProgressOptions};
 use crate::run::record_file::RunRecord;
 use crate::run::records::{Champions, Checkpoint, evolved};
 use crate::run::recover::{RunFiles, recover};
@@ -48,7 +48,8 @@ pub(crate) fn continue_run(
     evolved(directory)?;
     // Another process may write the files until the lock is held.
     let lock = Lock::of_run(directory.path())?;
-    continue_locked(&lock, plan, directory, pool, stop, program, quiet)
+    let options = ProgressOptions { quiet, study: None };
+    continue_locked(&lock, plan, directory, pool, stop, program, options)
 }
 
 /// Evolves a run whose lock is already held.
@@ -62,7 +63,7 @@ pub(crate) fn continue_locked(
     mut pool: Pool<'_>,
     stop: &AtomicBool,
     program: &str,
-    quiet: bool,
+    options: ProgressOptions,
 ) -> Result<Summary, Error> {
     let path = directory.checkpoint();
     let checkpoint = Checkpoint::read(plan, directory)?;
@@ -75,7 +76,7 @@ pub(crate) fn continue_locked(
     let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
     let individuals =
         |generations: u32| u64::from(generations).saturating_mul(run.search_state.search.individuals() as u64);
-    let progress = Progress::new(individuals(done), individuals(last), quiet);
+    let progress = Progress::of_run([done, last].map(individuals), last, options);
     if let Some(kept) = &run.files.changed_log {
         let (log, kept) = (directory.log(), kept.display());
         progress.note(&format!(

@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use crate::error::{Error, FileFault};
 use crate::escaped::{OneLine, escaped};
@@ -10,6 +11,7 @@ use crate::run::begin;
 use crate::run::evolve;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
+use crate::run::progress::{ProgressOptions, Study};
 use crate::run::records::{Champions, Checkpoint};
 use crate::run::summary::{Summary, Winner};
 use crate::store::directory::{Directory, vacant};
@@ -49,32 +51,53 @@ pub(crate) enum State {
 }
 
 impl Queue<'_, '_> {
-    /// Checks that every directory has the expected run, or none.
+    /// Checks that every directory has the expected run, or none, and returns the individuals that are left of each run.
     ///
     /// # Errors
     /// The errors of [`finished`] and of the member.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        (0..self.count).try_for_each(|number| {
+    pub(crate) fn check(&self) -> Result<Vec<u64>, Error> {
+        // Runs in one folder differ in their seeds, so their generations have one size.
+        let mut size: Option<(PathBuf, u64)> = None;
+        let left = (0..self.count).map(|number| {
             let Member { plan, path, .. } = (self.member)(number)?;
-            finished(&plan, &path).map(drop)
-        })
+            if finished(&plan, &path)?.is_some() {
+                return Ok(0);
+            }
+            let folder = path.parent().unwrap_or(&path).to_path_buf();
+            let size = match &size {
+                Some((other, size)) if *other == folder => *size,
+                _ => size.insert((folder, plan.strategy()?.individuals() as u64)).1,
+            };
+            let checkpoint = Directory::open(&path).ok().and_then(|directory| Checkpoint::read(&plan, &directory).ok());
+            let done = checkpoint.map_or(0, |checkpoint| checkpoint.generation);
+            Ok(u64::from(plan.generations()?.saturating_sub(done)) * size)
+        });
+        left.collect()
     }
 
-    /// Begins, continues or skips each run in order, until all are finished or claimed by other processes.
+    /// Begins, continues or skips each run in order, until all are finished or claimed by other processes. `left` holds the
+    /// individuals that are left of each run.
     ///
     /// # Errors
     /// [`Error::Interrupted`] after `stop` became true, and the errors of [`evolve::continue_run`]. The runs before the failed
     /// one are saved, and those after it are not begun.
-    pub(crate) fn work(&self, stop: &AtomicBool) -> Result<Vec<State>, Error> {
+    pub(crate) fn work(&self, left: &[u64], stop: &AtomicBool) -> Result<Vec<State>, Error> {
         let mut states: Vec<State> = Vec::new();
+        let (started, mut before) = (Instant::now(), 0);
         for number in 0..self.count {
-            states.push(self.turn(number, stop)?);
+            let after = left.iter().skip(number + 1).sum();
+            let study = Study { before, elapsed: started.elapsed(), after };
+            let state = self.turn(number, Some(study).filter(|_| self.count > 1), stop)?;
+            if matches!(state, State::Finished { skipped: false, .. }) {
+                before += left[number];
+            }
+            states.push(state);
         }
         // A process that had claimed a run may have been killed.
         loop {
             let mut changed = false;
             for (number, state) in states.iter_mut().enumerate().filter(|(_, state)| state.is_elsewhere()) {
-                *state = self.turn(number, stop)?;
+                *state = self.turn(number, None, stop)?;
                 changed |= matches!(state, State::Finished { skipped: false, .. });
             }
             if !changed {
@@ -84,7 +107,7 @@ impl Queue<'_, '_> {
     }
 
     /// Begins, continues, skips or leaves one run.
-    fn turn(&self, number: usize, stop: &AtomicBool) -> Result<State, Error> {
+    fn turn(&self, number: usize, study: Option<Study>, stop: &AtomicBool) -> Result<State, Error> {
         let Member { plan, path, name } = (self.member)(number)?;
         let place = OneLine(path.display());
         let skip = |summary: Summary| {
@@ -108,7 +131,8 @@ impl Queue<'_, '_> {
         }
         self.tell(&format!("{name}: {place}{}", if new { "" } else { ": continues" }));
         let pool = (self.pool)(&plan)?;
-        let summary = evolve::continue_locked(&lock, &plan, &directory, pool, stop, self.program, self.quiet);
+        let options = ProgressOptions { quiet: self.quiet, study };
+        let summary = evolve::continue_locked(&lock, &plan, &directory, pool, stop, self.program, options);
         let summary = summary.map_err(|error| match error {
             Error::Interrupted { .. } => Error::Interrupted { resume: again(self.program) },
             error => error,
@@ -208,7 +232,7 @@ fn again(program: &str) -> String {
 }
 
 /// Quotes a word for a shell where necessary.
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=,:+@%".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
         return word.into();

@@ -93,8 +93,8 @@ pub(crate) fn run<'e>(
         Ok(Member { plan, path, name: format!("replication {number} of {}", which.count) })
     };
     let queue = Queue { count: seeds.len(), member: &member, pool, program, quiet };
-    queue.check()?;
-    let states = queue.work(stop())?;
+    let left = queue.check()?;
+    let states = queue.work(&left, stop())?;
     queue.tell_of_others(&states);
     let (mut runs, mut elsewhere) = (Vec::new(), Vec::new());
     for state in states {

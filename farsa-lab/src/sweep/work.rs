@@ -132,8 +132,8 @@ impl<'s, 'e> Sweep<'s, 'e> {
         self.check(&runs, ready)?;
         let member = |index: usize| self.member(runs[index]);
         let queue = Queue { count: runs.len(), member: &member, pool, program, quiet };
-        queue.check()?;
-        let states = queue.work(stop())?;
+        let left = queue.check()?;
+        let states = queue.work(&left, stop())?;
         queue.tell_of_others(&states);
         Ok(self.found(&runs, states.into_iter().map(Some)))
     }

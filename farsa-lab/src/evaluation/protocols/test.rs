@@ -189,7 +189,7 @@ fn run(
     effort: TestOptions,
 ) -> Result<(ProtocolRun, ProtocolTable), Error> {
     let (trials, seed) = (trials_of(plan, &protocol, effort)?, effort.seed);
-    let progress = Progress::new(0, (trials * asked.len()) as u64, effort.quiet);
+    let progress = Progress::of_trials(trials * asked.len(), effort.quiet);
     let fresh = Trials { count: trials, seed, cases: &asked };
     let results = run_trials(pool, subject.tested(), fresh, &progress);
     drop(progress);
