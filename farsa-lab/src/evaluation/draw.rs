@@ -10,7 +10,7 @@ use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replay::{ReplaySummary, Replayable, Selection};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::{create_results, refuse_existing};
+use crate::store::own_output::{refuse_other, write_outputs};
 
 /// Width and height of a picture where none are asked for.
 const SIZE: (u32, u32) = (1200, 800);
@@ -69,7 +69,7 @@ pub(crate) struct DrawRequest<'w> {
     pub(crate) size: Option<(u32, u32)>,
 }
 
-/// Draws a moment of a trial, or several as an animation, and writes it to a new file.
+/// Draws a moment of a trial, or several as an animation, and writes it to a file, which replaces only its earlier version.
 ///
 /// Without a trial number the first trial is drawn.
 ///
@@ -90,7 +90,7 @@ pub(crate) fn draw(
     if wish.frames.is_some() && matches!(format, Format::Svg) {
         return Err(Error::Usage(format!("{}: with --frames its name ends in .png", path.display())));
     }
-    refuse_existing(path)?;
+    refuse_other(path)?;
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
     let mut memory = MemoryUse::new(plan.limits);
@@ -132,7 +132,7 @@ pub(crate) fn draw(
             pictures[0].svg(camera, [width, height], "p").into_bytes()
         }
     };
-    create_results(&[(path.to_owned(), bytes)])?;
+    write_outputs(&[(path.to_owned(), bytes)])?;
     Ok(DrawResult {
         replay: replayable.summary(plan, directory, std::slice::from_ref(&outcome)),
         time: seconds,

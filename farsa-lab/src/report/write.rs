@@ -14,7 +14,7 @@ use crate::report::section::section;
 use crate::report::settings::shell;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::{create_results, refuse_existing};
+use crate::store::own_output::{refuse_other, write_outputs};
 
 /// Default criterion of a successful run.
 const HALF: Success = Success::Share(0.5);
@@ -65,7 +65,7 @@ pub(crate) fn report(
             return Err(Error::Usage(format!("{}: is named twice", directory.path().display())));
         }
     }
-    html.into_iter().chain(md).try_for_each(refuse_existing)?;
+    html.into_iter().chain(md).try_for_each(refuse_other)?;
     let runs = runs.into_iter().map(|(directory, plan)| Run::read(directory, plan)).collect::<Result<Vec<_>, _>>()?;
     let page = page(&runs, html, md, success, program)?;
     let mut files: Vec<(PathBuf, String)> = Vec::new();
@@ -78,7 +78,7 @@ pub(crate) fn report(
         files.push((path.into(), text));
         files.extend(pictures.into_iter().map(|(name, picture)| (path.with_file_name(name), picture)));
     }
-    create_results(&files)?;
+    write_outputs(&files)?;
     Ok(Summary {
         runs: runs.iter().map(|run| summary(run, &runs)).collect(),
         files: files.iter().map(|(path, _)| path.display().to_string()).collect(),

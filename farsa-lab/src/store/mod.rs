@@ -20,6 +20,8 @@ pub(crate) mod lock;
 pub(crate) mod log;
 /// `manifest.json`: program version, machine and timings. No result depends on it.
 pub(crate) mod manifest;
+/// Pictures and reports that replace their earlier versions.
+pub(crate) mod own_output;
 /// Atomic replacement of files.
 pub(crate) mod replace;
 /// Locked temporary files and directories.

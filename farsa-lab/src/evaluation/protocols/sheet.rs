@@ -15,7 +15,7 @@ use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::svg::{FONT, INK, MARGIN, OUTLINE, PAPER};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::{create_results, refuse_existing};
+use crate::store::own_output::{refuse_other, write_outputs};
 
 /// Width and height of each picture where none are asked for, and the largest.
 const SIZE: (u32, u32) = (320, 260);
@@ -64,7 +64,7 @@ struct DrawnCase {
     picture: Picture,
 }
 
-/// Draws the end of a trial of each case of a protocol, all to the same scale, and writes them to a new file.
+/// Draws the end of a trial of each case of a protocol, all to the same scale, and writes them to a file, which replaces only its earlier version.
 ///
 /// # Errors
 /// As for [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Io`], [`Error::Usage`] for a file that is not an SVG,
@@ -83,7 +83,7 @@ pub(crate) fn draw(
     if !(16..=MAX_SIDE).contains(&width) || !(16..=MAX_SIDE).contains(&height) {
         return Err(Error::Usage(format!("pictures of {width}x{height}: each side is 16 to {MAX_SIDE} pixels")));
     }
-    refuse_existing(path)?;
+    refuse_other(path)?;
     let mut trials = CaseTrials::find(plan, directory, wish.choice)?;
     let cases = pictures(plan, &mut trials)?;
     let camera = camera.unwrap_or(Camera::for_view(trials.schema().view));
@@ -94,7 +94,7 @@ pub(crate) fn draw(
         if wish.choice.cases.is_empty() { Protocol::places(&shown, |case| &case.column).len() } else { shown.len() };
     let columns = abreast.clamp(1, COLUMNS);
     let picture = sheet(&caption, &cases, columns, camera, [width, height]);
-    create_results(&[(path.to_owned(), picture)])?;
+    write_outputs(&[(path.to_owned(), picture)])?;
     let Subject { generation, individual, .. } = trials.subject();
     Ok(Sheet {
         directory: directory.path().display().to_string(),
