@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::escaped::Quoted;
 use crate::store::lock::Lock;
 use crate::store::replace::sync_directory;
 use crate::store::temporary_file;
@@ -93,14 +94,14 @@ impl Directory {
     /// [`Error::File`].
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         let directory = Self::at(path.into());
-        let why = if !path.is_dir() {
-            "there is no such directory"
-        } else if !directory.config().is_file() {
-            "holds no run: there is no config.toml"
-        } else {
-            return Ok(directory);
-        };
-        Err(Error::no_run(path, why))
+        if !path.is_dir() {
+            let near = run_named(path).map(|run| format!("; a run of this name is {}", Quoted(&run)));
+            return Err(Error::no_run(path, &format!("there is no such directory{}", near.unwrap_or_default())));
+        }
+        if !directory.config().is_file() {
+            return Err(Error::no_run(path, "holds no run: there is no config.toml"));
+        }
+        Ok(directory)
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -166,6 +167,21 @@ impl Directory {
     pub(crate) fn protocols(&self) -> PathBuf {
         self.path.join(format!("protocols{}", self.tests))
     }
+}
+
+/// Finds the first run in `runs` with the name of a path, or of its experiment.
+fn run_named(path: &Path) -> Option<String> {
+    let name = path.file_stem()?.to_str().filter(|_| path.components().count() == 1)?;
+    let runs = Path::new("runs");
+    let mut names: Vec<String> =
+        fs::read_dir(runs).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    names.sort();
+    let is_run = |run: &String| {
+        let rest = run.strip_prefix(name);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+            && runs.join(run).join("config.toml").is_file()
+    };
+    Some(runs.join(names.into_iter().find(is_run)?).display().to_string())
 }
 
 /// Checks that a run can be created: there is no file, or an empty directory.
