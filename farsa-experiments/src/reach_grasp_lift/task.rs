@@ -130,7 +130,7 @@ impl Rollout for ReachTask {
         let Rewards { reach, grasp, lift, bonus } = trial.rewards;
         let second = judge.scene().config.steps_per_second();
         // Success by the printed reward alone: any height will do.
-        let printed = trial.lifted >= second && !trial.fallen;
+        let lifted = trial.lifted >= second && !trial.fallen;
         Outcome {
             terms: vec![reach, grasp, lift, bonus],
             steps: trial.steps,
@@ -138,7 +138,7 @@ impl Rollout for ReachTask {
             notes: vec![
                 ("phase", Note::from(trial.phase.name())),
                 ("end", Note::from(if trial.fallen { "sphere fell" } else { "time" })),
-                ("off the table", Note::from(if printed { "yes" } else { "no" })),
+                ("lifted for 1 s", Note::from(if lifted { "yes" } else { "no" })),
                 ("held [s]", Note::from(f64::from(trial.held) * time_step)),
                 ("height [cm]", Note::from(judge.seen().height)),
                 ("highest [cm]", Note::from(trial.highest)),

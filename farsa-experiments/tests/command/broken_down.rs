@@ -40,7 +40,7 @@ fn trials_that_all_break_down_have_no_value() {
         said.out.contains("no fitness, all evaluations of this generation failed; 40 evaluations failed\n"),
         "{said:?}"
     );
-    assert!(said.err.contains("generation 1: all 20 failed\n"), "{said:?}");
+    assert!(said.err.contains("generation 1: all 20 failed; 2 of 2 generations, "), "{said:?}");
 
     let tested = ok(farsa(), &here, "test o --trials 3");
     let summary = "\nsuccess: no value\nbroken down: 3 of 3 (100.0 %)\nfitness: no value\nline 0 of the test failed: ";

@@ -93,7 +93,7 @@ fn a_full_disk_loses_nothing() {
     let said = on_a_full_disk(&here, 3, "run --resume r --generations 40");
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.err.contains("cannot write r/"), "{said:?}");
-    assert!(said.err.contains("generation 5"), "it should come some way: {said:?}");
+    assert!(said.err.contains("; 5 of 40 generations, "), "it should come some way: {said:?}");
     let after = results(&here.join("r"));
     assert_eq!((&before[1], &before[3]), (&after[1], &after[3]), "champion and checkpoint as they were");
     assert!(after[2].starts_with(&before[2]), "and the record at least that long");

@@ -121,6 +121,7 @@ fn a_moment_is_drawn_from_a_named_camera() {
     let svg = fs::read_to_string(here.join("a.svg")).expect("the picture");
     assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{}", &svg[..80]);
     assert!(svg.contains("trial 0, 0.40 s"), "no caption");
+    fs::write(here.join("notes.png"), "mine").expect("a file");
     for (arguments, complaint) in [
         ("draw r --camera frnt --out b.png", "the nearest is `front`"),
         ("draw r --time 0.5 --out b.png", "from 0.01 to 0.4 s"),
@@ -129,7 +130,7 @@ fn a_moment_is_drawn_from_a_named_camera() {
         ("draw r --frames 0 --out b.png", "'--frames <N>'"),
         ("draw r --frames 4 --time 0.1 --out b.png", "cannot be used with"),
         ("draw r --size 8x8 --out b.png", "16 to 8192"),
-        ("draw r --out a.png", "there is one already"),
+        ("draw r --out notes.png", "there is one already"),
     ] {
         let said = say(farsa(), &here, arguments);
         assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");

@@ -8,6 +8,7 @@ mod cluster;
 mod configurations;
 mod export;
 mod files;
+mod forgiving;
 mod genotypes;
 mod guide;
 mod individuals;

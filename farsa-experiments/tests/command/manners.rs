@@ -307,6 +307,18 @@ fn no_color_is_heeded_on_a_terminal() {
     assert!(!without.contains('\u{1b}') && without.contains("Usage"), "{without}");
 }
 
+/// A terminal has the summary of a replay alone, and progress with its unit.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_is_not_flooded() {
+    let here = scratch("flood");
+    let shown = on_a_terminal(command(own(), &here, &["run", "cart", "--generations", "3", "--out", "r"]));
+    assert!(shown.contains(" of 3 generations"), "{shown}");
+    let shown = on_a_terminal(command(own(), &here, &["replay", "r"]));
+    assert!(!shown.contains("trial,step,") && shown.lines().count() < 10, "{shown}");
+    assert!(shown.contains("generation 2") && shown.contains("--out FILE, --html FILE, or `| less`"), "{shown}");
+}
+
 /// `--force` moves a run aside, and nothing else.
 #[test]
 fn a_run_in_the_way_is_moved_aside_when_that_is_asked_for() {

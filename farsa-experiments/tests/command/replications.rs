@@ -77,12 +77,12 @@ fn what_is_in_the_way_stops_them_before_they_begin() {
         &run.replace("--generations 3", "--generations 2"),
         "runs/cart-rough-1: has finished 3 generations already",
     );
-    refused(&run.replace("replications 3", "replications 0"), "0 is not in 1..");
+    refused(&run.replace("replications 3", "replications 0"), "not a whole number from 1 to 4294967295");
     refused("run --resume runs/cart-rough-1 --replications 2", "--replications");
     refused("run cart --seed 9223372036854775806 --replications 3 --out x", "the largest seed is 9223372036854775807");
     refused("run cart --replications 2 --lanes 8 --out x", "cart has 1 only");
     refused("run cart --replications 2 --replication 3 --out x", "--replication 3: there are 2");
-    refused("run cart --replications 2 --replication 0 --out x", "0 is not in 1..");
+    refused("run cart --replications 2 --replication 0 --out x", "not a whole number from 1 to 4294967295");
     refused("run cart --replication 1 --out x", "--replications");
     // The seeds of all must be there, so that a task of an array is refused as the whole would be.
     refused(

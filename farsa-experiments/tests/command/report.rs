@@ -84,7 +84,7 @@ fn four_runs_on_a_page() {
 
     // A second report has the same bytes, and a command of the page repeats the run.
     for file in ["page.html", "page.md", "page-fitness-1.svg", "page-fitness-2.svg"] {
-        fs::rename(here.join(file), here.join(format!("first-{file}"))).expect("the file");
+        fs::copy(here.join(file), here.join(format!("first-{file}"))).expect("the file");
     }
     ok(own(), &here, &format!("report {FOUR} --html page.html --md page.md --quiet"));
     for file in ["page.html", "page.md", "page-fitness-1.svg", "page-fitness-2.svg"] {
@@ -176,15 +176,28 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     assert!(fs::read_to_string(here.join("arm.md")).expect("the page").contains("![champion](<arm-champion-1.svg>)"));
     ok(farsa(), &here, "replay arm --html trial.html --compare arm --quiet");
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
+    // Pictures replace their earlier versions, and other files stay.
+    for (line, name) in [
+        ("draw arm --size 64x48 --out end.png --trial 2 --quiet", "end.png"),
+        ("draw arm --protocol labels --size 120x90 --out cases.svg --quiet", "cases.svg"),
+        ("check reach-grasp-lift --graph graph.svg --quiet", "graph.svg"),
+    ] {
+        ok(farsa(), &here, line);
+        let first = fs::read(here.join(name)).expect("the picture");
+        ok(farsa(), &here, line);
+        assert!(fs::read(here.join(name)).expect("the picture") == first, "{name}");
+        let mine = format!("mine.{}", &name[name.len() - 3..]);
+        fs::write(here.join(mine), [first.as_slice(), b" "].concat()).expect("a changed picture");
+    }
     for (program, arguments, words) in [
-        (farsa(), "draw arm --out end.png", "end.png: there is one already"),
+        (farsa(), "draw arm --out mine.png", "mine.png: there is one already"),
         // Refused before the search for a trial, which may be slow.
-        (farsa(), "draw arm --trial 99 --out end.png", "end.png: there is one already"),
-        (farsa(), "draw arm --protocol labls --out cases.svg", "there is one already"),
+        (farsa(), "draw arm --trial 99 --out mine.png", "mine.png: there is one already"),
+        (farsa(), "draw arm --protocol labls --out mine.svg", "there is one already"),
         (farsa(), "draw arm --out end.gif", "ends in .svg or .png"),
         (farsa(), "draw arm --protocol labls --out new.svg", "the nearest is `labels`"),
         (farsa(), "draw arm --protocol labels --out new.png", "ends in .svg"),
-        (farsa(), "draw arm --protocol labels --out cases.svg", "there is one already"),
+        (farsa(), "draw arm --protocol labels --out mine.svg", "there is one already"),
         (farsa(), "draw arm --protocol labels --size 9999x10 --out new.svg", "16 to 2048"),
         (farsa(), "draw arm --protocol labels --time 0.1 --out new.svg", "cannot be used with"),
         (farsa(), "draw arm --seed 2 --out new.svg", "--protocol"),
@@ -221,7 +234,7 @@ fn refused_reports_write_nothing() {
         }
         assert!(content(&here) == before, "{arguments} changed a file");
     };
-    refused("report a", 2, &["--html"]);
+    refused("report a", 2, &["<--html <FILE>|--md <FILE>>"]);
     refused("report --html new.html", 2, &["DIR"]);
     refused("report a nowhere --html new.html", 2, &["nowhere: there is no such directory"]);
     refused("report letters a --html new.html", 2, &["letters: holds no run"]);
@@ -250,7 +263,9 @@ fn refused_reports_write_nothing() {
     let intact = fs::read_to_string(&path).expect("the log");
     fs::write(&path, intact.replacen("0,2.", "0,3.", 1).replacen("0,1.", "0,9.", 1)).expect("the log");
     ok(own(), &here, "report a --md again.md");
-    let [new, again] = ["new.md", "again.md"].map(|file| fs::read_to_string(here.join(file)).expect("it"));
+    let text = |file: &str| fs::read_to_string(here.join(file)).expect("it");
+    // The last line is the mark with the checksum.
+    let [new, again] = ["new.md", "again.md"].map(|file| text(file).rsplit_once("<!-- ").expect("a mark").0.to_owned());
     assert_eq!(again.replace("again-", "new-").replace("again.md", "new.md"), new);
     ok(own(), &here, "report a --html new.html");
 }
@@ -369,7 +384,9 @@ fn conditions_are_compared_at_equal_evaluations_and_by_their_successes() {
     let again = fs::read_to_string(here.join("again.md")).expect("the page");
     let again =
         again.replace("again-fitness", "page-fitness").replace("--md again.md", "--html page.html --md page.md");
-    assert!(again == md, "{again}");
+    // The last line is the mark with the checksum.
+    let body = |text: &str| text.rsplit_once("<!-- ").expect("a mark").0.to_owned();
+    assert!(body(&again) == body(&md), "{again}");
 
     for (arguments, words) in [
         ("--success-share 1.5", "not a share from 0 to 1"),

@@ -168,7 +168,7 @@ fn a_sweep_is_refused_before_it_begins() {
     }
     let good = format!("{head}evolution.generations = 2\n[grid]\ncart.friction = [1, 2]\n");
     refused(&good, "my.toml --point 3", &["--point 3: there are 2"]);
-    refused(&good, "my.toml --point 0", &["0 is not in 1.."]);
+    refused(&good, "my.toml --point 0", &["not a whole number from 1 to 4294967295"]);
     refused(&good, "my.toml --replication 2", &["--replication 2: there are 1"]);
     refused(&good, "my.toml --lanes 8", &["point 1 (friction=1.0): --lanes 8: cart has 1 only"]);
     // An obstacle for one point is one for all.

@@ -11,13 +11,13 @@ use clap::FromArgMatches as _;
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, RunArgs, StrategiesArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, RunArgs, TestArgs,
 };
 use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::invocation::Invocation;
 use crate::command::on_ranks::{Part, awaits_orders};
-use crate::command::{info, manual, strategies};
+use crate::command::{info, manual, next};
 use crate::error::Error;
 use crate::escaped::escaped;
 use crate::evaluation::protocols::sheet;
@@ -32,7 +32,7 @@ use crate::run::begin;
 use crate::run::bench::{self, Bench};
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::experiment::Experiment;
-use crate::run::laboratory::{Laboratory, is_file};
+use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::replications::{self, Replications};
@@ -118,6 +118,7 @@ pub(crate) fn read_by(
     command: &mut clap::Command,
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<Cli, clap::Error> {
+    let words = manual::help_last(words.into_iter().map(Into::into).collect());
     Cli::from_arg_matches(&command.try_get_matches_from_mut(words)?)
 }
 
@@ -157,11 +158,7 @@ impl<'e> Invocation<'e, '_> {
         match command {
             Command::List(ListArgs { json: false }) => tell(&info::list(laboratory.experiments())),
             Command::List(ListArgs { json: true }) => say(&info::list_as_json(laboratory.experiments())?),
-            Command::Strategies(StrategiesArgs { strategy, json }) => {
-                let chosen = strategy.map(|name| laboratory.strategy(&name, "")).transpose()?;
-                let table = chosen.as_ref().map_or_else(|| laboratory.strategies(), std::slice::from_ref);
-                if json { say(&strategies::as_json(table)?) } else { tell(&strategies::as_text(table)) }
-            }
+            Command::Strategies(args) => self.strategies(&args),
             Command::Info(InfoArgs { experiment, condition, strategy, json }) => {
                 let strategy = strategy.map(|name| laboratory.strategy(&name, "--strategy")).transpose()?;
                 let plan = Plan::with_strategy(self.find(&experiment)?, condition.as_deref(), "", strategy)?;
@@ -179,7 +176,8 @@ impl<'e> Invocation<'e, '_> {
             }
             Command::Run(args) => {
                 let summary = self.start_or_resume(&args)?;
-                self.summary(args.json, &format!("{}\n", summary.text()), &|| pretty(&summary))
+                let text = format!("{}\n{}", summary.text(), next::after_run(&summary));
+                self.summary(args.json, &text, &|| pretty(&summary))
             }
             Command::Sweep(args) => {
                 let summary = self.sweep(&args)?;
@@ -391,8 +389,8 @@ impl<'e> Invocation<'e, '_> {
         directory: &Directory,
     ) -> Result<(), Error> {
         let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
-        let file_name = args.experiment.as_ref().filter(|name| is_file(name));
-        let named = file_name.map(|name| self.find(name)).transpose()?;
+        let file_name = args.experiment.as_ref().and_then(|name| self.laboratory.file(name));
+        let named = file_name.map(|name| self.find(&name)).transpose()?;
         let other = |experiment: &&dyn Experiment| {
             experiment.name() == plan.experiment.name() && experiment.definition() != plan.experiment.definition()
         };
@@ -444,7 +442,7 @@ impl<'e> Invocation<'e, '_> {
             [("--generations", GENERATIONS, args.generations), ("--population", POPULATION, args.population)]
         {
             if let Some(value) = value {
-                plan.settings.set(option, key, Value::Whole(value))?;
+                plan.set(option, key, Value::Whole(value))?;
             }
         }
         if let Some(seed) = args.seed {

@@ -12,12 +12,16 @@ use crate::error::Error;
 use crate::escaped::escaped;
 use crate::json::pretty;
 use crate::run::laboratory::{FILE, Template};
+use crate::store::own_output::write_outputs;
 use crate::store::replace::create_results;
 
 impl Invocation<'_, '_> {
     /// Writes an experiment file from a template.
     pub(super) fn new_file(&self, args: &NewArgs) -> Result<(), Error> {
         let templates = self.laboratory.files()?.templates;
+        if args.from.as_deref() == Some("list") {
+            return tell(&list(templates));
+        }
         let names = || templates.iter().map(|template| template.name);
         let template = match &args.from {
             None => templates.first(),
@@ -25,14 +29,13 @@ impl Invocation<'_, '_> {
         };
         let Some(Template { name, text, .. }) = template else {
             let asked = args.from.as_deref().unwrap_or_default();
-            let mut list = Error::unknown("--from", "template", asked, names()).to_string();
-            for Template { name, summary, .. } in templates {
-                // Writing to a string cannot fail.
-                let _ = write!(list, "\n  {name}: {summary}");
-            }
-            return Err(Error::Usage(list));
+            let unknown = Error::unknown("--from", "template", asked, names());
+            return Err(Error::Usage(format!("{unknown}\n{}", list(templates).trim_end())));
         };
-        let path = PathBuf::from(format!("{}{FILE}", args.name.strip_suffix(FILE).unwrap_or(&args.name)));
+        let Some(file) = &args.name else {
+            return Err(Error::Usage(format!("the file of the template `{name}` has no name: new NAME --from {name}")));
+        };
+        let path = PathBuf::from(format!("{}{FILE}", file.strip_suffix(FILE).unwrap_or(file)));
         // The file name becomes the name of the experiment, so it is checked first.
         (self.laboratory.files()?.read)(&path.display().to_string(), text, None, self.laboratory.strategies())?;
         create_results(&[(path.clone(), text)])?;
@@ -55,7 +58,7 @@ impl Invocation<'_, '_> {
         let connections = Connections::new(&plan)?;
         self.warn(&connections.warnings);
         if let Some(path) = &args.graph {
-            create_results(&[(path.clone(), connections.svg())])?;
+            write_outputs(&[(path.clone(), connections.svg())])?;
         }
         match (args.json, self.quiet) {
             (true, _) => say(&pretty(&connections)?),
@@ -63,4 +66,15 @@ impl Invocation<'_, '_> {
             (false, false) => tell(&connections.text()),
         }
     }
+}
+
+/// Formats the templates, one per line.
+fn list(templates: &[Template]) -> String {
+    let width = templates.iter().map(|template| template.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for Template { name, summary, .. } in templates {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {name:width$}  {summary}");
+    }
+    text
 }

@@ -10,6 +10,7 @@ use crate::experiment::PartNames;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
+use crate::figures::significant::counted;
 use crate::json::pretty;
 use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
@@ -198,7 +199,7 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     }
     let _ = writeln!(text, "\nnetwork: {}", info.network);
     let _ = writeln!(text, "parameters: {}", info.parameters);
-    let _ = writeln!(text, "genome: {} genes, {} bits", info.genes, info.genome_bits);
+    let _ = writeln!(text, "genome: {}, {}", counted(info.genes, "gene"), counted(info.genome_bits, "bit"));
     let seconds = info.step_seconds * info.steps as f64;
     let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
     let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);

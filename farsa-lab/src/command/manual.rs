@@ -1,5 +1,6 @@
 //! Help with examples, completions and manual pages.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
@@ -51,7 +52,19 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
     for (name, lines) in subcommand_examples(program, experiment, &run, &other) {
         command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
     }
-    command
+    // The parser of each number names its range, also for `--seed -1`.
+    command.mut_subcommands(|subcommand| {
+        subcommand.allow_negative_numbers(true).mut_subcommands(|nested| nested.allow_negative_numbers(true))
+    })
+}
+
+/// Rewrites `help SUBCOMMAND` as `SUBCOMMAND --help`. A subcommand `help` would take a line of the tour.
+pub(crate) fn help_last(mut words: Vec<OsString>) -> Vec<OsString> {
+    if words.get(1).is_some_and(|word| word == "help") {
+        words.remove(1);
+        words.push("--help".into());
+    }
+    words
 }
 
 /// Returns examples for each subcommand, with an experiment, one of its runs and another condition.
@@ -59,7 +72,7 @@ fn subcommand_examples(program: &str, experiment: &str, run: &str, other: &str) 
     vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
-        ("new", vec!["new follow".into(), "new follow --from light".into()]),
+        ("new", vec!["new follow".into(), "new follow --from light".into(), "new --from list".into()]),
         ("check", vec!["check follow.toml --graph follow.svg".into(), format!("check {experiment}{other} --json")]),
         ("schema", vec!["schema > farsa.schema.json".into()]),
         (

@@ -24,6 +24,8 @@ mod invocation;
 mod live;
 /// Help with examples, completions and manual pages.
 pub(crate) mod manual;
+/// Commands that continue after the end of a run.
+mod next;
 /// Command on several ranks.
 mod on_ranks;
 /// Generates docs/command.md.

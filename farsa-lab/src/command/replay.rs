@@ -1,6 +1,6 @@
 //! `farsa replay`: trials of a run, or of a protocol's cases.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal as _, Write};
 
 use serde::Serialize;
 
@@ -25,6 +25,8 @@ impl Invocation<'_, '_> {
         let out = || -> Result<Box<dyn Write>, Error> {
             match &args.out {
                 Some(path) => Ok(Box::new(create_result(path)?)),
+                // Thousands of lines would hide the summary.
+                None if io::stdout().is_terminal() => Ok(Box::new(io::sink())),
                 None => Ok(Box::new(io::stdout().lock())),
             }
         };
@@ -50,6 +52,9 @@ impl Invocation<'_, '_> {
             let _ = write!(io::stderr(), "{summary}");
         } else if !self.quiet {
             let _ = writeln!(io::stderr(), "{}", escaped(&found.summary));
+            if found.file.is_none() && io::stdout().is_terminal() {
+                let _ = writeln!(io::stderr(), "for the steps add --out FILE, --html FILE, or `| less`");
+            }
         }
         Ok(())
     }

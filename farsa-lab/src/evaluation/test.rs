@@ -55,6 +55,10 @@ pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record
 /// Trials of a test where no number is asked for.
 pub(crate) const TRIALS: usize = 100;
 
+/// Most lines that a terminal shows, and the lines of a longer table.
+const MAX_SHOWN: usize = 200;
+const SHOWN: usize = 20;
+
 /// Result of a test.
 #[derive(Debug, Serialize)]
 pub(crate) struct TestRun {
@@ -80,7 +84,7 @@ impl TestRun {
     /// Formats the table and its summary as text.
     pub(crate) fn text(&self) -> String {
         let Self { generation, individual, seed, .. } = self;
-        let mut text = self.table.aligned();
+        let mut text = shortened(self.table.aligned());
         // Writing into a string cannot fail.
         let _ = writeln!(text, "\n{}, test seed {seed}", whose(*generation, *individual, &self.individuals));
         text.push_str(&self.findings.text());
@@ -92,6 +96,13 @@ impl TestRun {
         }
         text
     }
+}
+
+/// Shortens a long table, of which `test.csv` has all lines.
+fn shortened(table: String) -> String {
+    let Some(trials) = table.lines().count().checked_sub(1).filter(|trials| *trials > MAX_SHOWN) else { return table };
+    let lines = table.lines().take(1 + SHOWN).collect::<Vec<_>>().join("\n");
+    format!("{lines}\n... {} more trials; test.csv holds all trials of a champion\n", trials - SHOWN)
 }
 
 /// Runs `trials` fresh trials of the champion and writes `test.csv`. Writes no file for another individual, such as one
@@ -118,7 +129,7 @@ pub(crate) fn test(
         // An occupied directory is reported before the computation.
         drop(Lock::of_tests(directory.path())?);
     }
-    let progress = Progress::new(0, trials as u64, quiet);
+    let progress = Progress::of_trials(trials, quiet);
     let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;

@@ -17,6 +17,11 @@ pub(crate) fn significant(x: f64) -> String {
     }
 }
 
+/// Formats a number of things, in the singular for one.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,6 +46,11 @@ mod tests {
         ] {
             assert_eq!(significant(x), text);
         }
+    }
+
+    #[test]
+    fn one_thing_is_singular() {
+        assert_eq!([0, 1, 2].map(|count| counted(count, "bit")), ["0 bits", "1 bit", "2 bits"]);
     }
 
     proptest! {

@@ -5,6 +5,7 @@ use std::time::{Duration, UNIX_EPOCH};
 use crate::error::{Error, FileFault};
 use crate::evaluation::draw::{self, Portrait};
 use crate::evaluation::test_table::Finding;
+use crate::figures::significant::counted;
 use crate::figures::statistics::median;
 use crate::report::curves::figures;
 use crate::report::outcome::{Success, outcome};
@@ -133,7 +134,10 @@ fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
             evaluator.info().trials.to_string(),
             format!("at most {}{clock}", description.steps),
             description.network,
-            format!("{} genes of {} bits", evaluator.info().parameters.len(), run.plan.experiment.gene_bits()),
+            {
+                let (genes, bits) = (evaluator.info().parameters.len(), run.plan.experiment.gene_bits());
+                format!("{} of {}", counted(genes, "gene"), counted(bits as usize, "bit"))
+            },
             evaluator.info().terms.join(" + "),
         ];
         table.head.push(group.label.clone());

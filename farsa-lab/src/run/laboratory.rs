@@ -170,12 +170,25 @@ impl<'e> Laboratory<'e> {
             })?;
             return self.described(name, &text, path.parent());
         }
+        if let Some(file) = self.file(name) {
+            return self.experiment(&file, place);
+        }
         let names = self.experiments.iter().map(|experiment| experiment.name());
         let found = self.experiments.iter().copied().find(|experiment| experiment.name() == name);
         found.ok_or_else(|| match self.files.and_then(|_| file_of(name)) {
             Some(file) => missing(place, name, &file),
             None => Error::unknown(place, "experiment", name, names),
         })
+    }
+
+    /// Returns the file of a name: the name itself, or NAME.toml if this is a file and no built-in experiment has the name.
+    pub(crate) fn file(&self, name: &str) -> Option<String> {
+        if is_file(name) {
+            return Some(name.into());
+        }
+        let built_in = self.experiments.iter().any(|experiment| experiment.name() == name);
+        let file = format!("{name}{FILE}");
+        (self.files.is_some() && !built_in && Path::new(&file).is_file()).then_some(file)
     }
 
     /// Returns the strategy with a name found at `place`.
@@ -238,7 +251,6 @@ mod tests {
         let path = |name: &str| folder.join(name).display().to_string();
         let found = |name: &str| laboratory.experiment(&path(name), "").err().unwrap();
         for (name, file) in [
-            ("follow", "follow.toml"),
             ("Follow", "follow.toml"),
             ("FOLLOW.TOML", "follow.toml"),
             ("other", "Other.TOML"),
@@ -248,8 +260,8 @@ mod tests {
             let wanted = format!("there is no experiment `{}`; the file is `{}`", path(name), path(file));
             assert_eq!((error.to_string(), error.exit_code()), (wanted, 2));
         }
-        for name in ["follow.toml", "Other.TOML"] {
-            assert!(found(name).to_string().starts_with(&format!("{}, text", path(name))));
+        for (name, file) in [("follow.toml", "follow.toml"), ("follow", "follow.toml"), ("Other.TOML", "Other.TOML")] {
+            assert!(found(name).to_string().starts_with(&format!("{}, text", path(file))));
         }
         assert!(found("folow").to_string().contains("unknown experiment"));
         let absent = found("absent.toml");

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{Args, Subcommand, ValueEnum, ValueHint, value_parser};
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
 
-use crate::command::arguments::shared::VariantArgs;
+use crate::command::arguments::shared::{VariantArgs, whole};
 use crate::export::files::{ControllerFormat, ModelFormat};
 use crate::run::plan::MAX_SEED;
 
@@ -62,10 +62,10 @@ pub(crate) struct ExportStartsArgs {
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     /// The number of trials
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(1_u32..=1_000_000))]
     pub(crate) trials: u32,
     /// The seed of the test
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(0..=MAX_SEED))]
     pub(crate) seed: u64,
     /// The format of the file
     #[arg(long, value_enum)]

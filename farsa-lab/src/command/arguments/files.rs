@@ -10,8 +10,9 @@ use crate::command::arguments::shared::VariantArgs;
 #[derive(Args)]
 pub(crate) struct NewArgs {
     /// The name of the experiment, written to NAME.toml
-    pub(crate) name: String,
-    /// The template (an unknown name lists all) [default: the first]
+    #[arg(required_unless_present = "from")]
+    pub(crate) name: Option<String>,
+    /// The template, or `list` for the names of all [default: the first]
     #[arg(long, value_name = "TEMPLATE")]
     pub(crate) from: Option<String>,
 }

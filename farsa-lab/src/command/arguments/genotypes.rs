@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueHint, value_parser};
+use clap::{Args, ValueHint};
 
-use crate::command::arguments::shared::{VariantArgs, WorkerArgs};
+use crate::command::arguments::shared::{VariantArgs, WorkerArgs, whole};
 use crate::error::Error;
 use crate::evaluation::evaluate::GeneArguments;
 use crate::experiment::settings::Value;
@@ -78,10 +78,10 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, conflicts_with_all = ["genes", "genes_file", "trials", "json"])]
     pub(crate) stdin: bool,
     /// Random trials
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole(1_u32..=100_000_000))]
     pub(crate) trials: u32,
     /// The seed, as in a test (with --stdin as in a run)
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(0..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
@@ -109,7 +109,7 @@ pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
     /// The seed of replayed trials [default: 1]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", value_parser = whole(0..=MAX_SEED))]
     pub(crate) seed: Option<u64>,
     /// The new directory, or for a configuration the new file [default: NAME.toml]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::AnyPath)]

@@ -1,9 +1,10 @@
 //! Arguments that several subcommands share.
 
+use std::ops::RangeInclusive;
 use std::thread;
 
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use clap::{Args, value_parser};
 
 use crate::error::Error;
 use crate::experiment::lanes::{LaneRequest, SIMD};
@@ -12,6 +13,18 @@ use crate::run::config_file;
 use crate::run::experiment::Experiment;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
+
+/// Returns a parser of whole numbers within a range.
+pub(crate) fn whole<T: Copy + Into<i128> + TryFrom<i128>>(
+    range: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    let (low, high): (i128, i128) = ((*range.start()).into(), (*range.end()).into());
+    move |text: &str| {
+        let number = text.parse::<i128>().ok().filter(|number| (low..=high).contains(number));
+        let number = number.and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| format!("not a whole number from {low} to {high}"))
+    }
+}
 
 /// The condition and settings of an experiment.
 #[derive(Args)]
@@ -40,7 +53,7 @@ impl VariantArgs {
     /// # Errors
     /// [`Error::Setting`] and [`Error::Setting`].
     pub(crate) fn apply(&self, plan: &mut Plan<'_>) -> Result<(), Error> {
-        self.set.iter().try_for_each(|(key, value)| plan.settings.set("--set", key, value.clone()))
+        self.set.iter().try_for_each(|(key, value)| plan.set("--set", key, value.clone()))
     }
 }
 
@@ -91,7 +104,7 @@ impl WorkerArgs {
 #[derive(Args)]
 struct Threads {
     /// Threads (results do not depend on their number) [default: all processors]
-    #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=4096))]
+    #[arg(long, value_name = "T", value_parser = whole(1_u16..=4096))]
     threads: Option<u16>,
 }
 

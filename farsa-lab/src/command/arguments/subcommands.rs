@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use farsa_view::Camera;
 
@@ -11,7 +11,7 @@ use crate::command::arguments::files::{CheckArgs, NewArgs};
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
-use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
+use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs, whole};
 use crate::command::arguments::sweep::SweepArgs;
 use crate::error::Error;
 use crate::evaluation::protocols::selected_cases::CaseSelection;
@@ -37,7 +37,7 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Describe an experiment, with every setting and its source
     Info(InfoArgs),
-    /// List the strategies, with every setting and its source
+    /// List the strategies, or describe one with every setting
     Strategies(StrategiesArgs),
     /// Write a file that describes an experiment
     New(NewArgs),
@@ -91,7 +91,7 @@ pub(crate) struct ListArgs {
 
 #[derive(Args)]
 pub(crate) struct StrategiesArgs {
-    /// A strategy [default: all]
+    /// A strategy, whose settings are listed [default: the names of all]
     pub(crate) strategy: Option<String>,
     /// Write JSON
     #[arg(long)]
@@ -114,7 +114,6 @@ pub(crate) struct InfoArgs {
 }
 
 #[derive(Args)]
-#[command(allow_negative_numbers = true)]
 pub(crate) struct RunArgs {
     /// The experiment
     #[arg(required_unless_present_any = ["resume", "config"])]
@@ -125,13 +124,13 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) strategy: Option<String>,
     /// The seed of all random numbers [default: 1]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", value_parser = whole(0..=MAX_SEED))]
     pub(crate) seed: Option<u64>,
     /// Generations to evaluate (evolution.generations)
-    #[arg(long, value_name = "G")]
+    #[arg(long, value_name = "G", value_parser = integer)]
     pub(crate) generations: Option<i64>,
     /// Individuals per generation (evolution.population)
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "P", value_parser = integer)]
     pub(crate) population: Option<i64>,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
@@ -144,13 +143,13 @@ pub(crate) struct RunArgs {
     #[arg(long, conflicts_with_all = ["resume", "replications"])]
     pub(crate) force: bool,
     /// Make N runs with consecutive seeds (repeated or parallel commands continue with unfinished runs)
-    #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = whole(1..=u32::MAX))]
     pub(crate) replications: Option<u32>,
     /// Make only the K-th run, from 1, for a task of a scheduler's array
-    #[arg(long, value_name = "K", requires = "replications", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", requires = "replications", value_parser = whole(1..=u32::MAX))]
     pub(crate) replication: Option<u32>,
     /// Make G runs in parallel, each on a part of the ranks
-    #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = whole(1..=u32::MAX))]
     pub(crate) groups: Option<u32>,
     /// Read settings from a TOML file (--set takes precedence)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -164,7 +163,6 @@ pub(crate) struct RunArgs {
 }
 
 #[derive(Args)]
-#[command(allow_negative_numbers = true)]
 pub(crate) struct BenchArgs {
     /// The experiment [default: the first in the list]
     pub(crate) experiment: Option<String>,
@@ -183,6 +181,11 @@ pub(crate) struct BenchArgs {
     pub(crate) json: bool,
 }
 
+/// Parses a value of a setting, whose range the setting checks.
+fn integer(text: &str) -> Result<i64, String> {
+    text.parse().map_err(|_| "not a whole number".into())
+}
+
 /// Parses a duration.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds| (0.01..=86400.0).contains(seconds));
@@ -195,22 +198,22 @@ pub(crate) struct TestArgs {
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     /// Trials, or trials of each case of a protocol [default: 100, or the protocol's number]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
     pub(crate) trials: Option<u32>,
     /// Test every case of a test protocol, see `info`
     #[arg(long, value_name = "NAME")]
     pub(crate) protocol: Option<String>,
     /// Test the best of this generation, from 0, without writing a file
-    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"], value_parser = whole(0..=u32::MAX))]
     generation: Option<u32>,
     /// Test this individual of the generation, from 0, without writing a file
-    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"], value_parser = whole(0..=u32::MAX))]
     individual: Option<u32>,
     /// Compare with the controller with changed parts, such as neuron:3,link:2-5,sensor:touch, without writing a file
     #[arg(long, value_name = "LIST")]
     pub(crate) lesion: Vec<String>,
     /// The seed of the test, independent of those of runs
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(0..=MAX_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
@@ -237,10 +240,10 @@ impl TestArgs {
 #[derive(Args)]
 pub(crate) struct WhichArgs {
     /// The generation, from 0 [default: the champion's, or with --individual the last]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     generation: Option<u32>,
     /// The individual, from 0 [default: the best of the generation]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     individual: Option<u32>,
     /// The trial, from 0, or `best`, the one of highest fitness [default: all]
     #[arg(long, value_name = "N", value_parser = which_trial)]
@@ -310,7 +313,7 @@ pub(crate) struct CaseArgs {
     #[arg(id = "case", long = "case", value_name = "CASE", requires = "protocol")]
     cases: Vec<String>,
     /// The seed of the test
-    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=MAX_SEED))]
+    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = whole(0..=MAX_SEED))]
     seed: u64,
 }
 
@@ -336,7 +339,7 @@ pub(crate) struct LiveArgs {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) html: PathBuf,
     /// Generations whose best individuals are included, such as 0,10,100 [default: the last]
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = whole(0..=u32::MAX))]
     pub(crate) generations: Vec<u32>,
     /// A WebAssembly module of the experiments, compressed by gzip [default: this program's]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -352,7 +355,7 @@ pub(crate) struct ServeArgs {
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     /// The port of 127.0.0.1, 0 for any free one
-    #[arg(long, value_name = "N", default_value_t = 8377)]
+    #[arg(long, value_name = "N", default_value_t = 8377, value_parser = whole(0..=u16::MAX))]
     pub(crate) port: u16,
     /// A WebAssembly module of the experiments, compressed by gzip [default: this program's]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -363,16 +366,15 @@ pub(crate) struct ServeArgs {
 }
 
 #[derive(Args)]
-#[command(allow_negative_numbers = true)]
 pub(crate) struct DrawArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     /// The generation, from 0 [default: the last]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     generation: Option<u32>,
     /// The individual, from 0 [default: the best of the generation]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     individual: Option<u32>,
     /// The trial, from 0, or `best`, the one of highest fitness [default: 0]
     #[arg(long, value_name = "N", value_parser = which_trial)]
@@ -381,7 +383,7 @@ pub(crate) struct DrawArgs {
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
     /// Write an animated PNG of N moments at the speed of the trial, at most 100 per second
-    #[arg(long, value_name = "N", conflicts_with_all = ["time", "protocol"], value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", conflicts_with_all = ["time", "protocol"], value_parser = whole(1_u32..=1000))]
     pub(crate) frames: Option<u32>,
     /// Draw the champion at the end of a trial of each case of a test protocol, as SVG, see `info`
     #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual", "time"])]
@@ -393,7 +395,7 @@ pub(crate) struct DrawArgs {
     /// Width and height in pixels [default: 1200x800, with --frames 480x320, per case 320x260]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// A new .svg or .png file
+    /// A .svg or .png file (replaces only its earlier version)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: PathBuf,
     /// Write the summary as JSON
@@ -431,15 +433,15 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 #[derive(Args)]
-#[command(allow_negative_numbers = true)]
+#[command(group = ArgGroup::new("pages").args(["html", "md"]).required(true).multiple(true))]
 pub(crate) struct ReportArgs {
     /// The runs' directories
     #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) directories: Vec<PathBuf>,
-    /// A new HTML file
-    #[arg(long, value_name = "FILE", required_unless_present = "md", value_hint = ValueHint::FilePath)]
+    /// An HTML file (replaces only its earlier version)
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
-    /// A new Markdown file, with pictures NAME-*.svg next to it
+    /// A Markdown file, with pictures NAME-*.svg next to it (replace only their earlier versions)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) md: Option<PathBuf>,
     /// Count a run as successful if this share of its champion's test succeeded [default: 0.5]

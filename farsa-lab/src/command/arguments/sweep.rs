@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueHint, value_parser};
+use clap::{Args, ValueHint};
 
-use crate::command::arguments::shared::WorkerArgs;
+use crate::command::arguments::shared::{WorkerArgs, whole};
 use crate::sweep::work::Selection;
 
 #[derive(Args)]
@@ -13,10 +13,10 @@ pub(crate) struct SweepArgs {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
     /// Only the K-th point, from 1, for a task of a scheduler's array
-    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = whole(1..=u32::MAX))]
     point: Option<u32>,
     /// Only the K-th replication of each point, from 1
-    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = whole(1..=u32::MAX))]
     replication: Option<u32>,
     /// Check and list all points with their finished runs, without starting any
     #[arg(long)]
