@@ -136,7 +136,7 @@ fn champions_of_files_are_tested_by_protocols() {
 fn what_is_wrong_with_a_file_is_said_before_anything_is_made() {
     let bench = Bench::new("wrong");
     let said = bench.refused("new follow --from lihgt");
-    assert!(said.contains("unknown template `lihgt`; the nearest is `light`") && said.contains("  wander: "), "{said}");
+    assert!(said.contains("unknown template `lihgt`; the nearest is `light`") && said.contains("  wander  "), "{said}");
     assert!(bench.refused("new Follow").contains("lower-case"));
     bench.succeed("new follow");
     assert!(bench.refused("new follow").contains("there is one already"));
