@@ -152,6 +152,32 @@ impl NetworkExport {
         }
     }
 
+    /// Describes the numbers of each table in the order of all parameters. Weights of blocks are listed block by block.
+    fn order(&self) -> Value {
+        let mut first = 0;
+        let mut entry = |name: &str, shape: &[usize], meaning: String| {
+            let entry = json!({"name": name, "first": first, "shape": shape, "meaning": meaning});
+            first += shape.iter().product::<usize>();
+            entry
+        };
+        let mut entries = Vec::new();
+        for (name, shape, _) in self.tables() {
+            match self {
+                Self::Blocks { layout, .. } if name == "weights" => {
+                    for (index, block) in layout.blocks.iter().enumerate() {
+                        let Block::Connect { from, to, .. } = block else { continue };
+                        let (source, target) = (from.first, to.first);
+                        let meaning =
+                            format!("blocks[{index}]: row j, column i from neuron {source} + j to neuron {target} + i");
+                        entries.push(entry(name, &[from.count, to.count], meaning));
+                    }
+                }
+                _ => entries.push(entry(name, &shape, meaning(self, name).into())),
+            }
+        }
+        entries.into()
+    }
+
     /// Everything but the tables, by name.
     fn facts(&self) -> Vec<(&'static str, Fact)> {
         match self {
@@ -191,6 +217,27 @@ impl NetworkExport {
     }
 }
 
+/// The meaning of the rows and columns of a table.
+fn meaning(network: &NetworkExport, table: &str) -> &'static str {
+    match (network, table) {
+        (_, "sensor_weights") => "row j, column i: from sensor j to hidden neuron i",
+        (_, "recurrent_weights") => "row j, column i: from hidden neuron j in the previous step to hidden neuron i",
+        (_, "output_weights") => "row j, column i: from hidden neuron j to output i",
+        (_, "input_weights") => "row j, column i: from input j to neuron i",
+        (NetworkExport::Perceptron { .. }, "weights") => "row j, column i: from input j to output i",
+        (_, "weights") => "row j, column i: from neuron j to neuron i",
+        (NetworkExport::Leaky { .. }, "biases") => "hidden neuron i: first term of its net input",
+        (NetworkExport::Leaky { .. }, _) => "hidden neuron i: share d of `leak`",
+        (NetworkExport::Perceptron { .. }, _) => "output i: first term of its net input",
+        (NetworkExport::Ctrnn { .. }, "biases") => "neuron i: added to its state",
+        (NetworkExport::Ctrnn { .. }, "gains") => "neuron i: factor of state plus bias",
+        (NetworkExport::Ctrnn { .. }, _) => "neuron i: time constant [s]",
+        (NetworkExport::Blocks { .. }, "biases") => "neurons of the groups with `bias`: first term of the net input",
+        (NetworkExport::Blocks { .. }, "gains") => "neurons of the groups with `gain`: factor of sent activations",
+        (NetworkExport::Blocks { .. }, _) => "neurons of the groups with `leak`: share d of `leak`",
+    }
+}
+
 /// A value of [`NetworkExport::facts`].
 enum Fact {
     /// With the digits that single precision needs.
@@ -225,6 +272,7 @@ impl Serialize for NetworkExport {
         for (name, fact) in self.facts() {
             map.serialize_entry(name, &fact)?;
         }
+        map.serialize_entry("parameters", &self.order())?;
         for (name, _, table) in self.tables() {
             map.serialize_entry(name, table)?;
         }
