@@ -50,4 +50,6 @@ pub mod exports {
         ActuatorExport, ControllerExport, Exports, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
         SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
     };
+    #[cfg(feature = "command")]
+    pub use crate::export::c::CFiles;
 }

@@ -23,6 +23,7 @@ use crate::escaped::escaped;
 use crate::evaluation::protocols::sheet;
 use crate::evaluation::{draw, evaluate, lines, protocols, replay, test};
 use crate::experiment::settings::Value;
+use crate::export::files::Exported;
 use crate::export::robot_file;
 use crate::json::pretty;
 use crate::ranks::exchange::Exchange;
@@ -216,13 +217,10 @@ impl<'e> Invocation<'e, '_> {
                 let summary = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
                 self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
-            Command::Export(ExportArgs { what }) => {
-                let (content, out) = self.exported(what)?;
-                match out {
-                    None => say(&content),
-                    Some(path) => create_results(&[(path, content)]),
-                }
-            }
+            Command::Export(ExportArgs { what }) => match self.exported(what)? {
+                Exported::Text(content) => say(&content),
+                Exported::Files(files) => create_results(&files),
+            },
             Command::Robot(args) => {
                 let reading = robot_file::read(&args.file, &args.options())?;
                 let summary = robot_file::Summary::new(&args.file, &reading);

@@ -1,31 +1,31 @@
 //! `farsa export`: sources and files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::command::arguments::export::{
     DataFormat, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
 use crate::command::invocation::Invocation;
 use crate::error::Error;
-use crate::export::files;
+use crate::export::files::{self, Exported};
 use crate::run::laboratory::FILE;
 
 impl Invocation<'_, '_> {
-    /// Returns the content of the exported file and its path, if it has one.
-    pub(super) fn exported(&self, what: ExportWhat) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
+    /// Returns the exported content with its paths, if it has any.
+    pub(super) fn exported(&self, what: ExportWhat) -> Result<Exported, Error> {
         match what {
-            ExportWhat::Robot(args) => Ok((self.exported_robot(&args)?.into_bytes(), args.out)),
+            ExportWhat::Robot(args) => Ok(Exported::of(self.exported_robot(&args)?, args.out)),
             ExportWhat::Controller(ExportControllerArgs { directory, population, format, out }) => {
                 let (directory, plan) = self.existing(&directory)?;
-                Ok((files::controller(&plan, &directory, population.as_deref(), format)?, out))
+                files::controller(&plan, &directory, population.as_deref(), format, out)
             }
             ExportWhat::Genotype(ExportGenotypeArgs { directory, population, out }) => {
                 let (directory, plan) = self.existing(&directory)?;
-                Ok((files::genotype(&plan, &directory, population.as_deref())?.into_bytes(), out))
+                Ok(Exported::of(files::genotype(&plan, &directory, population.as_deref())?, out))
             }
             ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
                 let (_, plan) = self.existing(&directory)?;
-                Ok((files::starts(&plan, trials as usize, seed)?.into_bytes(), out))
+                Ok(Exported::of(files::starts(&plan, trials as usize, seed)?, out))
             }
         }
     }

@@ -1,5 +1,7 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
+use std::path::PathBuf;
+
 use farsa_evo::ObservationStatistics;
 use farsa_models::mjcf::{self, MjcfOptions};
 use farsa_models::urdf;
@@ -39,6 +41,26 @@ pub(crate) enum ControllerFormat {
     Rust,
     /// Network as tables for Python.
     Safetensors,
+    /// Network as a header and a source in C.
+    C,
+    /// Network in integers as a header and a source in C.
+    CIntegers,
+}
+
+/// Content for standard output, or new files.
+pub(crate) enum Exported {
+    Text(Vec<u8>),
+    Files(Vec<(PathBuf, Vec<u8>)>),
+}
+
+impl Exported {
+    /// Content for a file, or for standard output without its path.
+    pub(crate) fn of(content: impl Into<Vec<u8>>, out: Option<PathBuf>) -> Self {
+        match out {
+            None => Self::Text(content.into()),
+            Some(path) => Self::Files(vec![(path, content.into())]),
+        }
+    }
 }
 
 /// Returns the robot of an experiment under a condition and its settings.
@@ -143,7 +165,7 @@ struct Whose<'a> {
     individual: u32,
     /// Population, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
-    population: Option<&'a str>,
+    population: Option<String>,
     #[serde(flatten)]
     controller: ControllerExport,
 }
@@ -151,7 +173,7 @@ struct Whose<'a> {
 impl Whose<'_> {
     fn text(&self) -> String {
         let Self { experiment, condition, seed, generation, individual, population, .. } = self;
-        let population = population.map(|name| format!(" ({name})")).unwrap_or_default();
+        let population = population.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
         let variant = if condition.is_empty() { String::new() } else { format!(", {condition}") };
         format!(
             "The champion of `{experiment}`{population}{variant}, seed {seed}: generation {generation}, individual \
@@ -202,17 +224,12 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
     })
 }
 
-/// Returns the content of a file with the champion's controller.
+/// Reads the controller of the champion.
 ///
 /// # Errors
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Setting`] for the
 /// population, [`Error::File`], [`Error::Usage`].
-pub(crate) fn controller(
-    plan: &Plan<'_>,
-    directory: &Directory,
-    population: Option<&str>,
-    format: ControllerFormat,
-) -> Result<Vec<u8>, Error> {
+fn whose<'a>(plan: &'a Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<Whose<'a>, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
     let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
@@ -221,20 +238,63 @@ pub(crate) fn controller(
     let names = evaluator.info().populations;
     let exports = evaluator.exports();
     let controller = exports.and_then(|exports| exports.controller_of(champion.population, &parameters));
-    let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
-    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    let controller = controller.ok_or_else(|| {
+        Error::Usage(format!(
+            "{name}: its controllers cannot be exported, because they are no networks of this program: `farsa export \
+             genotype` writes the champion's parameters"
+        ))
+    })?;
     let Champion { generation, individual, .. } = champion;
-    let population = names.get(champion.population).map(String::as_str).filter(|_| names.len() > 1);
-    let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, population, controller };
-    match format {
-        ControllerFormat::Json => pretty(&whose).map(String::into_bytes),
-        ControllerFormat::Bytes => controller_formats::bytes(&whose.controller),
-        ControllerFormat::Rust => controller_formats::rust(&whose.controller, &whose.text()).map(String::into_bytes),
+    let population = names.get(champion.population).filter(|_| names.len() > 1).cloned();
+    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    Ok(Whose { format: 1, experiment: name, condition, seed, generation, individual, population, controller })
+}
+
+/// Returns the files of the champion's controller: the content for standard output, or named files. `out` is the path
+/// that the user requests.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported or for an invalid name, [`Error::Usage`] or
+/// [`Error::Setting`] for the population, [`Error::File`], [`Error::Usage`].
+pub(crate) fn controller(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    population: Option<&str>,
+    format: ControllerFormat,
+    out: Option<PathBuf>,
+) -> Result<Exported, Error> {
+    let whose = whose(plan, directory, population)?;
+    let content = match format {
+        ControllerFormat::Json => pretty(&whose)?.into_bytes(),
+        ControllerFormat::Bytes => controller_formats::bytes(&whose.controller)?,
+        ControllerFormat::Rust => controller_formats::rust(&whose.controller, &whose.text())?.into_bytes(),
         ControllerFormat::Safetensors => {
             let about = serde_json::to_value(&whose).map_err(|error| Error::Other(error.to_string()))?;
-            controller_formats::safetensors(&whose.controller, about)
+            controller_formats::safetensors(&whose.controller, about)?
         }
+        ControllerFormat::C | ControllerFormat::CIntegers => return c_files(&whose, format, out),
+    };
+    Ok(Exported::of(content, out))
+}
+
+/// Returns the header and the source, named after the requested path or `controller`.
+fn c_files(whose: &Whose<'_>, format: ControllerFormat, out: Option<PathBuf>) -> Result<Exported, Error> {
+    let out = out.unwrap_or_else(|| PathBuf::from("controller.c"));
+    if out.extension().is_some_and(|extension| extension != "c" && extension != "h") {
+        return Err(Error::Usage(format!(
+            "--out {}: the format c writes a header and a source, for example {}",
+            out.display(),
+            out.with_extension("c").display()
+        )));
     }
+    let name = out.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let (controller, about) = (&whose.controller, whose.text());
+    let files = match format {
+        ControllerFormat::CIntegers => controller.c_integers(&name, &about)?,
+        _ => controller.c(&name, &about)?,
+    };
+    let [header, source] = [("h", files.header), ("c", files.source)];
+    Ok(Exported::Files([header, source].map(|(end, text)| (out.with_extension(end), text.into_bytes())).into()))
 }
 
 /// Returns the starts of the trials of `farsa test`.

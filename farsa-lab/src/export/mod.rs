@@ -1,5 +1,7 @@
 //! Controllers, starts, genotypes and robots as files for other programs.
 
+/// A controller in C.
+pub(crate) mod c;
 /// A controller in the formats of boards and of Python.
 mod controller_formats;
 /// `farsa export`.

@@ -38,7 +38,7 @@ pub(crate) struct ExportControllerArgs {
     /// The format of the file
     #[arg(long, value_enum)]
     pub(crate) format: ControllerFormat,
-    /// A new file [default: standard output]
+    /// A new file [default: standard output, for C controller.c]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 }
@@ -117,7 +117,7 @@ impl ValueEnum for ModelFormat {
 
 impl ValueEnum for ControllerFormat {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Json, Self::Bytes, Self::Rust, Self::Safetensors]
+        &[Self::Json, Self::Bytes, Self::Rust, Self::Safetensors, Self::C, Self::CIntegers]
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
@@ -126,6 +126,8 @@ impl ValueEnum for ControllerFormat {
             Self::Bytes => ("bytes", "The network for the flash memory of a board"),
             Self::Rust => ("rust", "The network as constants of a Rust program"),
             Self::Safetensors => ("safetensors", "The network as tables for Python"),
+            Self::C => ("c", "The network as a header and a source file in C99"),
+            Self::CIntegers => ("c-integers", "A leaky network in integers in C99, for processors without floats"),
         };
         Some(PossibleValue::new(name).help(help))
     }

@@ -1,0 +1,73 @@
+//! Descriptions of inputs and outputs for comments.
+
+use crate::experiment::controller_export::{MotorDrive, MotorExport, SensorExport, SensorReading};
+
+/// Returns the lines that describe the inputs.
+pub(super) fn inputs_text(sensors: &[SensorExport]) -> String {
+    lines(sensors.iter().map(|sensor| (sensor.name.as_str(), reading(&sensor.reads))))
+}
+
+/// Returns the lines that describe the outputs.
+pub(super) fn outputs_text(motors: &[MotorExport]) -> String {
+    lines(motors.iter().map(|motor| (motor.name.as_str(), drive(&motor.drives))))
+}
+
+fn lines<'a>(channels: impl Iterator<Item = (&'a str, String)>) -> String {
+    let line = |(index, (name, meaning)): (usize, (&str, String))| {
+        format!(" *   {index} {}\n", {
+            if meaning.is_empty() { comment(name) } else { comment(&format!("{name}: {meaning}")) }
+        })
+    };
+    channels.enumerate().map(line).collect()
+}
+
+/// Returns a text that cannot end a comment.
+pub(super) fn comment(text: &str) -> String {
+    let text: String =
+        text.chars().map(|letter| if letter.is_control() || letter == '\\' { ' ' } else { letter }).collect();
+    text.replace("*/", "* /").replace("/*", "/ *")
+}
+
+fn reading(reading: &SensorReading) -> String {
+    match reading {
+        SensorReading::JointPosition { joint, from, to } => {
+            format!("position of joint {joint} [rad], 0 at {from}, 1 at {to}")
+        }
+        SensorReading::Touch { pairs, saturation } => {
+            let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+            format!("number of touching pairs / {saturation}, at most 1: {}", pairs.join(", "))
+        }
+        SensorReading::Way { target, from, axes, component, scale } => {
+            let axis = ["x", "y", "z"].get(*component).unwrap_or(&"?");
+            let axes = format!("{axes:?}").to_lowercase();
+            let (to, start) = (&target.body, &from.body);
+            format!(
+                "{axis} of the way from {start} {:?} to {to} {:?} [m] in axes of the {axes}, times {scale}",
+                from.at, target.at
+            )
+        }
+        SensorReading::Quantity { quantity, unit, zero, one, linear } => {
+            let between = if *linear { "" } else { ", a curve between" };
+            format!("{quantity} [{unit}], 0 at {zero}, 1 at {one}{between}")
+        }
+        SensorReading::Label { phase, amplitude } => format!("{amplitude} in the phase {phase}, else 0"),
+        SensorReading::Channel { .. } => String::new(),
+    }
+}
+
+fn drive(drive: &MotorDrive) -> String {
+    match drive {
+        MotorDrive::Muscle { actuator, muscle } => {
+            let muscle = if *muscle == 0 { "towards the lower limit" } else { "towards the upper limit" };
+            format!("muscle of {actuator} that pulls {muscle}")
+        }
+        MotorDrive::Quantity { quantity, unit, zero, one } => format!("{quantity} [{unit}], {zero} at 0, {one} at 1"),
+        MotorDrive::Servos { servos } => {
+            let servo = |servo: &crate::experiment::controller_export::ServoExport| {
+                format!("{} {} at 0, {} at 1", servo.actuator, servo.from, servo.to)
+            };
+            format!("position of servos [rad]: {}", servos.iter().map(servo).collect::<Vec<_>>().join("; "))
+        }
+        MotorDrive::Channel { .. } => String::new(),
+    }
+}
