@@ -384,3 +384,32 @@ fn the_guides_blocks_are_a_network() {
         assert!(names.iter().any(|known| known == name) && guide.contains(&format!("`{name}`")), "{name}");
     }
 }
+
+/// Eight inputs and two outputs. Numbers begin with 1 for each kind, and weights and time constants have their ranges.
+#[test]
+fn parameters_are_named_by_kind_and_number() {
+    for (network, wanted) in [
+        (
+            "kind = \"ctrnn\"\nneurons = 3\ntime_constants = [0.25, 1.5]\n",
+            &[("bias", 3), ("time constant", 3), ("weight", 9), ("weight of an input", 24)][..],
+        ),
+        ("kind = \"elman\"\nhidden = 2\n", &[("bias", 4), ("weight", 16 + 4 + 4)]),
+        (
+            "kind = \"evonet\"\nhidden = 2\nhidden_neurons = \"leaky\"\n",
+            &[("bias", 4), ("leak", 2), ("weight", 16 + 4)],
+        ),
+    ] {
+        let made = evaluator(&format!("[network]\nweights = [-3.0, 3.5]\n{network}"));
+        let mut found: BTreeMap<String, usize> = BTreeMap::new();
+        for parameter in made.info().parameters {
+            let (kind, number) = parameter.name.rsplit_once(' ').expect("a number");
+            let count = found.entry(kind.to_owned()).or_default();
+            *count += 1;
+            assert_eq!(number, count.to_string(), "{network}: {kind}");
+            let ends = if kind == "time constant" { [0.25, 1.5] } else { [-3.0, 3.5] };
+            assert_eq!(parameter.ends, ends, "{network}: {}", parameter.name);
+        }
+        let wanted: BTreeMap<String, usize> = wanted.iter().map(|(kind, count)| ((*kind).to_owned(), *count)).collect();
+        assert_eq!(found, wanted, "{network}");
+    }
+}
