@@ -232,7 +232,7 @@ fn a_rank_that_is_told_to_stop_stops_all() {
         signal("-TERM", ranks[told]);
         let output = child.wait_with_output().expect("its end");
         assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-        assert_eq!(said(&output).matches("error: interrupted; go on with ").count(), 1, "{}", said(&output));
+        assert_eq!(said(&output).matches("interrupted; go on with ").count(), 1, "{}", said(&output));
     }
 }
 

@@ -78,7 +78,7 @@ fn interrupted_and_resumed() {
     stopped.signal("INT");
     let said = stopped.end();
     assert_eq!(said.code, Some(130), "{said:?}");
-    assert!(said.err.contains("go on with `own-experiment run --resume stopped`"), "{said:?}");
+    assert!(said.err.contains("\ninterrupted; go on with `own-experiment run --resume stopped`"), "{said:?}");
     let kept = generations(&run);
     assert!((20..300).contains(&kept), "{kept}");
     // Nothing that was finished is evaluated again.

@@ -145,7 +145,9 @@ impl<'e> Invocation<'e, '_> {
                         single => std::slice::from_ref(single),
                     };
                     for error in errors {
-                        let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
+                        // An interrupted run is saved.
+                        let mark = if matches!(error, Error::Interrupted { .. }) { "" } else { "error: " };
+                        let _ = writeln!(io::stderr(), "{mark}{}", escaped(&error.to_string()));
                     }
                 }
                 let again = error.exit_code() == INTERRUPTED && under_scheduler();
