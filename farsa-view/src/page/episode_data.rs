@@ -9,6 +9,7 @@ use farsa_num::crc32;
 use serde_json::{Value, json};
 
 use crate::page::blocks::{Blocks, COUNTS, Space};
+use crate::picture::moment::{Look, looks};
 use crate::picture::svg_data::hex;
 use crate::recording::memory::Recording;
 use crate::recording::schema::Channel;
@@ -139,15 +140,12 @@ impl EpisodeData {
             shape["rotation"] = json!(placement.rotation.map(short));
             shape
         };
+        let looks: Vec<Look> = schema.robot.as_ref().map(looks).unwrap_or_default();
         let drawn = |name: &str, &Visual { body, shape: form, placement, color }: &Visual| {
-            let role = match body {
-                None => "ground",
-                Some(body) if schema.is_thing(body) => "thing",
-                Some(_) => "robot",
-            };
-            let mut value = shape(name, body, form.into(), &placement, role);
-            if let Some(color) = color {
-                value["color"] = hex(as_screens_take_it(color)).into();
+            let look = body.and_then(|body| looks.get(body.index()).copied()).unwrap_or(Look::GROUND);
+            let mut value = shape(name, body, form.into(), &placement, look.role.name());
+            if let Some(color) = color.map(as_screens_take_it).or(look.color) {
+                value["color"] = hex(color).into();
             }
             value
         };
@@ -253,7 +251,11 @@ impl EpisodeData {
         let values: Vec<Value> = (schema.node_parameters.iter())
             .map(|values| json!({"name": values.name, "nodes": values.nodes, "first": values.first}))
             .collect();
-        Some(json!({"nodes": nodes, "links": links, "values": values}))
+        let mut network = json!({"nodes": nodes, "links": links, "values": values});
+        if !schema.direct_links.is_empty() {
+            network["direct"] = json!(schema.direct_links);
+        }
+        Some(network)
     }
 }
 
@@ -289,6 +291,9 @@ fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
     });
     if !channel.label.is_empty() {
         description["label"] = channel.label.as_str().into();
+    }
+    if !channel.about.is_empty() {
+        description["about"] = channel.about.as_str().into();
     }
     if let Some(range) = channel.range {
         description["range"] = json!(range);

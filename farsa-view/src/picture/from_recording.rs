@@ -5,6 +5,7 @@ use farsa_body::ports::BodyId;
 
 use crate::picture::moment::{Beam, Picture, Push};
 use crate::recording::memory::Recording;
+use crate::recording::schema::Channel;
 use crate::recording::view::View;
 use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
 use crate::shape::geometry::Geometry;
@@ -62,6 +63,17 @@ impl Recording {
         };
         picture.points = schema.points.iter().enumerate().filter_map(point).collect();
         Some(picture)
+    }
+}
+
+impl Recording {
+    /// Returns the words of a tick, of all scalars that have words, such as the phase or an instruction.
+    pub fn words(&self, tick: usize) -> Vec<String> {
+        let values = if tick < self.times().len() { self.row(tick).collect() } else { Vec::new() };
+        let word = |(channel, value): (&Channel, &f64)| {
+            (*value >= 0.0).then(|| channel.words.get(*value as usize).cloned()).flatten()
+        };
+        self.schema().scalars.iter().zip(&values).filter_map(word).collect()
     }
 }
 
@@ -216,6 +228,19 @@ mod tests {
             assert!(html.contains(part), "{part}");
         }
         assert!(html.matches("\"shown\":").count() == 3 && !html.contains("\"never\""));
+    }
+
+    #[test]
+    fn words_of_a_tick_are_those_of_its_values() {
+        let phase = Channel::new("phase").words(&["reach", "lift"]);
+        let object = Channel::new("object").words(&["red", "green"]);
+        let schema = Schema { scalars: vec![phase, Channel::new("x"), object], ..Schema::default() };
+        let mut recording = Recording::new(schema);
+        for values in [[0.0, 1.0, 1.0], [1.0, 0.0, f64::NAN], [2.0, 0.0, -1.0]] {
+            recording.scalars(&values);
+            recording.tick(0.0);
+        }
+        assert_eq!([0, 1, 2, 3].map(|tick| recording.words(tick).join(" ")), ["reach green", "lift", "", ""]);
     }
 
     #[test]

@@ -76,6 +76,56 @@ fn junction(robot: &Robot) -> Option<usize> {
     (0..robot.segments.len()).max_by_key(|body| children(*body)).filter(|body| children(*body) > 1)
 }
 
+/// Appearance of a body of a robot in pictures and pages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Look {
+    pub(crate) role: Role,
+    /// Color of shapes without their own, `None` for that of the role.
+    pub(crate) color: Option<Color>,
+    /// True where the camera `close` looks.
+    focus: bool,
+}
+
+impl Look {
+    /// Appearance of the world.
+    pub(crate) const GROUND: Self = Self { role: Role::Ground, color: None, focus: false };
+}
+
+/// Returns the appearance of each body.
+pub(crate) fn looks(robot: &Robot) -> Vec<Look> {
+    let junction = junction(robot);
+    let parent = |body: usize| robot.segments[body].parent.map(BodyId::index);
+    let branches: Vec<usize> =
+        (0..robot.segments.len()).filter(|i| junction.is_some() && parent(*i) == junction).collect();
+    let leaf = |body: usize| (0..robot.segments.len()).all(|other| parent(other) != Some(body));
+    let moves_freely = |body: BodyId| {
+        let floating = robot.segments[body.index()].joint.kind == JointKind::Floating;
+        leaf(body.index()) && (floating || robot.sliders(body).is_some())
+    };
+    let drawn = robot.drawn_colliders().filter_map(|shape| shape.body);
+    let mut things: Vec<usize> = Vec::new();
+    for body in drawn.chain(robot.visuals.iter().filter_map(|shape| shape.body)) {
+        if moves_freely(body) && !things.contains(&body.index()) {
+            things.push(body.index());
+        }
+    }
+    let look = |body: usize| {
+        if let Some(index) = things.iter().position(|thing| *thing == body) {
+            // Blue colors belong to the robot.
+            let color = OKABE_ITO[[0, 2, 6, 3][index % 4]];
+            return Look { role: Role::Object, color: Some(color), focus: true };
+        }
+        let mut ancestors = std::iter::successors(Some(body), |body| parent(*body));
+        let branch = ancestors.find_map(|body| branches.iter().position(|branch| *branch == body));
+        let color = match branch {
+            Some(branch) => Some(BRANCHES[branch % BRANCHES.len()]),
+            None => (junction == Some(body)).then_some(PALM),
+        };
+        Look { role: Role::Robot, color, focus: color.is_some() }
+    };
+    (0..robot.segments.len()).map(look).collect()
+}
+
 impl Picture {
     /// Adds a robot or scene at the given poses.
     ///
@@ -85,40 +135,13 @@ impl Picture {
     /// If a shape has a color, it keeps this color. Other things get the next color of a list. Branches of a robot
     /// differ in color, and the camera `close` is fitted to them.
     pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
-        let junction = junction(robot);
-        let branches: Vec<usize> = (0..robot.segments.len())
-            .filter(|i| junction.is_some() && robot.segments[*i].parent.map(BodyId::index) == junction)
-            .collect();
-        let ancestors =
-            |body: usize| std::iter::successors(Some(body), |body| robot.segments[*body].parent.map(BodyId::index));
+        let looks = looks(robot);
         let drawn = robot.drawn_colliders().map(Visual::from).chain(robot.visuals.iter().copied());
-        let mut things = Vec::new();
         for Visual { body, shape, placement, color } in drawn {
-            let own =
-                |instance: Instance| Instance { color: color.map(as_screens_take_it).or(instance.color), ..instance };
-            let Some(body) = body else {
-                self.shapes.push(own(Instance::new(shape, placement, Role::Ground)));
-                continue;
-            };
-            let (i, at) = (body.index(), pose(body).compose(&placement));
-            let leaf = robot.segments.iter().all(|s| s.parent != Some(body));
-            if leaf && (robot.segments[i].joint.kind == JointKind::Floating || robot.sliders(body).is_some()) {
-                let index = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
-                    things.push(i);
-                    things.len() - 1
-                });
-                // Blue colors belong to the robot.
-                let blue = [0, 2, 6, 3][index % 4];
-                self.shapes.push(own(Instance::new(shape, at, Role::Object).with_color(OKABE_ITO[blue])));
-                continue;
-            }
-            let placed = Instance::new(shape, at, Role::Robot);
-            let branch = ancestors(i).find_map(|body| branches.iter().position(|branch| *branch == body));
-            self.shapes.push(own(match branch {
-                Some(branch) => placed.with_color(BRANCHES[branch % BRANCHES.len()]).with_focus(),
-                None if junction == Some(i) => placed.with_color(PALM).with_focus(),
-                None => placed,
-            }));
+            let look = body.map_or(Look::GROUND, |body| looks[body.index()]);
+            let at = body.map_or(placement, |body| pose(body).compose(&placement));
+            let color = color.map(as_screens_take_it).or(look.color);
+            self.shapes.push(Instance { color, focus: look.focus, ..Instance::new(shape, at, look.role) });
         }
     }
 

@@ -8,7 +8,7 @@ use crate::picture::lit_scene::{BACKGROUND, LitScene, Seen, Solid, encoded};
 use crate::picture::marks;
 use crate::picture::moment::Picture;
 use crate::picture::outline::{Point2, framed, hull};
-use crate::picture::svg_data::{digits, escaped, hex, path};
+use crate::picture::svg_data::{apart, digits, escaped, hex, path};
 use crate::shape::appearance::{Color, Role};
 use crate::shape::geometry::{Geometry, Sight};
 use crate::shape::vector::{Vector, add, dot, length, scale, sub};
@@ -329,9 +329,10 @@ impl Drawing<'_> {
             let [x, y] = place.map(|x| digits(x, 10.0));
             format!("<text x=\"{x}\" y=\"{y}\"{anchor}>{}</text>", escaped(words))
         };
+        let mut taken: Vec<(Point2, f64)> = Vec::new();
         for (name, point) in &picture.points {
             if let (Some([x, y]), false) = (self.view.project(*point), name.is_empty()) {
-                let place = [x + 11.0 * unit, y - 7.0 * unit];
+                let place = apart([x + 11.0 * unit, y - 7.0 * unit], letters, name, &mut taken);
                 self.line(&text(place, "", name));
             }
         }

@@ -66,6 +66,23 @@ pub(crate) fn escaped(text: &str) -> String {
     out
 }
 
+/// Returns the place of a name, moved up until it covers no other one, and adds it to those taken.
+pub(crate) fn apart(place: Point2, letters: f64, name: &str, taken: &mut Vec<(Point2, f64)>) -> Point2 {
+    // The mean letter is about half as wide as high.
+    let width = 0.6 * letters * name.chars().count() as f64;
+    let mut place = place;
+    let covers = |place: Point2, taken: &[(Point2, f64)]| {
+        taken.iter().any(|([x, y], other)| {
+            (place[1] - y).abs() < 1.1 * letters && place[0] < x + other && *x < place[0] + width
+        })
+    };
+    while covers(place, taken) {
+        place[1] -= 0.3 * letters;
+    }
+    taken.push((place, width));
+    place
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,6 +105,20 @@ mod tests {
         let steps = written.trim_start_matches("M0,0l").split(' ').map(|step| step.trim_end_matches(",0"));
         let sum: f64 = steps.map(|step| step.parse::<f64>().unwrap()).sum();
         assert!((sum - 33.3).abs() < 1e-9, "{sum}");
+    }
+
+    #[test]
+    fn names_of_one_place_are_written_above_each_other() {
+        let mut taken = Vec::new();
+        let names = ["the palm's target", "the palm", "grasp"];
+        let places = names.map(|name| apart([100.0, 50.0], 10.0, name, &mut taken));
+        assert_eq!(places[0], [100.0, 50.0]);
+        for (i, [x, y]) in places.into_iter().enumerate() {
+            assert!(places[..i].iter().all(|[_, other]| (other - y).abs() >= 11.0) && x == 100.0, "{places:?}");
+        }
+        // A name of 7 letters of 6 pixels ends at 142.
+        assert_eq!(apart([143.0, 50.0], 10.0, "elsewhere", &mut vec![([100.0, 50.0], 42.0)]), [143.0, 50.0]);
+        assert!(apart([141.0, 50.0], 10.0, "here", &mut vec![([100.0, 50.0], 42.0)])[1] < 39.1);
     }
 
     #[test]

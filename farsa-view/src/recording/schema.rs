@@ -14,6 +14,8 @@ pub struct Channel {
     pub name: String,
     /// Label for pages. If this is empty, pages show the name instead.
     pub label: String,
+    /// Explanation for pages, shown at the pointer. This may be empty.
+    pub about: String,
     /// Unit of the values. This is empty for numbers without a unit.
     pub unit: String,
     /// Group of the channel, such as `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator` or `force`. You
@@ -40,6 +42,11 @@ impl Channel {
     /// Sets the label, which pages show instead of the name.
     pub fn labelled(self, label: &str) -> Self {
         Self { label: label.into(), ..self }
+    }
+
+    /// Sets the explanation, which pages show at the pointer.
+    pub fn about(self, about: &str) -> Self {
+        Self { about: about.into(), ..self }
     }
 
     /// Sets the group of the channel.
@@ -151,6 +158,8 @@ pub struct Schema {
     pub images: Vec<ImageChannel>,
     /// Links between nodes. These are needed to draw the network.
     pub links: Vec<Links>,
+    /// Links without a weight in the parameters, as pairs of a source and a target, such as a direct input.
+    pub direct_links: Vec<[usize; 2]>,
     /// Further parameters of nodes.
     pub node_parameters: Vec<NodeParameters>,
     /// Initial camera of a page.
