@@ -116,11 +116,19 @@ fn a_moment_is_drawn_from_a_named_camera() {
     let bytes = fs::read(here.join("a.png")).expect("the picture");
     assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
     assert_eq!((&bytes[16..20], &bytes[20..24]), (&[0, 0, 0, 120][..], &[0, 0, 0, 80][..]));
-    assert!(ok(farsa(), &here, "draw r --trial best --out best.svg").contains(", trial "));
+    assert!(ok(farsa(), &here, "draw r --trial best --out best.svg").contains(", best trial "));
+    // The default is the best trial, which a page shows first.
     ok(farsa(), &here, "draw r --out a.svg");
     let svg = fs::read_to_string(here.join("a.svg")).expect("the picture");
     assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{}", &svg[..80]);
-    assert!(svg.contains("trial 0, 0.40 s"), "no caption");
+    assert_eq!(svg, fs::read_to_string(here.join("best.svg")).expect("the picture"));
+    let page = ok(farsa(), &here, "replay r --html page.html --json");
+    let page: serde_json::Value = serde_json::from_str(&page).expect("a summary");
+    let fitness = |trial: &serde_json::Value| trial["fitness"].as_f64().expect("a fitness");
+    let trials = page["trials"].as_array().expect("trials");
+    let best = trials.iter().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b))).expect("a trial");
+    let caption = format!("best trial {}, 0.40 s, ", best["trial"]);
+    assert!(svg.contains(&caption) && ["reach", "grasp", "lift"].iter().any(|phase| svg.contains(phase)), "{caption}");
     fs::write(here.join("notes.png"), "mine").expect("a file");
     for (arguments, complaint) in [
         ("draw r --camera frnt --out b.png", "the nearest is `front`"),

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
-use crate::evaluation::replay::{ReplaySummary, Replayable, Selection};
+use crate::evaluation::replay::{ReplaySummary, Replayable, Selection, TrialSelector};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::own_output::{refuse_other, write_outputs};
@@ -71,8 +71,6 @@ pub(crate) struct DrawRequest<'w> {
 
 /// Draws a moment of a trial, or several as an animation, and writes it to a file, which replaces only its earlier version.
 ///
-/// Without a trial number the first trial is drawn.
-///
 /// # Errors
 /// [`Error::Usage`] for what cannot be drawn, those of [`Replayable::find`], [`Error::Io`].
 pub(crate) fn draw(
@@ -111,8 +109,12 @@ pub(crate) fn draw(
     let mut pictures = pictures.filter(|pictures| !pictures.is_empty()).ok_or_else(nothing)?;
     let seconds = recording.times()[ticks[0]];
     let Replayable { generation, individual, .. } = replayable;
-    let mut caption =
-        format!("{}, generation {generation}, individual {individual}, trial {trial}, {seconds:.2} s", plan.name());
+    let chosen = if wish.which.trial == TrialSelector::Best { "best trial" } else { "trial" };
+    let words = if wish.frames.is_none() { in_words(&recording, ticks[0]) } else { String::new() };
+    let mut caption = format!(
+        "{}, generation {generation}, individual {individual}, {chosen} {trial}, {seconds:.2} s{words}",
+        plan.name(),
+    );
     let last = recording.times()[ticks[ticks.len() - 1]];
     let frames = pictures.len();
     let bytes = match (wish.frames, format) {
@@ -143,6 +145,12 @@ pub(crate) fn draw(
         file: path.display().to_string(),
         summary: format!("{caption}, camera {}: {width}x{height}", camera.name()),
     })
+}
+
+/// Returns the words of a tick, such as the phase or an instruction, after a comma.
+fn in_words(recording: &Recording, tick: usize) -> String {
+    let words = recording.words(tick);
+    if words.is_empty() { String::new() } else { format!(", {}", words.join(" ")) }
 }
 
 /// Returns at most `count` ticks from the first to the last, evenly spaced.
@@ -177,7 +185,8 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let Some(last) = recording.times().len().checked_sub(1) else { return Ok(None) };
     let Some(mut picture) = recording.picture(last) else { return Ok(None) };
     let time = recording.times()[last];
-    picture.caption = Some(format!("{}: champion, trial {trial}, {time:.2} s", plan.name()));
+    let words = in_words(&recording, last);
+    picture.caption = Some(format!("{}: champion, best trial {trial}, {time:.2} s{words}", plan.name()));
     let picture = picture.svg(Camera::for_view(recording.schema().view), REPORT_SIZE, prefix);
     Ok(Some(Portrait { picture, cut: recording.is_cut().then_some(time) }))
 }

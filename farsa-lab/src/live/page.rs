@@ -167,6 +167,10 @@ fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Resul
     if !directory.checkpoint().is_file() {
         return Ok((Vec::new(), Err("these genotypes were not made by evolution".into())));
     }
+    // One generation without variation, such as that of a vehicle wired by hand.
+    if plan.settings.find("live", "evolution.generations").is_ok_and(|setting| setting.allowed() == "1 to 1") {
+        return Ok((Vec::new(), Err("nothing evolves in this experiment".into())));
+    }
     let checkpoint = Checkpoint::read(plan, directory)?;
     let record = RunRecord::read(plan, directory, &checkpoint)?;
     let stride = record.lines.len().div_ceil(CURVE_POINTS).max(1);

@@ -376,7 +376,7 @@ pub(crate) struct DrawArgs {
     /// The individual, from 0 [default: the best of the generation]
     #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     individual: Option<u32>,
-    /// The trial, from 0, or `best`, the one of highest fitness [default: 0]
+    /// The trial, from 0, or `best`, the one of highest fitness [default: best, with --protocol 0]
     #[arg(long, value_name = "N", value_parser = which_trial)]
     trial: Option<TrialSelector>,
     /// The time in seconds [default: the end]
@@ -405,7 +405,7 @@ pub(crate) struct DrawArgs {
 
 impl DrawArgs {
     pub(crate) fn which(&self) -> Selection {
-        let trial = self.trial.unwrap_or(TrialSelector::Number(0));
+        let trial = self.trial.unwrap_or(TrialSelector::Best);
         Selection { generation: self.generation, individual: self.individual, trial }
     }
 
