@@ -76,7 +76,7 @@ impl<W, E: Episode<W>> Episode<W> for ComposedTask<E> {
 impl<E: Body> Task for ComposedTask<E> {
     fn info(&self) -> TaskInfo {
         let agents = self.0.agents();
-        let schema = agents.schema(self.0.bodies(), self.0.scalars());
+        let schema = self.explained(agents.schema(self.0.bodies(), self.0.scalars()));
         // A network with wires set by hand has inputs and links, but no neurons.
         let anatomy = Some(agents.anatomy(&schema));
         let info = TaskInfo::new(agents.spec.searched.parameters().to_vec(), schema);
@@ -150,6 +150,41 @@ impl<E: Body> Exports for ComposedTask<E> {
 }
 
 impl<E: Body> ComposedTask<E> {
+    /// Adds the quantity of each sensor and motor to a schema. It is also the label of a joint's channel, unless the
+    /// document names it.
+    fn explained(&self, mut schema: Schema) -> Schema {
+        let Agents { document, spec, .. } = self.0.agents();
+        let sensors = document.sensors.iter().filter(|sensor| sensor.enabled).map(|sensor| {
+            let of_joint = matches!(sensor.kind, SensorKind::JointPosition { .. } | SensorKind::JointSpeed { .. });
+            of_joint && sensor.channels.is_none()
+        });
+        let motors = document.motors.iter().filter(|motor| motor.enabled).map(|motor| {
+            use MotorKind::{JointTorque, JointVelocity, Muscles, Servo};
+            let of_joint =
+                matches!(motor.kind, JointVelocity { .. } | JointTorque { .. } | Servo { .. } | Muscles { .. });
+            of_joint && motor.channels.is_none()
+        });
+        let each = |labelled: bool, [first, end]: [usize; 2]| std::iter::repeat_n(labelled, end - first);
+        let of_sensors = sensors.zip(&spec.sensors).flat_map(|(labelled, (_, span))| each(labelled, *span));
+        let of_motors = motors.zip(&spec.motors).flat_map(|(labelled, (_, span))| each(labelled, *span));
+        let read = self.sensors(0).into_iter().map(|sensor| match sensor.reads {
+            SensorReading::Quantity { quantity, .. } => quantity,
+            _ => String::new(),
+        });
+        let driven = self.motors(0).into_iter().map(|motor| match motor.drives {
+            MotorDrive::Quantity { quantity, .. } => quantity,
+            _ => String::new(),
+        });
+        let channels = schema.sensors.iter_mut().chain(&mut schema.outputs);
+        for ((channel, quantity), labelled) in channels.zip(read.chain(driven)).zip(of_sensors.chain(of_motors)) {
+            if labelled {
+                channel.label.clone_from(&quantity);
+            }
+            channel.about = quantity;
+        }
+        schema
+    }
+
     fn sensors(&self, robot: usize) -> Vec<SensorExport> {
         let Agents { document, spec, .. } = self.0.agents();
         let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&spec.sensors);

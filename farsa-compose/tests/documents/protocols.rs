@@ -276,7 +276,9 @@ fn parts_are_changed_by_name() {
         let mut cut = export.network;
         let weight = links.first + (links.from[1] - 1) * (links.to[1] - links.to[0]);
         match &mut cut {
-            NetworkExport::Perceptron { parameters, .. } | NetworkExport::Leaky { parameters, .. } => {
+            NetworkExport::Perceptron { parameters, .. }
+            | NetworkExport::Leaky { parameters, .. }
+            | NetworkExport::Ctrnn { parameters, .. } => {
                 parameters[weight] = -0.25;
             }
             other => panic!("{other:?}"),

@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use crate::{Trial, all_close, close, refused, yes};
+use crate::{Trial, all_close, close, made, refused, yes};
 
 /// A trunk that flies with a limb on a hinge and a sled on a rail. The center of mass of the limb is off its axis.
 const GLIDER: &str = r#"<robot name="glider">
@@ -286,6 +286,25 @@ fn joints_accelerate_by_their_efforts() {
             all_close(&trial.sensor("joint-speed", number), &rates.map(|rate| rate * speed), 2e-5, &what("sensor"));
             all_close(&positions(&trial, number), &rates.map(|rate| rate * way), 2e-5, &what("position"));
         }
+    }
+}
+
+/// Pages show the joints of a model by their names, whatever the channels are called.
+#[test]
+fn channels_of_joints_are_labelled_by_the_names_of_the_model() {
+    for (motor, outputs, labels) in [
+        ("kind = \"joint-torque\"", &[0.5, 0.5][..], ["torque of hinge", "torque of rail"]),
+        ("kind = \"servo\", stiffness = 10.0", &[0.5, 0.5], ["position of hinge", "position of rail"]),
+        ("kind = \"joint-torque\", channels = [\"a\", \"b\"]", &[0.5, 0.5], ["", ""]),
+    ] {
+        let evaluator = made(&pair(motor, outputs, 2, "[[reward]]\nkind = \"steps\"\n")).unwrap();
+        let schema = evaluator.info().schema;
+        let label = |channel: &farsa_lab::advanced::Channel| channel.label.clone();
+        let sensors: Vec<String> = schema.sensors.iter().map(label).collect();
+        assert_eq!(sensors, ["speed of hinge", "speed of rail", "position of rail", "position of hinge"]);
+        assert_eq!(schema.outputs.iter().map(label).collect::<Vec<_>>(), labels, "{motor}");
+        assert!(schema.outputs.iter().all(|output| output.about.contains("hinge") || output.about.contains("rail")));
+        assert_eq!(schema.sensors[0].name, "joint-speed 1");
     }
 }
 

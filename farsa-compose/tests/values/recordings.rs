@@ -71,7 +71,7 @@ fn a_task_is_described_with_its_channels() {
     ] {
         let task = info(network);
         assert_eq!((&*task.description.network, task.schema.neurons.len()), (summary, neurons));
-        let links = ["perceptron", "leaky"].iter().any(|kind| network.contains(kind));
+        let links = ["perceptron", "leaky", "ctrnn"].iter().any(|kind| network.contains(kind));
         assert_eq!(!task.schema.links.is_empty(), links, "{network}");
     }
     let names: Vec<String> = info("kind = \"ctrnn\", neurons = 3, time_constants = [0.1, 1.0]")
