@@ -1,10 +1,11 @@
 //! The names of the channels recorded in `compositional-instructions`.
 
-use farsa_body::Recorder;
 use farsa_body::ports::{Contacts, Handles, PairId};
+use farsa_body::{Pose, Recorder};
 use farsa_lab::advanced::seconds;
 use farsa_nn::CtrnnParts;
 use farsa_nn::block::Span;
+use farsa_view::shape::{Geometry, OKABE_ITO, Role, SceneObject};
 use farsa_view::{Channel, Links, NodeParameters, Schema, View};
 
 use crate::compositional_instructions::agent::Agent;
@@ -54,11 +55,23 @@ pub(crate) fn schema(scene: &Scene) -> Schema {
         neurons: names.map(|name| in_group("neuron")(&name).range(0.0, 1.0)).collect(),
         scalars: scalars.collect(),
         links,
+        direct_links: (0..INPUTS).map(|input| [input, node(input)]).collect(),
         node_parameters: of_neurons.collect(),
+        objects: Color::ALL.map(|color| mark(scene, color)).into(),
         points: vec!["tip".into()],
         view: View::Top,
         ..schema
     }
+}
+
+/// A disc under the object of the instruction, which pictures without words show, too.
+fn mark(scene: &Scene, color: Color) -> SceneObject {
+    let radius = scene.config.objects.radius;
+    let disc = Geometry::Disc { radius: 2.0 * radius };
+    let mark = SceneObject::new("instruction", disc, Pose::at([0.0, 0.0, 1e-3 - radius]), Role::Area);
+    let index = color.index() as f64;
+    let shown = mark.on_body(scene.objects[color.index()]).with_color(OKABE_ITO[3]);
+    shown.shown_while("object", index - 0.4, index + 0.4)
 }
 
 /// Records a step that has been judged.

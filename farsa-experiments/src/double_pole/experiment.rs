@@ -138,11 +138,15 @@ impl Balancing {
             SceneObject::new(name, block(half), Pose::at([0.0; 3]), Role::Robot).on_body(body)
         };
         let pole = |number: usize| [thick, config.cart.poles[number].half_length];
+        let wide = block([2.0 * thick, config.cart.poles[1].half_length]);
         let objects = vec![
             SceneObject::new("track", track, Pose::at([0.0, 0.5, 0.0]), Role::Ground).with_color(PAPER),
             thing("cart", [width, height], CART),
             thing("long pole", pole(0), POLES[0]).with_color(OKABE_ITO[2]),
-            thing("short pole", pole(1), POLES[1]).with_color(OKABE_ITO[5]),
+            // Wider and in front of the long pole, so that both are visible where they cover each other.
+            SceneObject::new("short pole", wide, Pose::at([0.0, 0.0, 2.0 * thick]), Role::Robot)
+                .on_body(POLES[1])
+                .with_color(OKABE_ITO[5]),
         ];
         let names = ["position", "angle 1", "angle 2", "velocity", "angular velocity 1", "angular velocity 2"];
         let mut schema =

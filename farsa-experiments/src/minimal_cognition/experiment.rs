@@ -241,6 +241,7 @@ impl Agent {
                 in_group("fitness")("score so far").range(0.0, 1.0),
             ],
             links,
+            direct_links: (0..RAYS).map(|input| [input, node(input)]).collect(),
             node_parameters: of_neurons.collect(),
             view: View::Top,
             ..schema

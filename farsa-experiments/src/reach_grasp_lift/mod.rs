@@ -10,6 +10,8 @@ pub(crate) mod experiment;
 mod export;
 /// The reward of `reach-grasp-lift`: what a step earns, the caps over an individual's trials, and success.
 mod fitness;
+/// The parts of the arm that only pictures and pages show.
+mod look;
 /// The parameters of `reach-grasp-lift`.
 mod parameters;
 /// The three phases of `reach-grasp-lift` and what is observed of a step to distinguish them.

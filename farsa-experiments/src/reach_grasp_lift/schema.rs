@@ -9,15 +9,16 @@ use farsa_view::{Channel, Schema};
 
 use crate::reach_grasp_lift::episode::ReachEpisode;
 use crate::reach_grasp_lift::fitness::Rewards;
+use crate::reach_grasp_lift::look;
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
 
 /// The controller's episode in a trial.
 pub(crate) type NetworkEpisode = ReachEpisode<NormalizedController<OwnedNetwork>>;
 
-/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17
+/// Scalars of a tick: phase, 5 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints. Then 21 of muscles, 17
 /// forces, 27 + 6 speeds of joints and sphere.
-pub(crate) const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
+pub(crate) const SCALARS: usize = 1 + 5 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
 
 /// Fills the first places of a slice and returns the others.
 fn put<const N: usize>(places: &mut [f64], values: [f64; N]) -> &mut [f64] {
@@ -42,6 +43,25 @@ const GROUP_LABELS: [(&str, &str); 5] = [
     ("J18 J19", "middle outer"),
     ("J12 J16 J20 J24", "finger abduction"),
     ("J21-J23 J25-J27", "ring and little"),
+];
+
+/// Names of the rewards and of what is judged, labels and explanations in pages.
+const JUDGED: [(&str, &str, &str); 11] = [
+    ("reward.reach", "", "reward of this step in the reach phase"),
+    ("reward.grasp", "", "reward of this step in the grasp phase"),
+    ("reward.lift", "", "reward of this step in the lift phase"),
+    ("reward.bonus", "", "bonus for the phase reached, 300 for grasp and 600 for lift, at the end of the trial"),
+    ("reward so far", "", "sum of all rewards of the trial, with its bonus at the end"),
+    ("ds [cm]", "palm to target", "distance ds from the palm's center to the point 5 cm above the sphere's center"),
+    (
+        "graspQ [cm]",
+        "grasp to sphere",
+        "distance graspQ from the centroid of fingertips and palm to the sphere's center",
+    ),
+    ("fOpen", "open hand", "mean openness fOpen of the 15 flexion joints, 0 closed, 1 extended"),
+    ("pRot", "palm down", "cosine pRot of the angle between the palm's direction and down, 1 down, -1 up"),
+    ("height [cm]", "", "height of the sphere's center above the table"),
+    ("contacts", "", "number of phalanges that touch the sphere"),
 ];
 
 /// Labels in pages of the channels of joints, muscles and groups of servos.
@@ -81,8 +101,6 @@ impl EpisodeRecorder {
             Channel::new(&format!("force on sphere.{other} [N]")).group("force")
         });
         let phases = Phase::ALL.map(Phase::name);
-        let fitness = ["reward.reach", "reward.grasp", "reward.lift", "reward so far"];
-        let judged = ["ds [cm]", "graspQ [cm]", "fOpen", "pRot", "height [cm]", "contacts"];
         let placed = ["palm.x [m]", "palm.y [m]", "palm.z [m]", "sphere.x [m]", "sphere.y [m]", "sphere.z [m]"];
         let turned = ["sphere.qx", "sphere.qy", "sphere.qz", "sphere.qw"];
         let moved = ["sphere.vx [m/s]", "sphere.vy [m/s]", "sphere.vz [m/s]"].into_iter();
@@ -96,7 +114,7 @@ impl EpisodeRecorder {
             [format!("J{n} agonist length"), format!("J{n} antagonist length"), format!("J{n} torque [N m]")]
         });
         let scalars = core::iter::once(Channel::new("phase").group("phase").words(&phases))
-            .chain(fitness.into_iter().chain(judged).map(in_group("fitness")))
+            .chain(JUDGED.map(|(name, label, about)| in_group("fitness")(name).labelled(label).about(about)))
             .chain(placed.into_iter().chain(turned).map(in_group("place")))
             .chain(joints)
             .chain(muscles.map(|name| in_group("actuator")(&name)))
@@ -111,6 +129,7 @@ impl EpisodeRecorder {
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
         let schema = Schema {
             scalars,
+            objects: look::parts(&scene.arm),
             points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
             ..schema
         };
@@ -143,11 +162,10 @@ impl EpisodeRecorder {
             }
         }
 
-        let Rewards { reach, grasp, lift, .. } = trial.rewards;
         let mut scalars = [0.0; SCALARS];
         let rest = scalars.as_mut_slice();
         let rest = put(rest, [trial.phase.index() as f64]);
-        let rest = put(rest, [earned.reach, earned.grasp, earned.lift, reach + grasp + lift]);
+        let rest = put(rest, [earned.reach, earned.grasp, earned.lift, trial.rewards.bonus, trial.rewards.total()]);
         let rest = put(rest, [seen.reach_distance, seen.grasp_distance, seen.openness, seen.palm_down, seen.height]);
         let rest = put(rest, [f64::from(seen.contacts)]);
         let rest = put(rest, palm.position.map(f64::from));
@@ -191,7 +209,9 @@ mod tests {
         for channel in all {
             let numbered =
                 channel.name.strip_prefix('J').is_some_and(|rest| rest.starts_with(|c: char| c.is_numeric()));
-            assert_eq!(numbered, !channel.label.is_empty(), "{channel:?}");
+            let judged = ["ds", "graspQ", "fOpen", "pRot"].contains(&channel.name.as_str());
+            assert_eq!(numbered || judged, !channel.label.is_empty(), "{channel:?}");
+            assert_eq!(channel.group == "fitness", !channel.about.is_empty(), "{channel:?}");
             assert!(!channel.label.contains(char::is_numeric), "{channel:?}");
             let text = if numbered { &channel.label } else { &channel.name };
             assert!(shown.insert((&channel.group, text)), "{channel:?} is in its group twice");
