@@ -148,6 +148,7 @@ mod tests {
             assert_eq!(sum, plain.terms[term]);
         }
         assert_eq!(value(ticks - 1, "reward so far"), plain.terms.iter().sum::<f64>());
+        assert_eq!(value(ticks - 1, "reward.bonus"), plain.terms[3]);
         // Bodies and scalars agree.
         for tick in [0, ticks / 2, ticks - 1] {
             for (body, name) in [(ArmAndHand::PALM, "palm.x [m]"), (Tabletop::SPHERE, "sphere.x [m]")] {

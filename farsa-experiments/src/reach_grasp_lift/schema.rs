@@ -8,7 +8,6 @@ use farsa_lab::advanced::{NormalizedController, OwnedNetwork};
 use farsa_view::{Channel, Schema};
 
 use crate::reach_grasp_lift::episode::ReachEpisode;
-use crate::reach_grasp_lift::fitness::Rewards;
 use crate::reach_grasp_lift::look;
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
