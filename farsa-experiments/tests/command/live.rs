@@ -292,6 +292,11 @@ fn evolution_that_cannot_continue_gives_the_reason() {
     ok(farsa(), &here, "live catcher --html live.html --quiet");
     let live = &data(&here.join("live.html"))["live"];
     assert_eq!(live["about"]["standstill"], "these genotypes were not made by evolution");
+    ok(farsa(), &here, "run braitenberg --out plain --quiet");
+    ok(farsa(), &here, "live plain --html plain.html --quiet");
+    let about = &data(&here.join("plain.html"))["live"]["about"];
+    let nothing = (&json!([]), &json!("nothing evolves in this experiment"));
+    assert_eq!((&about["history"], &about["standstill"]), nothing);
     let mut session = opened(live);
     let mut refused = |request: Value| asked(&mut session, &request)["error"].as_str().expect("an error").to_owned();
     assert!(refused(json!({ "do": "share", "part": 0, "parts": 1 })).contains("evolution cannot continue here"));
