@@ -297,7 +297,7 @@ fn channels_of_joints_are_labelled_by_the_names_of_the_model() {
         ("kind = \"servo\", stiffness = 10.0", &[0.5, 0.5], ["position of hinge", "position of rail"]),
         ("kind = \"joint-torque\", channels = [\"a\", \"b\"]", &[0.5, 0.5], ["", ""]),
     ] {
-        let evaluator = made(&pair(motor, outputs, 2, "[[reward]]\nkind = \"steps\"\n")).unwrap();
+        let evaluator = made(&pair(motor, outputs, 2, "[[reward]]\nkind = \"steps\"\n")).expect("an experiment");
         let schema = evaluator.info().schema;
         let label = |channel: &farsa_lab::advanced::Channel| channel.label.clone();
         let sensors: Vec<String> = schema.sensors.iter().map(label).collect();
