@@ -64,7 +64,7 @@ fn readmes_list_the_crates_of_their_programs() {
         let (_, rest) = text.split_once("[dependencies]\n").unwrap_or_else(|| panic!("{name} has no [dependencies]"));
         let listed = crates(rest.split("```").next().unwrap(), ["farsa-", "# farsa-"]);
         assert!(listed.contains(name.trim_start_matches("farsa-")), "{name} does not list itself: {listed:?}");
-        let programs: String = text.split("```").skip(1).step_by(2).filter(|block| !block.starts_with("t")).collect();
+        let programs: String = text.split("```").skip(1).step_by(2).filter(|block| !block.starts_with('t')).collect();
         let used = crates(&programs, ["use farsa_", "# use farsa_"]);
         assert!(!used.is_empty() && used.is_subset(&listed), "{name} uses {used:?} and lists {listed:?}");
     }
