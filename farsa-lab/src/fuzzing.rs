@@ -273,10 +273,10 @@ impl<'l> RunReader<'l> {
     /// When a resumed log differs from that of the run.
     pub fn logs(&self, path: &Path) -> Result<bool, Error> {
         let directory = Directory::at(path.into());
-        let populations = self.evaluator.info().populations.len();
-        let (_, kept) = Log::resume(&directory.log(), &[], populations)?;
+        let populations = self.evaluator.info().populations;
+        let (_, kept) = Log::resume(&directory.log(), &[], &populations)?;
         let written = fs::read(directory.log()).map_err(Error::io("read", &directory.log()))?;
-        assert!(written == header(populations).as_bytes(), "a log that was taken up says something else");
+        assert!(written == header(&populations).as_bytes(), "a log that was taken up says something else");
         let lineage = Mark::of(HEADER.as_bytes());
         Lineage::resume(&directory.lineage(), lineage, |_| Ok(()))?;
         Failures::resume(&directory.failures(), lineage)?;

@@ -26,7 +26,7 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let mut strategy = plan.strategy()?;
     let refused = |error: EvoError| Error::Usage(format!("{}: {error}", plan.definition().name()));
     strategy.record().map_err(refused)?;
-    let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
+    let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, plan.evaluator()?.info().populations);
     let state = strategy.snapshot().map(|strategy| strategy.save());
     let bytes = state.as_ref().map_or(0, Vec::len);
     let limit = plan.limits.state_bytes;
@@ -43,7 +43,7 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     Directory::create(path, |directory| {
         replace(&directory.config(), text.as_bytes())?;
         Manifest::new(&identity).write(&directory.manifest())?;
-        replace(&directory.log(), log::header(populations).as_bytes())?;
+        replace(&directory.log(), log::header(&populations).as_bytes())?;
         let lineage = if strategy.genealogy().is_some() {
             replace(&directory.lineage(), HEADER.as_bytes())?;
             Mark::of(HEADER.as_bytes())

@@ -54,7 +54,8 @@ pub(crate) fn recover(
     let record = run_record.writer(plan, directory)?;
     let lineage = lineage(plan, directory, checkpoint, &run_record.record, search)?;
     restore_champions(plan, directory, checkpoint, run_record)?;
-    let (log, changed_log) = Log::resume(&directory.log(), &run_record.lines, run_record.record.populations())?;
+    let populations = plan.evaluator()?.info().populations;
+    let (log, changed_log) = Log::resume(&directory.log(), &run_record.lines, &populations)?;
     let failures = Failures::resume(&directory.failures(), checkpoint.failures)?;
     let diagnostics = DiagnosticsTable::resume(plan.definition().diagnostics(), directory, &run_record.diagnostics)?;
     Ok(RunFiles { record, log, changed_log, lineage, failures, diagnostics })

@@ -1,6 +1,6 @@
 //! `fitness.csv`: one line for each finished generation.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,9 +17,9 @@ const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
 const MAX_BYTES: u64 = 1 << 32;
 
 /// Formats the first line, with three more columns for each of several populations.
-pub(crate) fn header(populations: usize) -> String {
+pub(crate) fn header(populations: &[impl fmt::Display]) -> String {
     let mut text = HEADER.trim_end().to_owned();
-    for population in (0..populations).filter(|_| populations > 1) {
+    for population in populations.iter().filter(|_| populations.len() > 1) {
         // Writing into a string cannot fail.
         let _ = write!(text, ",best {population},mean {population},worst {population}");
     }
@@ -72,11 +72,17 @@ impl Log {
     ///
     /// A file with other content is kept under another name, which is returned. Lines of later generations and other line
     /// endings, as spreadsheets write them, are not other content.
-    pub(crate) fn resume(path: &Path, lines: &[Line], populations: usize) -> Result<(Self, Option<PathBuf>), Error> {
-        let mut text = header(populations);
-        lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
-        let kept =
-            if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text)? { Some(keep(path)?) } else { None };
+    pub(crate) fn resume(
+        path: &Path,
+        lines: &[Line],
+        populations: &[String],
+    ) -> Result<(Self, Option<PathBuf>), Error> {
+        let body: String = lines.iter().enumerate().map(|(generation, line)| line.text(generation)).collect();
+        let text = header(populations) + &body;
+        // Early versions numbered the populations.
+        let numbered = header(&(0..populations.len()).collect::<Vec<_>>()) + &body;
+        let is_same = |path: &Path| Ok::<bool, Error>(says_the_same(path, &text)? || says_the_same(path, &numbered)?);
+        let kept = if fs::symlink_metadata(path).is_ok() && !is_same(path)? { Some(keep(path)?) } else { None };
         Ok((Self { file: AppendLog::new(path, text.as_bytes())?, generations: lines.len() }, kept))
     }
 
@@ -143,9 +149,20 @@ mod tests {
         let each = vec![[1.0; 3], [3.0, 3.0, f64::NEG_INFINITY]];
         let both = Line { row: [3.0, 2.0, 1.0], each, evaluations: 20, failed: 0 };
         assert_eq!(both.text(0), "0,3.0,2.0,1.0,20,0,1.0,1.0,1.0,3.0,3.0,-inf\n");
-        let head = header(2);
-        assert_eq!(head.trim_end(), format!("{},best 0,mean 0,worst 0,best 1,mean 1,worst 1", HEADER.trim_end()));
-        assert_eq!((header(0), header(1)), (HEADER.into(), HEADER.into()));
+        let head = header(&["hunter", "prey"]);
+        let more = "best hunter,mean hunter,worst hunter,best prey,mean prey,worst prey";
+        assert_eq!(head.trim_end(), format!("{},{more}", HEADER.trim_end()));
+        assert_eq!((header(&["all"; 0]), header(&["all"])), (HEADER.into(), HEADER.into()));
+    }
+
+    #[test]
+    fn a_log_with_numbers_of_populations_gets_their_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fitness.csv");
+        fs::write(&path, header(&[0, 1])).unwrap();
+        let names = ["hunter".to_owned(), "prey".to_owned()];
+        let (_, kept) = Log::resume(&path, &[], &names).unwrap();
+        assert_eq!((kept, fs::read_to_string(&path).unwrap()), (None, header(&names)));
     }
 
     #[test]
@@ -159,7 +176,7 @@ mod tests {
             if let Some(content) = content {
                 fs::write(&path, content).unwrap();
             }
-            let (mut log, kept) = Log::resume(&path, &lines, 1).unwrap();
+            let (mut log, kept) = Log::resume(&path, &lines, &["0".into()]).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
             log.append(&line(3.5)).unwrap();
             log.sync().unwrap();
