@@ -159,7 +159,7 @@ function compared({digests}, {stride, digests: run}) {
 
 const NONE = "a node or link of the network";
 const button = (text, act = null) => Object.assign(make("button", "", text), {onclick: act});
-const earnedBy = ({fitness, success}) => fitness === null ? "broken down" : `${success ? "success" : "no success"}, ${+fitness.toPrecision(4)}`;
+const earnedBy = ({fitness, success}) => fitness === null ? "broken down" : `${success === null ? "fitness " : success ? "success, " : "no success, "}${+fitness.toPrecision(4)}`;
 
 function pick(label, some, act) {
 	const list = make("select");
@@ -198,8 +198,12 @@ function controlsOf({live: {script, about: {robots}}}, acts) {
 	return own;
 }
 
-// Formats a number of successes with the number of trials that broke down. Without any other trial there is no share.
-const shareOf = (successes, failed, of) => failed === of ? `all ${of} broke down` : `${successes} of ${of}${failed ? `, ${failed} broke down` : ""}`;
+// Formats a number of successes with the number of trials that broke down. Without any other trial, or without a criterion of
+// success, there is no share.
+function shareOf(successes, failed, of) {
+	if (failed === of) return `all ${of} broke down`;
+	return `${successes === null ? "no criterion of success" : `${successes} of ${of}`}${failed ? `, ${failed} broke down` : ""}`;
+}
 
 // Counts successes in a hundred fresh trials, intact and with changes, and caches them in `counted`. Ten are run in parallel, but
 // with moved or pushed bodies each is run alone.
@@ -214,7 +218,8 @@ async function hundred(individual, changed, counted, say) {
 			const request = by > 1 ? {do: "fresh", individual, lesion, seed: 1, first, count: by}
 				: {do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change};
 			const answer = await answerOf(request, by > 1 ? undefined : "earned");
-			successes += by > 1 ? answer.successes : +answer.success;
+			const more = by > 1 ? answer.successes : answer.success;
+			successes = more === null ? null : successes + more;
 			failed += [answer.fitness].flat().filter((fitness) => fitness === null).length;
 			say([...text, `${whose}: ${shareOf(successes, failed, first + by)} ...`].join("; "));
 			if (first + by === 100) counted.set(key, [successes, failed]);

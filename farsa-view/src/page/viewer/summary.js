@@ -1,6 +1,7 @@
 // The behavior in fresh trials: the time in each phase, and success by start.
 
-const SHOWN = {true: "#009e73", false: "#d55e00"};
+// Colors of success, failure, and of trials without a criterion.
+const SHOWN = {true: "#009e73", false: "#d55e00", null: "#0072b2"};
 
 function drawn(tag, attributes, ...children) {
 	const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
@@ -50,9 +51,9 @@ function startMap(trials, {body, axes, places}, open) {
 	const [wide, tall] = ends.map(([low, high]) => (high - low)*scale + 24);
 	const marks = trials.map(({number, success}, i) => {
 		const [x, y] = [12 + (places[i][0] - ends[0][0])*scale, tall - 12 - (places[i][1] - ends[1][0])*scale];
-		const line = success ? "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z" : "M-4-4l8 8m0-8l-8 8";
+		const line = success === false ? "M-4-4l8 8m0-8l-8 8" : "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z";
 		const mark = drawn("path", {d: line, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, stroke: SHOWN[success], fill: success ? SHOWN[success] : "none"});
-		mark.append(drawn("title", {}, `fresh trial ${number}: ${success ? "success" : "no success"}`));
+		mark.append(drawn("title", {}, `fresh trial ${number}${success === null ? "" : success ? ": success" : ": no success"}`));
 		mark.onclick = () => open(number);
 		return mark;
 	});
@@ -70,10 +71,14 @@ async function summarized(count, request, place, open) {
 		place.replaceChildren(make("p", "soft", `${number + 1} of ${count} trials ...`));
 	}
 	const successes = trials.filter(({success}) => success).length;
-	const mean = trials.reduce((sum, {fitness}) => sum + fitness, 0)/count;
+	const finished = trials.filter(({fitness}) => fitness !== null);
+	const mean = finished.reduce((sum, {fitness}) => sum + fitness, 0)/finished.length;
+	const share = trials[0].success === null ? "no criterion of success" : `success in ${successes} of ${count} fresh trials`;
+	const failed = count - finished.length;
+	const text = failed === count ? `all ${count} fresh trials broke down` : `${share}, mean fitness ${shortest(mean)}${failed ? `, ${failed} broke down` : ""}`;
 	const [phases, starts] = [phasesOf(trials), startsOf(trials)];
 	place.replaceChildren(
-		make("p", "", `${request.lesion || request.moves || request.pushes ? "With the change" : "Intact"}: success in ${successes} of ${count} fresh trials, mean fitness ${shortest(mean)}.`),
+		make("p", "", `${request.lesion || request.moves || request.pushes ? "With the change" : "Intact"}: ${text}.`),
 		...phases[0] ? [phaseTable(phases, count)] : [],
 		...starts ? startMap(trials, starts, open) : [make("p", "soft", "All trials start alike.")],
 	);
