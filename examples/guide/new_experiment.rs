@@ -44,8 +44,8 @@ impl Objective for Nearness {
         self.away = ((x - LAMP[0]) * (x - LAMP[0]) + (y - LAMP[1]) * (y - LAMP[1])).sqrt();
         (1.0 - self.away).max(0.0) / self.steps
     }
-    fn success(&self) -> bool {
-        self.away < 0.1
+    fn success(&self) -> Option<bool> {
+        Some(self.away < 0.1)
     }
     fn values(&self) -> Vec<(&'static str, f64)> {
         vec![("to the lamp [m]", self.away)]

@@ -86,6 +86,8 @@ impl<E: Body> Task for ComposedTask<E> {
             description: agents.description(),
             trials: agents.document.episode.trials as usize,
             terms: agents.ledger.names(),
+            combination: Some(agents.ledger.combination()),
+            has_success: agents.ledger.has_success(),
             populations: if populations.is_empty() { info.populations } else { populations },
             robots,
             observations: agents.spec.inputs.len(),

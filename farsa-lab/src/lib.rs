@@ -39,8 +39,8 @@ mod sweep;
 pub use command::cli;
 pub use error::Error;
 pub use experiment::{
-    Controlled, Episode, EpisodeId, Evaluation, Evaluator, InWorld, Neurocontroller, Note, Objective, Outcome,
-    Parameter, Setting, Settings, Task, TaskInfo, Trials,
+    Combination, Controlled, Episode, EpisodeId, Evaluation, Evaluator, InWorld, Neurocontroller, Note, Objective,
+    Outcome, Parameter, Setting, Settings, Task, TaskInfo, Trials,
 };
 pub use run::{Experiment, Laboratory, SimpleExperiment};
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
 use farsa_lab::advanced::mean_of_trials;
-use farsa_lab::{Error, Note, Outcome};
+use farsa_lab::{Combination, Error, Note, Outcome};
 use farsa_num::Scalar;
 
 use crate::check::source::Source;
@@ -127,6 +127,20 @@ impl Ledger {
 
     fn one_holds(&self, conditions: &[Wanted]) -> bool {
         conditions.iter().any(|wanted| wanted.is_for(self.evolving) && wanted.holds(&self.tallies))
+    }
+
+    /// Checks if there is a condition of success.
+    pub(crate) fn has_success(&self) -> bool {
+        !self.success.is_empty()
+    }
+
+    /// Gets the combination of trials into the fitness.
+    pub(crate) fn combination(&self) -> Combination {
+        match self.trials {
+            Trials::Mean => Combination::Mean,
+            Trials::Sum => Combination::Sum,
+            Trials::Worst => Combination::Worst,
+        }
     }
 
     /// Checks if all conditions of success hold.

@@ -7,7 +7,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles
 use farsa_body::robot::Robot;
 use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Intervention, Rollout, mean_of_trials};
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
-use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
+use farsa_lab::{Combination, Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_view::Schema;
 
 use crate::compositional_instructions::agent::Agent;
@@ -184,6 +184,7 @@ impl Task for InstructionTask {
     /// In a test the instruction may change, and as many steps follow.
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config().trials(),
             step_budget: Some(2 * u64::from(self.config().steps)),

@@ -7,8 +7,8 @@ use farsa_lab::advanced::{
 };
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter, Setting, Settings,
-    Task, TaskInfo,
+    Combination, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter,
+    Setting, Settings, Task, TaskInfo,
 };
 use farsa_num::sin_cos;
 use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
@@ -209,6 +209,7 @@ impl Balancing {
 impl Task for Balancing {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             terms: if self.episode.config().damping {
                 vec!["balance".into(), "rest".into()]

@@ -7,7 +7,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, Contacts, Handles};
 use farsa_body::robot::Robot;
 use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Rollout, mean_of_trials};
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
-use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
+use farsa_lab::{Combination, Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_nn::Leak;
 use farsa_nn::block::BlockLayoutBuf;
 use farsa_view::Schema;
@@ -148,6 +148,7 @@ impl ReachTask {
 impl Task for ReachTask {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config().targets as usize,
             terms: vec!["fitness".into()],

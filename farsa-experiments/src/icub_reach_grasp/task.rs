@@ -10,7 +10,7 @@ use farsa_lab::advanced::{
     Anatomy, Behavior, ChannelGroup, Description, NotedBehavior, Rollout, mean_of_trials, network_parameters,
 };
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
-use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
+use farsa_lab::{Combination, Episode, EpisodeId, Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
 use farsa_nn::Leak;
 use farsa_view::Schema;
 
@@ -160,6 +160,7 @@ impl GraspTask {
 impl Task for GraspTask {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config().trials as usize,
             terms: ["nearness", "touch", "lift"].map(String::from).to_vec(),

@@ -16,8 +16,8 @@ use farsa_lab::advanced::{
 };
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Setting, Settings, Task,
-    TaskInfo,
+    Combination, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Setting,
+    Settings, Task, TaskInfo,
 };
 use farsa_num::{Domain, Stream};
 use farsa_view::shape::{Color, Geometry, OKABE_ITO, Role, SceneObject};
@@ -280,6 +280,7 @@ impl Agent {
 impl Task for Agent {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.episode.config().trials as usize,
             terms: vec!["score".into()],

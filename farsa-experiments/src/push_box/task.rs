@@ -11,7 +11,7 @@ use farsa_lab::advanced::{
     Anatomy, Behavior, ChannelGroup, Description, NormalizedController, NotedBehavior, Rollout, mean_of_trials,
 };
 use farsa_lab::exports::{ControllerExport, Exports, NetworkExport};
-use farsa_lab::{Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
+use farsa_lab::{Combination, Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
 use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -96,6 +96,7 @@ impl PushEpisode<Layer> {
 impl Task for PushEpisode<Layer> {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config().trials as usize,
             terms: vec!["moved [m]".into()],

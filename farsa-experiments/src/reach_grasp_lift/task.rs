@@ -18,7 +18,7 @@ use farsa_lab::advanced::{
     Protocol, Rollout, input_ranges,
 };
 use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, StartExport};
-use farsa_lab::{Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
+use farsa_lab::{Combination, Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
 use farsa_view::Schema;
 
 /// Runs the trials of a network and defines the channels recorded.
@@ -138,7 +138,7 @@ impl Rollout for ReachTask {
             notes: vec![
                 ("phase", Note::from(trial.phase.name())),
                 ("end", Note::from(if trial.fallen { "sphere fell" } else { "time" })),
-                ("lifted for 1 s", Note::from(if lifted { "yes" } else { "no" })),
+                ("lifted for 1 s", Note::from(if lifted { "true" } else { "false" })),
                 ("held [s]", Note::from(f64::from(trial.held) * time_step)),
                 ("height [cm]", Note::from(judge.seen().height)),
                 ("highest [cm]", Note::from(trial.highest)),
@@ -211,6 +211,7 @@ impl ReachTask {
 impl Task for ReachTask {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Sum),
             description: self.description(),
             trials: TRIALS,
             terms: ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec(),

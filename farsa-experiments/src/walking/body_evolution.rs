@@ -21,8 +21,8 @@ use farsa_lab::advanced::{
 };
 use farsa_lab::exports::{ControllerExport, Exports, MotorExport, NetworkExport, SensorExport};
 use farsa_lab::{
-    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Note, Outcome, Parameter, Setting, Settings, Task,
-    TaskInfo,
+    Combination, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Note, Outcome, Parameter, Setting,
+    Settings, Task, TaskInfo,
 };
 use farsa_view::Schema;
 
@@ -341,6 +341,7 @@ impl Walkers {
 impl Task for Walkers {
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config.trials as usize,
             terms: vec!["distance [m]".into()],

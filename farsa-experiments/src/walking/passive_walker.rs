@@ -19,8 +19,8 @@ use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
 use farsa_lab::advanced::{Bodies, Description, ENGINE, Rollout, mean_of_trials};
 use farsa_lab::exports::Exports;
 use farsa_lab::{
-    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter, Setting, Settings,
-    Task, TaskInfo,
+    Combination, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter,
+    Setting, Settings, Task, TaskInfo,
 };
 use farsa_view::Schema;
 
@@ -273,6 +273,7 @@ impl Task for PassiveTrial {
     /// Nothing evolves: one parameter that nothing depends on.
     fn info(&self) -> TaskInfo {
         TaskInfo {
+            combination: Some(Combination::Mean),
             description: self.description(),
             trials: self.config.trials as usize,
             terms: vec!["distance [m]".into()],

@@ -21,7 +21,8 @@ fn whip(here: &Path) {
         motors = [{ kind = \"joint-torque\", largest = 1e6 }]\n\
         network = { kind = \"wired\", activation = \"clamp\", bias = [1.0, 0.0], wires = [] }\n\
         episode = { steps = 50, trials = 2 }\n\
-        reward = [{ kind = \"joint-speed\", weight = -1.0 }]\n";
+        reward = [{ kind = \"joint-speed\", weight = -1.0 }]\n\
+        success = [{ term = \"joint-speed\", above = -1.0 }]\n";
     fs::write(here.join("whip.xml"), model).expect("the model");
     fs::write(here.join("whip.toml"), file).expect("the file");
 }
@@ -43,7 +44,7 @@ fn trials_that_all_break_down_have_no_value() {
     assert!(said.err.contains("generation 1: all 20 failed; 2 of 2 generations, "), "{said:?}");
 
     let tested = ok(farsa(), &here, "test o --trials 3");
-    let summary = "\nsuccess: no value\nbroken down: 3 of 3 (100.0 %)\nfitness: no value\nline 0 of the test failed: ";
+    let summary = "\nsuccess: no value\nbroken down: 3 of 3 (100.0 %)\nfitness of a trial: no value\nfitness of a run: mean of 2 trials\nline 0 of the test failed: ";
     assert!(tested.contains(summary), "{tested}");
     let found = json(&here, "test o --trials 3 --json");
     assert_eq!((&found["fitness"], &found["trials"], &found["broken_down"]), (&Value::Null, &3.into(), &3.into()));

@@ -19,6 +19,7 @@ mod look;
 mod manners;
 mod memory;
 mod merge;
+mod numbers;
 mod own;
 mod replications;
 mod report;

@@ -45,10 +45,10 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     assert_eq!(
         starts,
         [
-            "node1/runs/cart-rough-1,cart,rough,truncation,1,0.5,3,yes,60,0",
-            "node1/runs/cart-rough-2,cart,rough,truncation,2,0.5,3,yes,60,0",
-            "node2/runs/cart-rough-3,cart,rough,truncation,3,0.5,3,yes,60,0",
-            "node2/sweep/friction=2.0/cart-rough-1,cart,rough,truncation,1,2.0,3,yes,60,0",
+            "node1/runs/cart-rough-1,cart,rough,truncation,1,0.5,3,true,60,0",
+            "node1/runs/cart-rough-2,cart,rough,truncation,2,0.5,3,true,60,0",
+            "node2/runs/cart-rough-3,cart,rough,truncation,3,0.5,3,true,60,0",
+            "node2/sweep/friction=2.0/cart-rough-1,cart,rough,truncation,1,2.0,3,true,60,0",
         ]
     );
     for row in &rows[1..] {
@@ -66,7 +66,7 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     let said = say(own(), &here, "merge node2 --csv table.csv");
     assert_eq!(said.out, "3 runs\nnode2/runs/cart-rough-2: not finished: 2 of 3 generations\n");
     let table = fs::read_to_string(here.join("table.csv")).expect("the table");
-    assert!(table.contains("node2/runs/cart-rough-2,cart,rough,truncation,2,0.5,2,no,40,0,"), "{table}");
+    assert!(table.contains("node2/runs/cart-rough-2,cart,rough,truncation,2,0.5,2,false,40,0,"), "{table}");
 }
 
 #[test]

@@ -9,7 +9,6 @@ use std::rc::Rc;
 use clap::FromArgMatches as _;
 
 use crate::command::arguments::export::ExportArgs;
-use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, RunArgs, TestArgs,
 };
@@ -175,7 +174,9 @@ impl<'e> Invocation<'e, '_> {
                     None => Some(self.replicate(&args, count, args.replication)?),
                     Some(groups) => self.replicate_in_groups(&args, count, groups)?,
                 };
-                summary.map_or(Ok(()), |summary| self.summary(args.json, &summary.text(), &|| pretty(&summary)))
+                let Some(mut summary) = summary else { return Ok(()) };
+                self.test_champions(summary.summaries(), args.test, &args.workers)?;
+                self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Run(args) => {
                 let summary = self.start_or_resume(&args)?;
@@ -326,18 +327,6 @@ impl<'e> Invocation<'e, '_> {
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
-    /// Merges runs, with their table on standard output by default.
-    fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
-        let summary = args.merge().make(self.laboratory)?;
-        if !args.prints() {
-            return self.summary(args.json, &summary.text(), &|| pretty(&summary));
-        }
-        if !self.quiet {
-            let _ = write!(io::stderr(), "{}", escaped(&summary.text()));
-        }
-        say(&summary.table)
-    }
-
     /// Makes or lists the runs of all points of a sweep.
     fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
         let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
@@ -347,7 +336,9 @@ impl<'e> Invocation<'e, '_> {
             return sweep.list(which, &ready);
         }
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))
+        let mut found = sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))?;
+        self.test_champions(found.summaries(), args.test.or(file.test_trials), &args.workers)?;
+        Ok(found)
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
@@ -364,7 +355,10 @@ impl<'e> Invocation<'e, '_> {
             self.make_room(args.force, &plan, &path)?;
             begin::create(&plan, &path)?
         };
-        evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+        let summary = evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet);
+        let mut summary = summary?;
+        self.test_champions(std::iter::once(&mut summary), args.test, &args.workers)?;
+        Ok(summary)
     }
 
     /// Renames an existing run for `--force`, if the new one can start.

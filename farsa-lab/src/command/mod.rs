@@ -4,6 +4,8 @@
 mod arguments;
 /// Objectives and behavior of an experiment, as text and JSON.
 mod behaviour;
+/// `--test` of `farsa run` and `farsa sweep`.
+mod champion_test;
 /// `main` for any set of experiments.
 pub mod cli;
 /// Connections of an experiment.
@@ -24,6 +26,8 @@ mod invocation;
 mod live;
 /// Help with examples, completions and manual pages.
 pub(crate) mod manual;
+/// `farsa merge`.
+mod merge;
 /// Commands that continue after the end of a run.
 mod next;
 /// Command on several ranks.

@@ -10,6 +10,7 @@ use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
 use crate::evaluation::test::{self, Tested, Trials};
 use crate::evaluation::test_table::TrialResult;
+use crate::experiment::evaluator::TaskInfo;
 use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
@@ -60,13 +61,14 @@ struct PopulationResult {
     mean_fitness: f64,
     /// Standard error of the mean fitness. NaN for a single trial.
     standard_error: f64,
-    /// Share of all trials, NaN if all broke down.
-    success_rate: f64,
+    /// Share of all trials, NaN if all broke down. `None` for a task without a criterion of success.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    success_rate: Option<f64>,
 }
 
 impl PopulationResult {
     /// Summarizes population number `own` over the finished trials. The success rate is relative to all trials.
-    fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize) -> Self {
+    fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize, has_success: bool) -> Self {
         let result_of = |results: &TrialResult| match own.checked_sub(1) {
             None => Some((results.fitness, results.outcome.success)),
             Some(other) => results.others.get(other).copied(),
@@ -75,13 +77,19 @@ impl PopulationResult {
         let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
         let successes = earned.iter().filter(|(_, success)| *success).count();
         let success_rate = if earned.is_empty() { f64::NAN } else { successes as f64 / all.max(1) as f64 };
-        Self { population: name.into(), mean_fitness, standard_error, success_rate }
+        Self {
+            population: name.into(),
+            mean_fitness,
+            standard_error,
+            success_rate: has_success.then_some(success_rate),
+        }
     }
 }
 
 impl Evaluation {
-    /// Summarizes `results`. `names` holds the names of the populations.
-    fn new(plan: &Plan<'_>, seed: u64, names: &[String], results: &[TrialResult]) -> Self {
+    /// Summarizes the results of a task.
+    fn new(plan: &Plan<'_>, seed: u64, info: &TaskInfo, results: &[TrialResult]) -> Self {
+        let names = &info.populations;
         let finite =
             |results: &&TrialResult| results.fitness.is_finite() && results.others.iter().all(|(x, _)| x.is_finite());
         let finished: Vec<&TrialResult> = results.iter().filter(finite).collect();
@@ -95,8 +103,10 @@ impl Evaluation {
             });
             notes.push((format!("{}_per_trial", word(name)), mean(&values.collect::<Vec<_>>()).0));
         }
-        let earned =
-            names.iter().enumerate().map(|(own, name)| PopulationResult::new(name, own, &finished, results.len()));
+        let earned = names
+            .iter()
+            .enumerate()
+            .map(|(own, name)| PopulationResult::new(name, own, &finished, results.len(), info.has_success));
         let earned: Vec<PopulationResult> = earned.collect();
         let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
         let mut lines: Vec<(String, String)> = Vec::new();
@@ -110,7 +120,9 @@ impl Evaluation {
                     add(name, *x);
                 }
             }
-            add(&format!("{prefix}success_rate"), result.success_rate);
+            if let Some(rate) = result.success_rate {
+                add(&format!("{prefix}success_rate"), rate);
+            }
         }
         if alone.is_none() {
             for (name, x) in &notes {
@@ -129,7 +141,7 @@ impl Evaluation {
             mean_fitness: alone.map(|alone| alone.mean_fitness),
             standard_error: alone.map(|alone| alone.standard_error),
             per_trial: notes.into_iter().map(|(name, x)| (name, x.into())).collect(),
-            success_rate: alone.map(|alone| alone.success_rate),
+            success_rate: alone.and_then(|alone| alone.success_rate),
             populations: if names.len() == 1 { Vec::new() } else { earned },
             lines,
         }
@@ -181,7 +193,7 @@ pub(crate) fn evaluate(
     let results = test::run_trials(&mut pool, given, Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;
-    Ok(Evaluation::new(plan, seed, &names, &results))
+    Ok(Evaluation::new(plan, seed, pool.info(), &results))
 }
 
 /// Gets the genes of each population, from lists and files.

@@ -6,6 +6,9 @@ pub(crate) mod draw;
 /// `farsa evaluate`: a genotype from any source on random trials.
 #[cfg(feature = "command")]
 pub(crate) mod evaluate;
+/// Summary of the trials of a test.
+#[cfg(feature = "command")]
+pub(crate) mod findings;
 /// External genotypes: `.gen` files of the 2013 program, and plain lists of genes.
 pub(crate) mod genotypes;
 /// `farsa import`: genotypes of the 2013 program as a directory for tests, replays and pictures.

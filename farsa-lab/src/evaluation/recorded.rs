@@ -21,7 +21,7 @@ const ATTEMPTS: usize = 20;
 const PAUSE: Duration = Duration::from_millis(25);
 
 /// Record of a test.
-pub(crate) trait TableRecord: Serialize + DeserializeOwned {
+pub(crate) trait TableRecord: DeserializeOwned {
     /// CRC-32 of the table: a process that was killed between the two files leaves another.
     fn table_crc(&self) -> u32;
 }
@@ -57,7 +57,7 @@ pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::File`] while another process writes a test.
-pub(crate) fn write<R: TableRecord>(
+pub(crate) fn write<R: Serialize>(
     directory: &Path,
     table: (&Path, &[u8]),
     path: &Path,

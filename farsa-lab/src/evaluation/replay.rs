@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
-use crate::evaluation::trials::{came_to, facts, fitness, scored, why_failed};
+use crate::evaluation::trials::{came_to, facts, fitness, scored, success, why_failed};
 use crate::experiment::Anatomy;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
@@ -248,7 +248,8 @@ impl Replayable {
             trials: self.replayed(outcomes),
             steps: outcomes.iter().map(|outcome| outcome.steps).sum(),
             fitness: self.fitness(outcomes),
-            success: outcomes.iter().all(|outcome| outcome.success),
+            success: self.success(outcomes),
+            combined: self.evaluator.info().combined(),
             lesion: None,
         }
     }
@@ -259,15 +260,21 @@ impl Replayable {
             trial,
             steps: outcome.steps,
             fitness: self.fitness(std::slice::from_ref(outcome)),
-            success: outcome.success,
+            success: success(self.evaluator.as_ref(), outcome),
             failure: why_failed(self.evaluator.as_ref(), outcome),
         });
         trials.collect()
     }
 
+    /// Checks if all trials succeeded. `None` for a task without a criterion of success.
+    fn success(&self, outcomes: &[Outcome]) -> Option<bool> {
+        let each = outcomes.iter().map(|outcome| success(self.evaluator.as_ref(), outcome));
+        each.collect::<Option<Vec<_>>>().map(|each| each.into_iter().all(|success| success))
+    }
+
     /// Summarizes the trials with these changes.
     fn lesioned(&self, list: &str, outcomes: &[Outcome]) -> Lesioned {
-        let success = outcomes.iter().all(|outcome| outcome.success);
+        let success = self.success(outcomes);
         Lesioned { list: list.into(), trials: self.replayed(outcomes), fitness: self.fitness(outcomes), success }
     }
 }
@@ -297,8 +304,11 @@ pub(crate) struct ReplaySummary {
     steps: u32,
     /// Fitness of the selected trials: that of the individual if all are selected.
     pub(crate) fitness: f64,
-    /// True if all trials succeeded.
-    success: bool,
+    /// True if all trials succeeded. `None` for a task without a criterion of success.
+    success: Option<bool>,
+    /// Combination of all trials of the individual into its fitness.
+    #[serde(skip)]
+    combined: String,
     /// The same trials with parts of the controller changed, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     lesion: Option<Lesioned>,
@@ -310,7 +320,7 @@ struct Lesioned {
     list: String,
     trials: Vec<ReplayedTrial>,
     fitness: f64,
-    success: bool,
+    success: Option<bool>,
 }
 
 #[derive(Debug, Serialize)]
@@ -319,7 +329,7 @@ struct ReplayedTrial {
     steps: u32,
     /// Fitness of this trial alone.
     fitness: f64,
-    success: bool,
+    success: Option<bool>,
     /// Why it failed, if it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     failure: Option<String>,
@@ -335,13 +345,16 @@ fn failures(trials: &[ReplayedTrial]) -> String {
 impl InWords for ReplaySummary {
     /// A line, and one for the same with changes.
     fn text(&self) -> String {
-        let Self { generation, individual, trials, steps, fitness, lesion, .. } = self;
+        let Self { generation, individual, trials, steps, fitness, combined, lesion, .. } = self;
+        let is_combined = trials.len() > 1 && fitness.is_finite() && !combined.is_empty();
+        let combined = if is_combined { format!(" ({combined})") } else { String::new() };
         let what = match trials.as_slice() {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
         };
         let individual = format!("individual {individual} of generation {generation}");
-        let mut text = format!("{individual}, {what}: {steps} steps, {}{}", scored(*fitness), failures(trials));
+        let mut text =
+            format!("{individual}, {what}: {steps} steps, {}{combined}{}", scored(*fitness), failures(trials));
         if let Some(Lesioned { list, trials, fitness, .. }) = lesion {
             let steps = trials.iter().map(|trial| trial.steps).sum::<u32>();
             // Writing into a string cannot fail.

@@ -7,12 +7,13 @@ use farsa_evo::ObservationStatistics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::evaluation::findings::Findings;
 use crate::evaluation::recorded::{self, TableRecord};
 use crate::evaluation::replay::{LocatedIndividual, Selection};
-use crate::evaluation::test_table::{Findings, Table, TrialResult};
+use crate::evaluation::test_table::{Columns, Table, TrialResult};
 use crate::evaluation::trials::episode;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::{Evaluation, TaskInfo};
+use crate::experiment::evaluator::Evaluation;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::LaneRequest;
 use crate::experiment::outcome::Outcome;
@@ -25,7 +26,7 @@ use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
 use crate::store::lock::Lock;
 
-/// `test.json`: which champion `test.csv` is about, and how to make it again.
+/// Part of `test.json` that names the champion of `test.csv` and repeats the test.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Record {
     pub(crate) generation: u32,
@@ -34,6 +35,14 @@ pub(crate) struct Record {
     pub(crate) seed: u64,
     /// CRC-32 of the table: a process that was killed between the two files leaves another.
     table_crc: u32,
+}
+
+/// Content of `test.json`: a record with the results of its test.
+#[derive(Serialize)]
+struct Recorded<'r> {
+    #[serde(flatten)]
+    record: Record,
+    results: &'r Findings,
 }
 
 impl TableRecord for Record {
@@ -50,6 +59,26 @@ pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record
     let path = directory.test();
     let Some((text, record)) = recorded::read(&path, &directory.test_record())? else { return Ok(None) };
     Ok(Some((Table::from_text(&path, &text)?, record)))
+}
+
+/// Reads the results of an equal test of the champion that a run has now, if there is one.
+///
+/// # Errors
+/// The errors of [`read`], and [`Error::File`] for a run without champions.
+pub(crate) fn repeated(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    trials: usize,
+    seed: u64,
+) -> Result<Option<Findings>, Error> {
+    let Some((table, Some(record))) = read(directory)? else { return Ok(None) };
+    let Champions { generation, best, .. } = Champions::read(plan, directory)?;
+    let is_same = (record.trials, record.seed, record.generation) == (trials, seed, generation)
+        && best.first().is_some_and(|best| best.individual == record.individual);
+    if !is_same {
+        return Ok(None);
+    }
+    Ok(Some(table.findings(&plan.evaluator()?.info().terms)))
 }
 
 /// Trials of a test where no number is asked for.
@@ -70,7 +99,10 @@ pub(crate) struct TestRun {
     individuals: Vec<u32>,
     seed: u64,
     #[serde(flatten)]
-    findings: Findings,
+    pub(crate) findings: Findings,
+    /// Combination of trials into the fitness of a run. Empty for a single trial.
+    #[serde(rename = "fitness_of_run", skip_serializing_if = "String::is_empty")]
+    combined: String,
     /// That the champion may behave otherwise than in its run.
     warning: Option<String>,
     /// Why the first of the trials that failed did, if any did.
@@ -88,6 +120,9 @@ impl TestRun {
         // Writing into a string cannot fail.
         let _ = writeln!(text, "\n{}, test seed {seed}", whose(*generation, *individual, &self.individuals));
         text.push_str(&self.findings.text());
+        if !self.combined.is_empty() {
+            let _ = writeln!(text, "fitness of a run: {}", self.combined);
+        }
         if let Some(warning) = &self.warning {
             let _ = writeln!(text, "warning: {warning}");
         }
@@ -134,18 +169,24 @@ pub(crate) fn test(
     drop(progress);
     let results = results?;
 
-    let TaskInfo { terms, populations: names, .. } = pool.info();
-    let failure = failure(&results, terms);
-    let table = Table::new(terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
+    let info = pool.info();
+    let failure = failure(&results, &info.terms);
+    let table = Table::new(&Columns::new(info, subject.count()), &results);
+    let (findings, combined) = (table.findings(&info.terms), info.combined());
     let Subject { generation, individual, individuals, warning, .. } = subject;
     if other.is_none() {
         let path = directory.test();
         let bytes = table.csv(&path)?;
-        let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
+        let record = |table_crc| {
+            let record = Record { generation, individual, trials, seed, table_crc };
+            Recorded { record, results: &findings }
+        };
         recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
     }
-    let (path, findings) = (directory.path().display().to_string(), table.findings(terms));
-    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
+    let directory = directory.path().display().to_string();
+    let run =
+        TestRun { directory, generation, individual, individuals, seed, findings, combined, warning, failure, table };
+    Ok(run)
 }
 
 /// Whom a test is about, in words.

@@ -1,18 +1,37 @@
 //! `test.csv`: one line per trial of a test, and its summary.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 
-use serde::{Serialize, Serializer};
-
 use crate::error::Error;
-use crate::evaluation::trials::NO_VALUE;
+use crate::evaluation::findings::{Finding, Findings, Share, mean, numbers};
+use crate::experiment::evaluator::TaskInfo;
 use crate::experiment::outcome::{Note, Outcome};
+use crate::figures::bootstrap::mean_interval;
+use crate::figures::proportion::Proportion;
 use crate::figures::significant::significant;
 
 /// Columns of every test. Several fitness terms and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
+
+/// Columns of a table besides those of every test.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Columns<'c> {
+    /// Names of the terms.
+    pub(crate) terms: &'c [String],
+    /// Names of all populations but the first.
+    pub(crate) others: &'c [String],
+    /// False for a task without a criterion of success.
+    pub(crate) has_success: bool,
+}
+
+impl<'c> Columns<'c> {
+    /// Returns the columns of a task in which this number of populations is tested.
+    pub(crate) fn new(info: &'c TaskInfo, populations: usize) -> Self {
+        let others = info.populations.get(1..populations).unwrap_or(&[]);
+        Self { terms: &info.terms, others, has_success: info.has_success }
+    }
+}
 
 /// One trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,10 +66,11 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Builds the table of some trials, with columns for all populations but the first, of these names.
-    pub(crate) fn new(terms: &[String], others: &[String], trials: &[TrialResult]) -> Self {
+    /// Builds the table of some trials.
+    pub(crate) fn new(columns: &Columns<'_>, trials: &[TrialResult]) -> Self {
+        let Columns { others, has_success, .. } = *columns;
         let mut head: Vec<String> = HEAD.map(str::to_owned).into();
-        let terms = own_columns(terms);
+        let terms = own_columns(columns.terms);
         head.extend(terms.iter().cloned());
         // A trial that broke down has no notes: the names are those of the first that has.
         let names: Vec<&str> = trials
@@ -60,8 +80,9 @@ impl Table {
             .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
         head.extend(names.iter().map(|&name| name.to_owned()));
         // Ones and zeros, so that the mean of a success is its share.
+        let of_others: &[&str] = if has_success { &["fitness", "success"] } else { &["fitness"] };
         head.extend(
-            others.iter().flat_map(|name| ["fitness", "success"].map(|what| format!("{what} of population {name}"))),
+            others.iter().flat_map(|name| of_others.iter().map(move |what| format!("{what} of population {name}"))),
         );
         let lines = trials.iter().enumerate().map(|(index, TrialResult { trial, outcome, fitness, others })| {
             let success = outcome.success && fitness.is_finite();
@@ -69,7 +90,7 @@ impl Table {
                 index.to_string(),
                 trial.to_string(),
                 outcome.steps.to_string(),
-                success.to_string(),
+                if has_success { success.to_string() } else { String::new() },
                 number(*fitness),
             ];
             line.extend((0..terms.len()).map(|term| number(outcome.terms.get(term).copied().unwrap_or(f64::NAN))));
@@ -78,9 +99,11 @@ impl Table {
                 Some((_, Note::Text(text))) => text.clone(),
                 None => String::new(),
             }));
-            line.extend(
-                others.iter().flat_map(|(fitness, success)| [number(*fitness), u8::from(*success).to_string()]),
-            );
+            let of_other = |(fitness, success): &(f64, bool)| {
+                let columns = [number(*fitness), u8::from(*success).to_string()];
+                columns.into_iter().take(of_others.len())
+            };
+            line.extend(others.iter().flat_map(of_other));
             line
         });
         Self { lines: std::iter::once(head).chain(lines).collect() }
@@ -119,7 +142,7 @@ impl Table {
             let good = number.parse() == Ok(index)
                 && trial.parse::<u32>().is_ok()
                 && steps.parse::<u32>().is_ok()
-                && success.parse::<bool>().is_ok()
+                && (success.is_empty() || success.parse::<bool>().is_ok())
                 && fitness.parse::<f64>().is_ok();
             if !good {
                 return Err(format!("line {} is not a trial of a test", index + first));
@@ -146,7 +169,7 @@ impl Table {
         let trial = |line: &Vec<String>| {
             let [_, trial, steps, success, fitness] = [0, 1, 2, 3, 4].map(|column| line[column].as_str());
             let (trial, steps) = (trial.parse().ok()?, steps.parse().ok()?);
-            Some(TestTrial { trial, steps, success: success.parse().ok()?, fitness: fitness.parse().ok()? })
+            Some(TestTrial { trial, steps, success: success == "true", fitness: fitness.parse().ok()? })
         };
         self.lines.iter().skip(1).filter_map(trial).collect()
     }
@@ -192,8 +215,10 @@ impl Table {
         let is_finished = |row: &[String]| field(row, 4).parse::<f64>().is_ok_and(f64::is_finite);
         let finished: Vec<&Vec<String>> = rows.iter().filter(|row| is_finished(row)).collect();
         let column = |column: usize| finished.iter().map(|row| field(row, column)).collect::<Vec<_>>();
+        // The column is empty without a criterion of success.
+        let has_success = rows.iter().any(|row| !field(row, 3).is_empty());
         let mut by_trial: BTreeMap<u32, Share> = BTreeMap::new();
-        for row in rows {
+        for row in rows.iter().filter(|_| has_success) {
             let share = by_trial.entry(field(row, 1).parse().unwrap_or_default()).or_default();
             share.of += 1;
             share.successes += usize::from(field(row, 3) == "true" && is_finished(row));
@@ -201,123 +226,30 @@ impl Table {
         }
         let head = self.lines.first().map(Vec::as_slice).unwrap_or_default();
         let notes = head.iter().enumerate().skip(HEAD.len()).filter(|(_, name)| !own_columns(terms).contains(name));
-        Findings {
-            trials: rows.len(),
+        let total = Share {
             successes: by_trial.values().map(|share| share.successes).sum(),
+            of: rows.len(),
             broken_down: rows.len() - finished.len(),
+        };
+        let rate = if has_success { total.rate() } else { f64::NAN };
+        let proportion = Proportion { successes: total.successes, of: total.of };
+        Findings {
+            trials: total.of,
+            successes: has_success.then_some(total.successes),
+            rate,
+            interval: if rate.is_nan() { [f64::NAN; 2] } else { proportion.interval() },
+            broken_down: total.broken_down,
             fitness: mean(&column(4)),
+            fitness_interval: mean_interval(&numbers(&column(4))).unwrap_or([f64::NAN; 2]),
             by_trial,
             notes: notes.map(|(index, name)| (name.clone(), Finding::from_fields(column(index)))).collect(),
         }
     }
 }
 
-/// Summary of the trials of a test.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct Findings {
-    pub(crate) trials: usize,
-    pub(crate) successes: usize,
-    /// Trials whose numbers were not finite.
-    pub(crate) broken_down: usize,
-    /// Mean fitness of the trials that did not break down, NaN without any.
-    pub(crate) fitness: f64,
-    /// By the number of the experiment's trial.
-    pub(crate) by_trial: BTreeMap<u32, Share>,
-    /// By the name of the note, in the order of the table.
-    #[serde(serialize_with = "as_map")]
-    pub(crate) notes: Vec<(String, Finding)>,
-}
-
-/// Successes among trials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub(crate) struct Share {
-    pub(crate) successes: usize,
-    pub(crate) of: usize,
-    /// Trials that broke down, which are no successes.
-    pub(crate) broken_down: usize,
-}
-
-impl Share {
-    /// Computes the share of successes, NaN if every trial broke down.
-    pub(crate) fn rate(self) -> f64 {
-        if self.of > self.broken_down { self.successes as f64 / self.of as f64 } else { f64::NAN }
-    }
-}
-
-/// Summary of a note.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Finding {
-    /// Mean of a quantity over the trials that have it, NaN without any.
-    Mean(f64),
-    /// Count of each word.
-    Counts(BTreeMap<String, usize>),
-}
-
-impl Finding {
-    fn from_fields(fields: Vec<String>) -> Self {
-        if fields.iter().all(|field| field.is_empty() || field.parse::<f64>().is_ok()) {
-            return Self::Mean(mean(&fields));
-        }
-        let mut counts = BTreeMap::new();
-        for field in fields.into_iter().filter(|field| !field.is_empty()) {
-            *counts.entry(field).or_default() += 1;
-        }
-        Self::Counts(counts)
-    }
-}
-
-impl Findings {
-    /// Formats the share of successes, the mean fitness, and the notes' counts and means, a line each.
-    pub(crate) fn text(&self) -> String {
-        let share = |n: usize| format!("{n} of {} ({:.1} %)", self.trials, 100.0 * self.part(n));
-        // Writing into a string cannot fail.
-        let mut text = String::new();
-        let mean = |x: f64| if x.is_finite() { format!("mean {}", significant(x)) } else { NO_VALUE.into() };
-        let success = if self.rate().is_nan() { NO_VALUE.into() } else { share(self.successes) };
-        let _ = writeln!(text, "success: {success}");
-        if self.broken_down > 0 {
-            let _ = writeln!(text, "broken down: {}", share(self.broken_down));
-        }
-        let _ = writeln!(text, "fitness: {}", mean(self.fitness));
-        for (name, finding) in &self.notes {
-            let _ = match finding {
-                Finding::Mean(x) => writeln!(text, "{name}: {}", mean(*x)),
-                Finding::Counts(counts) => {
-                    let counts: Vec<String> =
-                        counts.iter().map(|(word, &count)| format!("{word} {}", share(count))).collect();
-                    writeln!(text, "{name}: {}", counts.join(", "))
-                }
-            };
-        }
-        text
-    }
-
-    /// Computes the share of successes, NaN if every trial broke down.
-    pub(crate) fn rate(&self) -> f64 {
-        let Self { trials: of, successes, broken_down, .. } = *self;
-        Share { successes, of, broken_down }.rate()
-    }
-
-    /// A number of trials as a part of all.
-    pub(crate) fn part(&self, trials: usize) -> f64 {
-        trials as f64 / self.trials.max(1) as f64
-    }
-}
-
 /// An experiment with one term has it as its fitness and gives it no column.
 pub(super) fn own_columns(terms: &[String]) -> &[String] {
     if terms.len() > 1 { terms } else { &[] }
-}
-
-pub(super) fn as_map<S: Serializer>(notes: &[(String, Finding)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(notes.iter().map(|(name, finding)| (name, finding)))
-}
-
-fn mean(fields: &[String]) -> f64 {
-    let finite: Vec<f64> =
-        fields.iter().filter_map(|field| field.parse().ok()).filter(|x: &f64| x.is_finite()).collect();
-    if finite.is_empty() { f64::NAN } else { finite.iter().sum::<f64>() / finite.len() as f64 }
 }
 
 fn number(x: f64) -> String {
@@ -343,7 +275,11 @@ mod tests {
             results(2, Outcome::failed(), f64::NAN),
             results(0, outcome("lift", 8.0, true), 7.0),
         ];
-        Table::new(&["a".into(), "b".into()], &[], &trials)
+        Table::new(&columns(&["a".into(), "b".into()]), &trials)
+    }
+
+    fn columns(terms: &[String]) -> Columns<'_> {
+        Columns { terms, others: &[], has_success: true }
     }
 
     #[test]
@@ -356,7 +292,9 @@ mod tests {
             others: others.into(),
         };
         let trials = [results(&[(3.0, true), (0.5, false)]), results(&[(1.0, false), (0.5, false)])];
-        let table = Table::new(&["a".into()], &["prey".into(), "2".into()], &trials);
+        let (terms, others) = (["a".into()], ["prey".into(), "2".into()]);
+        let columns = Columns { others: &others, ..columns(&terms) };
+        let table = Table::new(&columns, &trials);
         assert_eq!(
             table.lines[0][5..].join(","),
             "at,fitness of population prey,success of population prey,fitness of population 2,success of population 2"
@@ -367,6 +305,14 @@ mod tests {
             notes[1..3].iter().map(|note| note.1.clone()).collect::<Vec<_>>(),
             [Finding::Mean(2.0), Finding::Mean(0.5)]
         );
+        // Without a criterion nothing succeeds or fails.
+        let table = Table::new(&Columns { has_success: false, ..columns }, &trials);
+        assert_eq!(table.lines[0][5..].join(","), "at,fitness of population prey,fitness of population 2");
+        assert_eq!(table.lines[1].join(","), "0,0,6,,2.0,1.0,3.0,0.5");
+        let findings = table.findings(&["a".into()]);
+        assert!(findings.text().starts_with("success: no criterion\nfitness of a trial: mean 2.000 "));
+        assert!(findings.by_trial.is_empty() && findings.rate.is_nan());
+        assert_eq!(serde_json::to_value(&findings).unwrap()["successes"], serde_json::Value::Null);
     }
 
     #[test]
@@ -378,7 +324,8 @@ mod tests {
         let findings = table.findings(&["a".into(), "b".into()]);
         assert_eq!(
             findings.text(),
-            "success: 2 of 4 (50.0 %)\nbroken down: 1 of 4 (25.0 %)\nfitness: mean 4.667\n\
+            "success: 2 of 4 (50.0 %, 95 % interval 15.0 to 85.0 %)\nbroken down: 1 of 4 (25.0 %)\n\
+             fitness of a trial: mean 4.667 (95 % interval 3.500 to 7.000)\n\
              phase: lift 2 of 4 (50.0 %), reach 1 of 4 (25.0 %)\nheight: mean 5.000\n"
         );
         let shares = findings.by_trial.values().map(|share| (share.successes, share.of)).collect::<Vec<_>>();
@@ -399,17 +346,17 @@ mod tests {
         // Its other term, its note and its success are those of a trial that was not finished.
         let broken = result(1, f64::NAN, outcome(&[f64::NAN, 50.0], true, 60.0));
         let terms = ["a".to_owned(), "b".to_owned()];
-        let found = Table::new(&terms, &[], &[good.clone(), broken.clone(), good.clone()]).findings(&[]);
-        assert_eq!((found.trials, found.successes, found.broken_down, found.fitness), (3, 2, 1, 3.0));
+        let found = Table::new(&columns(&terms), &[good.clone(), broken.clone(), good.clone()]).findings(&[]);
+        assert_eq!((found.trials, found.successes, found.broken_down, found.fitness), (3, Some(2), 1, 3.0));
         let means = [("a", 1.0), ("b", 2.0), ("height", 4.0)].map(|(name, x)| (name.to_owned(), Finding::Mean(x)));
         assert_eq!(found.notes, means);
         assert_eq!((found.by_trial[&0].rate(), found.by_trial[&1].rate().is_nan()), (1.0, true));
-        assert_eq!(found.rate(), 2.0 / 3.0);
+        assert_eq!(found.rate, 2.0 / 3.0);
 
-        let none = Table::new(&terms, &[], &[broken.clone(), broken]).findings(&terms);
+        let none = Table::new(&columns(&terms), &[broken.clone(), broken]).findings(&terms);
         assert_eq!(
             none.text(),
-            "success: no value\nbroken down: 2 of 2 (100.0 %)\nfitness: no value\nheight: no value\n"
+            "success: no value\nbroken down: 2 of 2 (100.0 %)\nfitness of a trial: no value\nheight: no value\n"
         );
         let json = serde_json::to_value(&none).unwrap();
         assert_eq!((&json["fitness"], &json["broken_down"]), (&serde_json::Value::Null, &2.into()));
@@ -421,7 +368,7 @@ mod tests {
         let head = "index,trial,steps,success,fitness,at\n";
         let good = Table::parse(&format!("{head}0,0,6,true,1.5,0.25\n1,1,6,false,NaN,\n")).unwrap();
         let findings = good.findings(&["fitness".into()]);
-        assert_eq!((findings.successes, findings.broken_down, findings.fitness), (1, 1, 1.5));
+        assert_eq!((findings.successes, findings.broken_down, findings.fitness), (Some(1), 1, 1.5));
         assert_eq!(findings.notes, [("at".to_owned(), Finding::Mean(0.25))]);
         for (text, why) in [
             ("", "is not the table of a test"),

@@ -12,6 +12,8 @@ use crate::run::plan::MAX_SEED;
 
 /// Text of a mean or share over no trials.
 pub(crate) const NO_VALUE: &str = "no value";
+/// Text of the success of a task that does not define it.
+pub(crate) const NO_CRITERION: &str = "no criterion";
 
 /// Returns the episode of a test trial, numbered through all trials, for the first individual. `kinds` is the
 /// experiment's number of trials.
@@ -36,6 +38,11 @@ pub(crate) fn why_failed(evaluator: &dyn Evaluator, outcome: &Outcome) -> Option
     })
 }
 
+/// Gets the success of a trial, `None` for a task without a criterion of success.
+pub(crate) fn success(evaluator: &dyn Evaluator, outcome: &Outcome) -> Option<bool> {
+    evaluator.info().has_success.then(|| outcome.success && why_failed(evaluator, outcome).is_none())
+}
+
 /// Formats a fitness with four digits, or its absence after a failure.
 #[cfg(feature = "command")]
 pub(crate) fn scored(fitness: f64) -> String {
@@ -47,8 +54,12 @@ pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
     if let Some(why) = why_failed(evaluator, outcome) {
         return format!("broken down: {why}");
     }
-    let success = if outcome.success { "success" } else { "no success" };
-    format!("{success}, {}", readable(fitness(evaluator, std::slice::from_ref(outcome))))
+    let fitness = readable(fitness(evaluator, std::slice::from_ref(outcome)));
+    match success(evaluator, outcome) {
+        Some(true) => format!("success, {fitness}"),
+        Some(false) => format!("no success, {fitness}"),
+        None => format!("fitness {fitness}"),
+    }
 }
 
 /// Returns the outcome of a trial by name.
@@ -63,7 +74,7 @@ pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String
         ((*name).to_owned(), value)
     });
     let why = why_failed(evaluator, outcome);
-    let success = (outcome.success && why.is_none()).to_string();
+    let success = success(evaluator, outcome).map_or_else(|| NO_CRITERION.into(), |success| success.to_string());
     let summary = match why {
         Some(why) => [("broken down".to_owned(), why), ("fitness of the trial".to_owned(), NO_VALUE.into())],
         None => [("fitness of the trial".to_owned(), readable(fitness)), ("success".to_owned(), success)],

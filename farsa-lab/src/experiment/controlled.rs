@@ -17,7 +17,7 @@ use crate::experiment::in_world::{InWorld, Rollout};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::network_export::NetworkExport;
 use crate::experiment::neurocontroller::Neurocontroller;
-use crate::experiment::outcome::{Note, Outcome};
+use crate::experiment::outcome::{Combination, Note, Outcome};
 
 /// A world with wheeled robots. This can be a single arena, a lane of a batch, or an arena in rapier.
 pub trait PlanarWorld:
@@ -57,9 +57,9 @@ pub trait Objective: Clone + Send + 'static {
         false
     }
 
-    /// Checks whether the trial succeeded, at its end.
-    fn success(&self) -> bool {
-        false
+    /// Checks whether the trial succeeded, at its end. `None`, the default, is a task without a criterion of success.
+    fn success(&self) -> Option<bool> {
+        None
     }
 
     /// Returns further columns by name, after every step. A replay shows each step, a test the end of each trial. The
@@ -154,6 +154,8 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
             observations: self.control.sensed().len(),
             protocols: self.control.protocols(),
             anatomy: Some(self.control.anatomy()),
+            combination: Some(Combination::Sum),
+            has_success: self.objective.success().is_some(),
             ..TaskInfo::new(self.control.parameters(), self.control.schema().clone())
         }
     }
@@ -178,7 +180,7 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlle
         Outcome {
             terms: vec![*sum],
             steps: *steps,
-            success: objective.success(),
+            success: objective.success().unwrap_or_default(),
             notes,
             observed: self.control.observed().cloned(),
             ..Outcome::default()

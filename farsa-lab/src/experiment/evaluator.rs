@@ -16,7 +16,7 @@ use crate::experiment::disturbance::{Displacement, Push};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
-use crate::experiment::outcome::{Description, Outcome};
+use crate::experiment::outcome::{Combination, Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::{CaseId, Protocol};
 
@@ -47,6 +47,10 @@ pub struct TaskInfo {
     pub step_budget: Option<u64>,
     /// Names of the fitness terms in [`Outcome::terms`], in order. By default `fitness`.
     pub terms: Vec<String>,
+    /// Combination of the trials into the fitness, for texts. By default `None`, which names no combination.
+    pub combination: Option<Combination>,
+    /// Presence of a criterion of success. By default true. Without it a test reports no share of successes.
+    pub has_success: bool,
     /// Names of the populations that evolve against each other, one word each. By default one population, `0`.
     ///
     /// Individuals are numbered through, one population after the other: see [`EpisodeId::population`]. Each population
@@ -85,12 +89,22 @@ impl TaskInfo {
             trials: 1,
             step_budget: None,
             terms: vec!["fitness".into()],
+            combination: None,
+            has_success: true,
             populations: vec!["0".into()],
             robots: Vec::new(),
             observations: 0,
             protocols: Vec::new(),
             anatomy: None,
             warnings: Vec::new(),
+        }
+    }
+
+    /// Formats the combination of the trials, such as `sum of 5 trials`. Empty without a combination.
+    pub(crate) fn combined(&self) -> String {
+        match self.combination {
+            Some(combination) if self.trials > 1 => format!("{combination} of {} trials", self.trials),
+            _ => String::new(),
         }
     }
 

@@ -71,7 +71,7 @@ pub use network_export::NetworkExport;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
 pub use normalized_controller::NormalizedController;
-pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
+pub use outcome::{ChannelGroup, Combination, Description, Failure, Note, Outcome, mean_of_trials};
 pub use parameter::Parameter;
 pub use protocol::{Case, CaseId, Protocol};
 pub use rescored::Rescored;

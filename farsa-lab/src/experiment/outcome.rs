@@ -75,6 +75,29 @@ impl Outcome {
     }
 }
 
+/// Combination of the trials of an individual into its fitness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Combination {
+    /// Sum over the trials.
+    Sum,
+    /// Mean over the trials.
+    Mean,
+    /// Smallest fitness of a trial.
+    Worst,
+}
+
+impl fmt::Display for Combination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Sum => "sum",
+            Self::Mean => "mean",
+            Self::Worst => "worst",
+        })
+    }
+}
+
 /// Computes the sum of all terms, divided by the number of trials.
 ///
 /// Use this to implement [`Task::fitness`](crate::Task::fitness) if the fitness of your experiment is a mean over trials.

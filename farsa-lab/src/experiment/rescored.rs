@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::experiment::behavior::Behavior;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task, TaskInfo};
 use crate::experiment::lanes::Lanes;
-use crate::experiment::outcome::{Outcome, mean_of_trials};
+use crate::experiment::outcome::{Combination, Outcome, mean_of_trials};
 
 /// An evaluator that replaces the terms of all outcomes.
 ///
@@ -40,7 +40,7 @@ fn rescore(score: &Score, outcome: Outcome) -> Outcome {
 
 impl Task for Rescored {
     fn info(&self) -> TaskInfo {
-        TaskInfo { terms: self.names.clone(), ..self.inner.info() }
+        TaskInfo { terms: self.names.clone(), combination: Some(Combination::Mean), ..self.inner.info() }
     }
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)

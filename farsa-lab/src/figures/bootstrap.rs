@@ -2,6 +2,7 @@
 
 use farsa_num::Stream;
 
+use crate::figures::proportion::Z;
 use crate::figures::statistics::Quartiles;
 
 /// Number of resamples, enough for ends with an error of about a hundredth of the interval.
@@ -44,9 +45,47 @@ pub(crate) fn median_interval(values: &[f64]) -> Option<[f64; 2]> {
     Some([0.025, 0.975].map(|share| Quartiles::quantile(&mut medians, share)))
 }
 
+/// Most values that are resampled for the interval of a mean.
+const RESAMPLED: usize = 1000;
+
+/// Computes the 95 % interval of the mean by the percentile method of [Efron1979], and by the normal distribution for more
+/// than a thousand values.
+///
+/// Returns `None` for fewer than two values and for NaN.
+pub(crate) fn mean_interval(values: &[f64]) -> Option<[f64; 2]> {
+    let n = values.len();
+    if n < 2 || values.iter().any(|x| x.is_nan()) {
+        return None;
+    }
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n as f64;
+    if n > RESAMPLED {
+        let center = mean(&mut values.iter().copied());
+        let squares: f64 = values.iter().map(|x| (x - center) * (x - center)).sum();
+        let reach = Z * (squares / (n - 1) as f64 / n as f64).sqrt();
+        return Some([center - reach, center + reach]);
+    }
+    let mut dice = Stream::from_seed(SEED);
+    let mut draw = || values[dice.below(n as u32) as usize];
+    let mut means: Vec<f64> = (0..RESAMPLES).map(|_| mean(&mut (0..n).map(|_| draw()))).collect();
+    Some([0.025, 0.975].map(|share| Quartiles::quantile(&mut means, share)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// With four values of which one is 4, the mean of a resample is the number of draws of the 4. It is binomial with a probability of
+    /// 1/4, so that P(0) = 0.32 and P(3 or 4) = 0.051 are above 0.025, and P(4) = 0.004 is below.
+    #[test]
+    fn a_mean_has_the_ends_of_the_binomial_distribution() {
+        assert_eq!(mean_interval(&[0.0, 4.0, 0.0, 0.0]), Some([0.0, 3.0]));
+        assert_eq!(mean_interval(&[0.0, 1.0]), Some([0.0, 1.0]));
+        assert_eq!((mean_interval(&[1.0]), mean_interval(&[1.0, f64::NAN])), (None, None));
+        // 1.959964 (2000 / 4 / 1999 / 2000)^(1/2) = 0.0219188.
+        let many: Vec<f64> = (0..2000).map(|number| f64::from(number % 2)).collect();
+        let [low, high] = mean_interval(&many).unwrap();
+        assert!((low - 0.478_081_2).abs() < 1e-6 && (high - 0.521_918_8).abs() < 1e-6, "{low} {high}");
+    }
 
     /// The probability that at least half of n draws, one more than half, are among the k smallest of n values: n is odd.
     fn median_within(n: usize, k: usize) -> f64 {

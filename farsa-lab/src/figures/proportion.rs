@@ -1,7 +1,7 @@
 //! Shares of successes with intervals, and Fisher's exact test.
 
 /// 97.5 % quantile of the normal distribution.
-const Z: f64 = 1.959_963_984_540_054;
+pub(crate) const Z: f64 = 1.959_963_984_540_054;
 
 /// A number of successes and of trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

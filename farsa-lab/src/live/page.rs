@@ -65,7 +65,7 @@ struct AboutIndividual {
 struct AboutTrial {
     steps: u32,
     fitness: f64,
-    success: bool,
+    success: Option<bool>,
     /// Number of steps from one digest to the next.
     stride: usize,
     digests: Vec<u32>,

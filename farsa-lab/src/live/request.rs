@@ -79,7 +79,8 @@ pub(crate) struct EpisodeAnswer {
     pub(crate) steps: u32,
     /// NaN if the episode failed.
     pub(crate) fitness: f64,
-    pub(crate) success: bool,
+    /// `None` for a task without a criterion of success.
+    pub(crate) success: Option<bool>,
 }
 
 /// Number of an added individual.
@@ -98,7 +99,8 @@ pub(crate) struct SharedOutcomes {
 #[derive(Debug, Default, PartialEq, Serialize)]
 pub(crate) struct FreshResults {
     pub(crate) trials: usize,
-    pub(crate) successes: usize,
+    /// `None` for a task without a criterion of success.
+    pub(crate) successes: Option<usize>,
     /// Fitness of each trial, NaN for a failed one.
     pub(crate) fitness: Vec<f64>,
 }

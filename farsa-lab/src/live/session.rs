@@ -8,7 +8,7 @@ use serde_json::value::RawValue;
 
 use crate::error::Error;
 use crate::evaluation::trials::episode;
-use crate::evaluation::trials::{came_to, facts, fitness};
+use crate::evaluation::trials::{came_to, facts, fitness, success};
 use crate::experiment::PartNames;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
@@ -207,7 +207,7 @@ impl LiveSession {
         let episode = page.episode(0).unwrap_or_default();
         let episode = RawValue::from_string(episode).map_err(|error| Error::Other(error.to_string()))?;
         let fitness = fitness(evaluator.as_ref(), std::slice::from_ref(&outcome));
-        let success = outcome.success && fitness.is_finite();
+        let success = success(evaluator.as_ref(), &outcome);
         Ok(EpisodeAnswer { episode, digests, steps: outcome.steps, fitness, success })
     }
 
@@ -235,12 +235,9 @@ impl LiveSession {
         let outcomes = outcomes(evaluator.as_mut(), evaluations.collect());
         let fitness = outcomes.iter().map(|outcome| fitness(evaluator.as_ref(), std::slice::from_ref(outcome)));
         let fitness: Vec<f64> = fitness.collect();
-        let finished = outcomes.iter().zip(&fitness).filter(|(_, fitness)| fitness.is_finite());
-        Ok(FreshResults {
-            trials: outcomes.len(),
-            successes: finished.filter(|(outcome, _)| outcome.success).count(),
-            fitness,
-        })
+        let results = outcomes.iter().map(|outcome| success(evaluator.as_ref(), outcome)).collect::<Option<Vec<_>>>();
+        let successes = results.map(|results| results.into_iter().filter(|success| *success).count());
+        Ok(FreshResults { trials: outcomes.len(), successes, fitness })
     }
 
     /// Parses a list of changes, `None` of an empty list.

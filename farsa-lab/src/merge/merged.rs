@@ -1,7 +1,6 @@
 //! `farsa merge`: copies runs and makes a table of them.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -12,7 +11,7 @@ use crate::merge::copy::Copy;
 use crate::merge::gather::{Gathered, Gathering};
 use crate::merge::run_table;
 use crate::run::laboratory::Laboratory;
-use crate::store::replace::create_results;
+use crate::store::replace::{create_results, refuse_existing};
 
 /// Options of the command.
 pub(crate) struct Merge<'a> {
@@ -22,6 +21,8 @@ pub(crate) struct Merge<'a> {
     pub(crate) out: Option<&'a Path>,
     /// A new file for the table.
     pub(crate) csv: Option<&'a Path>,
+    /// A new file for the fitness of every generation.
+    pub(crate) curves: Option<&'a Path>,
 }
 
 /// Results of the command.
@@ -57,9 +58,7 @@ impl Merge<'_> {
         if let Some(out) = self.out {
             apart(out, self.directories)?;
         }
-        if let Some(csv) = self.csv.filter(|csv| fs::symlink_metadata(csv).is_ok_and(|found| found.is_file())) {
-            return Err(Error::Usage(format!("{}: there is one already", csv.display())));
-        }
+        self.csv.into_iter().chain(self.curves).try_for_each(refuse_existing)?;
         let Gathering { runs, twins } = Gathering::new(laboratory, self.directories)?;
         let finished = runs.iter().filter(|run| run.is_finished());
         let copies = self.out.map_or(Ok(Vec::new()), |out| Copy::all(finished, out, laboratory))?;
@@ -72,12 +71,13 @@ impl Merge<'_> {
             })
             .collect();
         let table = run_table::csv(&rows)?;
+        let curves = self.curves.map(|path| Ok::<_, Error>((path, run_table::curves(&rows)?))).transpose()?;
         for copy in copies.iter().filter(|copy| !copy.there) {
             copy.make(laboratory)?;
         }
-        if let Some(csv) = self.csv {
-            create_results(&[(csv.to_path_buf(), &table)])?;
-        }
+        let files = self.csv.map(|path| (path, table.clone())).into_iter().chain(curves);
+        let files: Vec<(PathBuf, Vec<u8>)> = files.map(|(path, content)| (path.to_path_buf(), content)).collect();
+        create_results(&files)?;
         let names =
             |there: bool| copies.iter().filter(move |copy| copy.there == there).map(|copy| shown(&copy.to)).collect();
         let unfinished = runs.iter().filter(|run| !run.is_finished()).map(|run| Unfinished {

@@ -9,6 +9,56 @@ use crate::merge::gather::Gathered;
 use crate::store::log::Line;
 use crate::strategy::settings::{GENERATIONS, STRATEGY};
 
+/// Formats a CSV line for each generation of each population of each run, with the given place of the run.
+///
+/// # Errors
+/// [`Error::File`] if the table cannot be written, and the errors of preparing an experiment.
+pub(crate) fn curves(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
+    let keys = differing(runs);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let refused = |error: &dyn std::fmt::Display| Error::damaged(Path::new("the table of the curves"), error);
+    let columns = ["population", "generation", "evaluations", "failed", "best", "mean", "worst"];
+    let head = HEAD.into_iter().chain(keys.iter().copied()).chain(columns);
+    writer.write_record(head).map_err(|error| refused(&error))?;
+    for (run, place) in runs {
+        let (start, names) = (labels(run, place, &keys), names(run)?);
+        let [mut evaluations, mut failed] = [0_u64; 2];
+        for (generation, line) in run.lines.iter().enumerate() {
+            (evaluations, failed) = (evaluations + line.evaluations, failed + line.failed);
+            let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
+            for (population, row) in rows.iter().enumerate() {
+                let name = names.get(population).cloned().unwrap_or_default();
+                let mut cells = vec![name, generation.to_string(), evaluations.to_string(), failed.to_string()];
+                cells.extend(row.iter().map(|x| number(Some(*x))));
+                writer.write_record(start.iter().chain(&cells)).map_err(|error| refused(&error))?;
+            }
+        }
+    }
+    writer.into_inner().map_err(|error| refused(&error))
+}
+
+/// First columns, which name a run.
+const HEAD: [&str; 5] = ["directory", "experiment", "condition", "strategy", "seed"];
+
+/// Lists the fields of a run for [`HEAD`] and for these settings.
+fn labels(run: &Gathered<'_>, place: &Path, keys: &[&str]) -> Vec<String> {
+    let plan = &run.plan;
+    let mut row = vec![
+        place.display().to_string(),
+        plan.experiment.name().to_owned(),
+        plan.condition.clone(),
+        plan.definition().name().to_owned(),
+        plan.seed.to_string(),
+    ];
+    row.extend(keys.iter().map(|key| plan.settings.get(key).map(plain).unwrap_or_default()));
+    row
+}
+
+/// Formats a number, or nothing without a successful evaluation.
+fn number(x: Option<f64>) -> String {
+    x.filter(|x| x.is_finite()).map(|x| format!("{x:?}")).unwrap_or_default()
+}
+
 /// Formats a CSV line for each run, with the given place.
 ///
 /// # Errors
@@ -16,7 +66,7 @@ use crate::strategy::settings::{GENERATIONS, STRATEGY};
 pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
     let keys = differing(runs);
     let populations = populations(runs)?;
-    let mut head: Vec<String> = ["directory", "experiment", "condition", "strategy", "seed"].map(str::to_owned).into();
+    let mut head: Vec<String> = HEAD.map(str::to_owned).into();
     head.extend(keys.iter().map(|&key| key.to_owned()));
     head.extend(
         ["generations", "finished", "evaluations", "failed", "best", "mean", "highest best"].map(str::to_owned),
@@ -34,20 +84,10 @@ pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
 }
 
 fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) -> Result<Vec<String>, Error> {
-    let plan = &run.plan;
-    let mut row = vec![
-        place.display().to_string(),
-        plan.experiment.name().to_owned(),
-        plan.condition.clone(),
-        plan.definition().name().to_owned(),
-        plan.seed.to_string(),
-    ];
-    row.extend(keys.iter().map(|key| plan.settings.get(key).map(plain).unwrap_or_default()));
+    let mut row = labels(run, place, keys);
     let sum = |what: fn(&Line) -> u64| run.lines.iter().map(what).sum::<u64>().to_string();
-    row.extend([run.lines.len().to_string(), if run.is_finished() { "yes" } else { "no" }.to_owned()]);
+    row.extend([run.lines.len().to_string(), run.is_finished().to_string()]);
     row.extend([sum(|line| line.evaluations), sum(|line| line.failed)]);
-    // Without a successful evaluation there is no number.
-    let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map(|x| format!("{x:?}")).unwrap_or_default();
     let last = run.lines.last();
     row.extend([0, 1].map(|which| number(last.map(|line| line.row[which]))));
     row.push(number(run.lines.iter().map(|line| line.row[0]).reduce(f64::max)));
@@ -60,12 +100,12 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
     let test = match test::read(&run.directory)? {
         None => Default::default(),
         Some((table, record)) => {
-            let findings = table.findings(&plan.evaluator()?.info().terms);
+            let findings = table.findings(&run.plan.evaluator()?.info().terms);
             [
                 record.map(|record| record.generation.to_string()).unwrap_or_default(),
                 findings.trials.to_string(),
                 findings.broken_down.to_string(),
-                number(Some(findings.rate())),
+                number(Some(findings.rate)),
                 number(Some(findings.fitness)),
             ]
         }

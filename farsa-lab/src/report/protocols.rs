@@ -118,7 +118,7 @@ impl Alike<'_> {
 
     /// Returns the share of success of a case in each run, without runs in which all trials broke down.
     fn rates(&self, case: usize) -> Vec<f64> {
-        let rates = self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate));
+        let rates = self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.findings.rate));
         rates.filter(|rate| !rate.is_nan()).collect()
     }
 
@@ -126,9 +126,9 @@ impl Alike<'_> {
     fn held_out(&self) -> Option<HeldOut<'_>> {
         let cases: Vec<usize> = (0..self.cases.len()).filter(|case| self.cases[*case].held_out).collect();
         let names = cases.iter().map(|case| self.cases[*case].name()).collect();
-        let rates = |tested: &TestedProtocol| cases.iter().map(|case| tested.found[*case].rate).collect();
+        let rates = |tested: &TestedProtocol| cases.iter().map(|case| tested.found[*case].findings.rate).collect();
         let runs = self.runs.iter().map(|(_, tested)| rates(tested)).collect();
-        (!cases.is_empty()).then_some(HeldOut { label: self.label, cases: names, runs })
+        (!cases.is_empty() && self.has_success()).then_some(HeldOut { label: self.label, cases: names, runs })
     }
 
     /// Returns the mean share of a case, a note, and the ends of its interval or the extremes of several runs.
@@ -137,7 +137,8 @@ impl Alike<'_> {
         let mean = rates.iter().sum::<f64>() / rates.len() as f64;
         if let [(_, tested)] = self.runs.as_slice() {
             return tested.found.get(case).map_or((f64::NAN, String::new(), [f64::NAN; 2]), |case| {
-                (mean, format!("{} of {}", case.findings.successes, case.findings.trials), case.interval)
+                let successes = case.findings.successes.unwrap_or_default();
+                (mean, format!("{successes} of {}", case.findings.trials), case.findings.interval)
             });
         }
         if rates.is_empty() {
@@ -148,8 +149,14 @@ impl Alike<'_> {
         (mean, format!("{low} to {high}"), ends)
     }
 
+    /// Checks if the task has a criterion of success.
+    fn has_success(&self) -> bool {
+        let cases = self.runs.iter().flat_map(|(_, tested)| &tested.found);
+        cases.into_iter().any(|case| case.findings.successes.is_some())
+    }
+
     fn figure(&self) -> Option<Figure> {
-        let (_, tested) = self.runs.first()?;
+        let (_, tested) = self.runs.first().filter(|_| self.has_success())?;
         let Protocol { name, axes, .. } = &tested.protocol;
         let rows = Protocol::places(&self.cases, |case| &case.row);
         let columns = Protocol::places(&self.cases, |case| &case.column);
@@ -177,6 +184,9 @@ impl Alike<'_> {
 
     /// Returns a curve of shares per column over rows that are numbers, `None` for other rows or missing cells.
     fn rates_by_row(&self) -> Option<(Vec<&str>, Vec<RateCurve<'_>>)> {
+        if !self.has_success() {
+            return None;
+        }
         let rows = Protocol::places(&self.cases, |case| &case.row);
         let columns = Protocol::places(&self.cases, |case| &case.column);
         rates::values(&rows)?;
@@ -261,10 +271,11 @@ impl Alike<'_> {
             let blocks = [Block::Text(champion(run, tested)), Block::Table(single(tested))];
             blocks.into_iter().chain(states(run, tested))
         });
-        vec![
-            Block::Text(format!("{}: share of the trials that succeeded.", self.whose())),
-            Block::Table(table),
-            Block::Fold(format!("Each of the {} runs", self.runs.len()), details.collect()),
-        ]
+        let each = Block::Fold(format!("Each of the {} runs", self.runs.len()), details.collect());
+        if !self.has_success() {
+            return vec![each];
+        }
+        let text = format!("{}: share of the trials that succeeded.", self.whose());
+        vec![Block::Text(text), Block::Table(table), each]
     }
 }

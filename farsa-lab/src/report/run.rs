@@ -4,8 +4,9 @@ use std::cmp::Ordering;
 use std::time::Duration;
 
 use crate::error::Error;
+use crate::evaluation::findings::Findings;
 use crate::evaluation::test::{self, Record};
-use crate::evaluation::test_table::{Findings, Table};
+use crate::evaluation::test_table::Table;
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::Value;
 use crate::report::tested_protocol::TestedProtocol;
@@ -153,9 +154,9 @@ impl<'e> Run<'e> {
         }
     }
 
-    /// Gets the share of successful trials of the test, unless all of them broke down.
+    /// Gets the share of successful trials of the test, if it has one.
     pub(crate) fn success(&self) -> Option<f64> {
-        self.test.as_ref().map(|Tested { findings, .. }| findings.rate()).filter(|rate| !rate.is_nan())
+        self.test.as_ref().map(|Tested { findings, .. }| findings.rate).filter(|rate| !rate.is_nan())
     }
 
     /// Computes the time of all sessions [s].

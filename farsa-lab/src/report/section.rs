@@ -4,7 +4,9 @@ use std::time::{Duration, UNIX_EPOCH};
 
 use crate::error::{Error, FileFault};
 use crate::evaluation::draw::{self, Portrait};
-use crate::evaluation::test_table::Finding;
+use crate::evaluation::findings::Finding;
+use crate::evaluation::trials::NO_CRITERION;
+use crate::experiment::settings::Value;
 use crate::figures::significant::counted;
 use crate::figures::statistics::median;
 use crate::report::curves::figures;
@@ -127,6 +129,8 @@ fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
                 _ => run.lines.len().to_string(),
             })),
             match (run.value(POPULATION), evaluator.info().populations.len()) {
+                // The strategy chooses the size.
+                (Some(Value::Whole(0)), _) => "chosen by the strategy".into(),
                 (Some(size), 1) => size.to_string(),
                 (Some(size), populations) => format!("{populations} populations of {size}"),
                 (None, _) => "1 parent and 1 mutant".into(),
@@ -138,7 +142,10 @@ fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
                 let (genes, bits) = (evaluator.info().parameters.len(), run.plan.experiment.gene_bits());
                 format!("{} of {}", counted(genes, "gene"), counted(bits as usize, "bit"))
             },
-            evaluator.info().terms.join(" + "),
+            [evaluator.info().combined(), evaluator.info().terms.join(" + ")]
+                .join(": ")
+                .trim_start_matches(": ")
+                .into(),
         ];
         table.head.push(group.label.clone());
         for (row, cell) in table.rows.iter_mut().zip(cells) {
@@ -185,7 +192,7 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             let mut row = vec![run.name(), champion, findings.trials.to_string()];
             row.extend(broken_down.then(|| findings.broken_down.to_string()));
             row.extend([
-                percent(findings.rate()),
+                if findings.successes.is_none() { NO_CRITERION.into() } else { percent(findings.rate) },
                 // Many kinds of trials are only counted.
                 if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") },
                 short(findings.fitness),
@@ -235,7 +242,7 @@ fn middle(group: &Group<'_>, names: &[&str], broken_down: bool) -> Vec<String> {
     let mut row = vec![format!("median, {}", group.label), String::new(), String::new()];
     row.extend(broken_down.then(String::new));
     row.extend([
-        shown(findings.iter().map(|found| found.rate()).collect(), percent),
+        shown(findings.iter().map(|found| found.rate).collect(), percent),
         String::new(),
         shown(findings.iter().map(|found| found.fitness).collect(), short),
     ]);

@@ -103,6 +103,8 @@ struct Run<'d> {
     title: String,
     /// Names of the populations.
     names: Vec<String>,
+    /// Combination of the trials into the fitness.
+    combined: String,
     identity: Identity,
     search_state: SearchState,
     record: RecordWriter,
@@ -141,6 +143,7 @@ impl<'d> Run<'d> {
             program,
             title: plan.name(),
             names: pool.info().populations.clone(),
+            combined: pool.info().combined(),
             identity: checkpoint.identity,
             collection: CollectionTable::new(search, pool.evaluator()),
             curves: LogCurves::from_lines(&run_record.lines, run_record.record.populations()),
@@ -274,6 +277,8 @@ impl<'d> Run<'d> {
             generations: self.search_state.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             failed: failures::count(&self.directory.failures())?,
+            test: None,
+            combined: self.combined.clone(),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),
             champions: if champions.len() > 1 { champions } else { Vec::new() },

@@ -42,7 +42,7 @@ pub(crate) struct Queue<'q, 'e> {
 #[derive(Debug)]
 pub(crate) enum State {
     Finished {
-        summary: Summary,
+        summary: Box<Summary>,
         /// True if all generations were finished before this process began.
         skipped: bool,
     },
@@ -112,7 +112,7 @@ impl Queue<'_, '_> {
         let place = OneLine(path.display());
         let skip = |summary: Summary| {
             self.tell(&format!("{name}: {place}: all {} generations are finished already", summary.generations));
-            Ok(State::Finished { summary, skipped: true })
+            Ok(State::Finished { summary: Box::new(summary), skipped: true })
         };
         if let Some(summary) = finished(&plan, &path)? {
             return skip(summary);
@@ -138,7 +138,7 @@ impl Queue<'_, '_> {
             error => error,
         })?;
         self.tell(&summary.text());
-        Ok(State::Finished { summary, skipped: false })
+        Ok(State::Finished { summary: Box::new(summary), skipped: false })
     }
 
     fn tell(&self, line: &str) {
@@ -220,6 +220,8 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
         evaluations: 0,
         failed: failures::count(&directory.failures())?,
         seconds: 0.0,
+        test: None,
+        combined: String::new(),
         champion: champions.first().cloned(),
         champions: if champions.len() > 1 { champions } else { Vec::new() },
     }))

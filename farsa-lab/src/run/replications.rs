@@ -13,7 +13,7 @@ use crate::figures::statistics::{Quartiles, median};
 use crate::run::plan::{MAX_SEED, Plan};
 use crate::run::pool::Pool;
 use crate::run::queue::{Member, Queue, State};
-use crate::run::summary::Summary;
+use crate::run::summary::{ChampionTest, Summary};
 use crate::run::text_table::text_table;
 
 /// Selected replications of a plan.
@@ -99,7 +99,7 @@ pub(crate) fn run<'e>(
     let (mut runs, mut elsewhere) = (Vec::new(), Vec::new());
     for state in states {
         match state {
-            State::Finished { summary, skipped } => runs.push(Replication { summary, skipped }),
+            State::Finished { summary, skipped } => runs.push(Replication { summary: *summary, skipped }),
             State::Elsewhere(path) => elsewhere.push(path.display().to_string()),
         }
     }
@@ -108,11 +108,19 @@ pub(crate) fn run<'e>(
 }
 
 impl Replications {
+    /// Iterates over the summaries of the runs.
+    pub(crate) fn summaries(&mut self) -> impl Iterator<Item = &mut Summary> {
+        self.runs.iter_mut().map(|run| &mut run.summary)
+    }
+
     /// Formats a table with a line for each replication and the statistics of their champions.
     pub(crate) fn text(&self) -> String {
         let failed = self.runs.iter().any(|run| run.summary.failed > 0);
-        let head = ["directory", "seed", "generations", "champion", "fitness"];
-        let mut rows = vec![head.into_iter().chain(failed.then_some("failed")).map(str::to_owned).collect::<Vec<_>>()];
+        let tested = self.runs.iter().any(|run| run.summary.test.is_some());
+        let mut head = vec!["directory", "seed", "generations", "champion", "fitness"];
+        head.extend(failed.then_some("failed"));
+        head.extend(["test success", "test fitness"].iter().filter(|_| tested));
+        let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
         rows.extend(self.runs.iter().map(|Replication { summary, .. }| {
             let Summary { directory, seed, generations, champion, .. } = summary;
             let individual = champion.as_ref().map(|champion| champion.individual.to_string()).unwrap_or_default();
@@ -120,9 +128,10 @@ impl Replications {
             let mut row = vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual];
             row.push(fitness);
             row.extend(failed.then(|| summary.failed.to_string()));
+            row.extend(ChampionTest::cells(summary.test.as_ref()).into_iter().filter(|_| tested));
             row
         }));
-        let mut text = text_table(&rows, 1..4);
+        let mut text = text_table(&rows, 1..8);
         let fitness: Vec<f64> = self.runs.iter().filter_map(|run| run.summary.fitness()).collect();
         if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness) {
             // Writing into a string cannot fail.

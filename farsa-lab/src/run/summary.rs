@@ -19,6 +19,12 @@ pub(crate) struct Summary {
     /// Failed evaluations of all sessions.
     pub(crate) failed: u64,
     pub(crate) seconds: f64,
+    /// Test of the champion, where one is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) test: Option<ChampionTest>,
+    /// Combination of the trials into the fitness. Empty for a single trial and for a run of an earlier process.
+    #[serde(skip)]
+    pub(crate) combined: String,
     /// Champion of the first population. `None` if no generation was left.
     pub(crate) champion: Option<Winner>,
     /// Champions of all populations, if there are several.
@@ -36,11 +42,34 @@ pub(crate) struct Winner {
     pub(crate) fitness: f64,
 }
 
+/// Test of a champion on fresh starts.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct ChampionTest {
+    pub(crate) trials: usize,
+    pub(crate) broken_down: usize,
+    /// Share of the trials that succeeded, `None` without one.
+    pub(crate) success: Option<f64>,
+    /// Mean fitness of the trials, `None` if all broke down.
+    pub(crate) fitness: Option<f64>,
+}
+
+impl ChampionTest {
+    /// Formats the share of successes and the mean fitness of a trial.
+    pub(crate) fn cells(test: Option<&Self>) -> [String; 2] {
+        let none = || "–".to_owned();
+        let success = test.and_then(|test| test.success);
+        let fitness = test.and_then(|test| test.fitness);
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        [success.map_or_else(none, percent), fitness.map_or_else(none, significant)]
+    }
+}
+
 impl Winner {
     /// Formats the fitness, unless every evaluation of its generation failed.
-    fn scored(&self) -> String {
+    fn scored(&self, combined: &str) -> String {
         if self.fitness.is_finite() {
-            format!("fitness {}", significant(self.fitness))
+            let combined = if combined.is_empty() { String::new() } else { format!(" ({combined})") };
+            format!("fitness {}{combined}", significant(self.fitness))
         } else {
             "no fitness, all evaluations of this generation failed".into()
         }
@@ -60,13 +89,27 @@ impl Winner {
 }
 
 impl Summary {
-    /// Formats the summary as one line.
+    /// Formats the summary as one line, and the test of the champion as a second one.
     pub(crate) fn text(&self) -> String {
+        let Some(test) = &self.test else { return self.line() };
+        let [success, fitness] = ChampionTest::cells(Some(test));
+        let broken_down = match test.broken_down {
+            0 => String::new(),
+            failed => format!(", {failed} broke down"),
+        };
+        let trials = test.trials;
+        format!(
+            "{}\ntest of {trials} trials: success {success}, mean fitness of a trial {fitness}{broken_down}",
+            self.line()
+        )
+    }
+
+    fn line(&self) -> String {
         let (directory, generations) = (OneLine(&self.directory), self.generations);
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
             let all = self.champions.iter().map(|winner| {
                 let (name, individual) = (winner.population.as_deref().unwrap_or_default(), winner.individual);
-                format!("{} individual {individual}, {}", OneLine(name), winner.scored())
+                format!("{} individual {individual}, {}", OneLine(name), winner.scored(&self.combined))
             });
             let all = all.collect::<Vec<_>>().join("; ");
             let champions = format!("champions of generation {generation}: {all}");
@@ -77,7 +120,7 @@ impl Summary {
             Some(winner @ Winner { generation, individual, .. }) => format!(
                 "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
                  {}{}",
-                winner.scored(),
+                winner.scored(&self.combined),
                 self.failures()
             ),
         }

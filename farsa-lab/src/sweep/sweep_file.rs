@@ -11,6 +11,8 @@ use crate::strategy::settings::STRATEGY;
 
 /// Largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
+/// Largest number of trials of a test.
+const MAX_TEST_TRIALS: i64 = 100_000_000;
 
 /// A configuration in which some settings have several values.
 #[derive(Debug)]
@@ -21,6 +23,8 @@ pub(crate) struct SweepFile {
     pub(crate) axes: Vec<Axis>,
     /// Distinct seeds of every point, at least one.
     pub(crate) seeds: Vec<u64>,
+    /// Trials of the test of each champion, if there is one.
+    pub(crate) test_trials: Option<u32>,
 }
 
 /// Keys with values that change together.
@@ -38,6 +42,7 @@ struct Added {
     list: Vec<Column>,
     replications: Option<Entry<u32>>,
     seeds: Option<Entry<Vec<u64>>>,
+    test_trials: Option<u32>,
 }
 
 type Column = (Entry<String>, Vec<Entry<Value>>);
@@ -56,7 +61,7 @@ impl SweepFile {
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let mut added = Added::default();
         let base = ConfigFile::parse_beside(name, text, &mut |found| added.take(found))?;
-        let Added { grid, list, replications, seeds } = added;
+        let Added { grid, list, replications, seeds, test_trials } = added;
         let mut axes: Vec<Axis> = Vec::new();
         for (key, values) in grid {
             let rows = values.into_iter().map(|value| vec![value]).collect();
@@ -79,7 +84,7 @@ impl SweepFile {
             }
         }
         let seeds = seeds_of(&base, replications, seeds)?;
-        Ok(Self { base, axes, seeds })
+        Ok(Self { base, axes, seeds, test_trials })
     }
 }
 
@@ -106,6 +111,17 @@ impl Added {
                 self.seeds = Some(Entry { value: listed_seeds(found)?, place: found.place.into() });
                 Ok(true)
             }
+            None if found.key == "test" && found.value.is_none() => Ok(true),
+            Some(("test", "trials")) => {
+                let count = match found.value()? {
+                    Value::Whole(count @ 1..=MAX_TEST_TRIALS) => u32::try_from(count).ok(),
+                    _ => None,
+                };
+                let why = format!("is not a whole number from 1 to {MAX_TEST_TRIALS}");
+                self.test_trials = Some(count.ok_or_else(|| wrong(&key(found.key), &why))?);
+                Ok(true)
+            }
+            Some(("test", name)) => Err(Error::unknown(found.place, "key", &format!("test.{name}"), ["test.trials"])),
             Some((table @ ("grid" | "list"), name)) => {
                 let key = key(name);
                 match name {
@@ -220,7 +236,9 @@ mod tests {
         assert_eq!((value, place.as_str()), (&Value::Number(2.5), "my.toml line 10"));
         assert_eq!(file.axes[2].rows[1][1].value, Value::Numbers(vec![2.0, 3.0]));
         let seeds = SweepFile::parse("my.toml", "seed = [9, 2]\n[grid]\na.b = [1]\n").unwrap();
-        assert_eq!(seeds.seeds, [9, 2]);
+        assert_eq!((seeds.seeds, seeds.test_trials), (vec![9, 2], None));
+        let tested = SweepFile::parse("my.toml", "[grid]\na.b = [1]\n[test]\ntrials = 50\n").unwrap();
+        assert_eq!((tested.base.entries.len(), tested.test_trials), (0, Some(50)));
     }
 
     #[test]
@@ -261,6 +279,14 @@ mod tests {
             (
                 format!("replications = 10001\n{grid}"),
                 "my.toml line 1: `replications`: is not a whole number from 1 to 10000",
+            ),
+            (
+                format!("{grid}[test]\ntrials = 0\n"),
+                "my.toml line 4: `test.trials`: is not a whole number from 1 to 100000000",
+            ),
+            (
+                format!("{grid}[test]\ntrial = 5\n"),
+                "my.toml line 4: unknown key `test.trial`; the nearest is `test.trials`",
             ),
             (format!("seed = [1, 2, 1]\n{grid}"), "my.toml line 1: `seed`: 1 is listed twice"),
             (format!("seed = []\n{grid}"), "my.toml line 1: `seed`: has no value"),

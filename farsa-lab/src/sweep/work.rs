@@ -151,7 +151,7 @@ impl<'s, 'e> Sweep<'s, 'e> {
         self.check(&runs, ready)?;
         let states = runs.iter().map(|run| {
             let Member { plan, path, .. } = self.member(*run)?;
-            Ok(finished(&plan, &path)?.map(|summary| State::Finished { summary, skipped: true }))
+            Ok(finished(&plan, &path)?.map(|summary| State::Finished { summary: Box::new(summary), skipped: true }))
         });
         let states: Vec<Option<State>> = states.collect::<Result<_, Error>>()?;
         Ok(self.found(&runs, states.into_iter()))
@@ -173,7 +173,7 @@ impl<'s, 'e> Sweep<'s, 'e> {
             let Some(last) = points.last_mut() else { continue };
             last.replications += 1;
             match state {
-                Some(State::Finished { summary, .. }) => last.runs.push(summary),
+                Some(State::Finished { summary, .. }) => last.runs.push(*summary),
                 Some(State::Elsewhere(path)) => last.elsewhere.push(path.display().to_string()),
                 None => {}
             }
@@ -185,9 +185,18 @@ impl<'s, 'e> Sweep<'s, 'e> {
     }
 }
 
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
 impl Point {
     fn fitness(&self) -> Vec<f64> {
         self.runs.iter().filter_map(Summary::fitness).collect()
+    }
+
+    /// Lists the shares of success in the tests of its champions.
+    fn successes(&self) -> Vec<f64> {
+        self.runs.iter().filter_map(|run| run.test?.success).collect()
     }
 
     /// Counts the failed evaluations of its finished runs.
@@ -197,22 +206,31 @@ impl Point {
 }
 
 impl Found {
+    /// Iterates over the summaries of the runs.
+    pub(crate) fn summaries(&mut self) -> impl Iterator<Item = &mut Summary> {
+        self.points.iter_mut().flat_map(|point| &mut point.runs)
+    }
+
     /// Formats a table with a line for each point.
     pub(crate) fn text(&self) -> String {
         let some = self.points.iter().any(|point| point.failed() > 0);
-        let mut head = ["point", "finished", "median", "quartiles"].map(str::to_owned).to_vec();
-        head.extend(some.then(|| "failed".to_owned()).into_iter().chain(["directory".to_owned()]));
-        let mut rows = vec![head];
+        let tested = self.points.iter().flat_map(|point| &point.runs).any(|run| run.test.is_some());
+        let mut head = vec!["point", "finished", "median", "quartiles"];
+        head.extend(some.then_some("failed"));
+        head.extend(tested.then_some("test success"));
+        head.push("directory");
+        let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
         rows.extend(self.points.iter().map(|point| {
-            let [median, quartiles] = match Quartiles::from_values(&point.fitness()) {
+            let [middle, quartiles] = match Quartiles::from_values(&point.fitness()) {
                 None => ["–".to_owned(), "–".to_owned()],
                 Some(Quartiles { lower, median, upper }) => {
                     [significant(median), format!("{} to {}", significant(lower), significant(upper))]
                 }
             };
             let finished = format!("{} of {}", point.runs.len(), point.replications);
-            let mut row = vec![point.number.to_string(), finished, median, quartiles];
+            let mut row = vec![point.number.to_string(), finished, middle, quartiles];
             row.extend(some.then(|| point.failed().to_string()));
+            row.extend(tested.then(|| median(&point.successes()).map_or_else(|| "–".into(), percent)));
             row.push(point.directory.clone());
             row
         }));

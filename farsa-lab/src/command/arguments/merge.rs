@@ -14,9 +14,12 @@ pub(crate) struct MergeArgs {
     /// Copy finished runs into this directory under their names, without overwriting
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
-    /// A new file for the table of all runs [default without --out: standard output]
+    /// A new file for the table of all runs [default without --out and --curves: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) csv: Option<PathBuf>,
+    /// A new file for the learning curves of all runs, a line per generation and population
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    curves: Option<PathBuf>,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -24,11 +27,12 @@ pub(crate) struct MergeArgs {
 
 impl MergeArgs {
     pub(crate) fn merge(&self) -> Merge<'_> {
-        Merge { directories: &self.directories, out: self.out.as_deref(), csv: self.csv.as_deref() }
+        let Self { directories, out, csv, curves, .. } = self;
+        Merge { directories, out: out.as_deref(), csv: csv.as_deref(), curves: curves.as_deref() }
     }
 
     /// Returns true if the table is written to standard output.
     pub(crate) fn prints(&self) -> bool {
-        self.out.is_none() && self.csv.is_none() && !self.json
+        self.out.is_none() && self.csv.is_none() && self.curves.is_none() && !self.json
     }
 }

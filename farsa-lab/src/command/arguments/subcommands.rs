@@ -151,6 +151,9 @@ pub(crate) struct RunArgs {
     /// Make G runs in parallel, each on a part of the ranks
     #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = whole(1..=u32::MAX))]
     pub(crate) groups: Option<u32>,
+    /// Test each champion in N trials, as `test` does
+    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
+    pub(crate) test: Option<u32>,
     /// Read settings from a TOML file (--set takes precedence)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,

@@ -18,6 +18,9 @@ pub(crate) struct SweepArgs {
     /// Only the K-th replication of each point, from 1
     #[arg(long, value_name = "K", value_parser = whole(1..=u32::MAX))]
     replication: Option<u32>,
+    /// Test each champion in N trials [default: test.trials of the file, or none]
+    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
+    pub(crate) test: Option<u32>,
     /// Check and list all points with their finished runs, without starting any
     #[arg(long)]
     pub(crate) list: bool,

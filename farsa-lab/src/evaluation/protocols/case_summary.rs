@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use crate::evaluation::findings::{Finding, Findings, Share, as_map};
 use crate::evaluation::protocols::table::ProtocolTable;
-use crate::evaluation::test_table::{Finding, Findings, Share, as_map, own_columns};
+use crate::evaluation::test_table::own_columns;
 use crate::evaluation::trials::NO_VALUE;
 use crate::experiment::protocol::{Case, Protocol};
-use crate::figures::proportion::Proportion;
 use crate::figures::significant::significant;
 use crate::run::text_table::text_table;
 
@@ -18,10 +18,6 @@ pub(crate) struct CaseSummary {
     pub(crate) row: String,
     pub(crate) column: String,
     pub(crate) held_out: bool,
-    /// Share of the trials that succeeded, NaN if all broke down.
-    pub(crate) rate: f64,
-    /// Its interval of 95 %, by Wilson's score. NaN without a share.
-    pub(crate) interval: [f64; 2],
     /// Means of the terms of the fitness, where there are several.
     #[serde(serialize_with = "as_map")]
     pub(crate) terms: Vec<(String, Finding)>,
@@ -38,11 +34,8 @@ impl CaseSummary {
     fn new(case: &Case, mut findings: Findings, terms: &[String]) -> Self {
         let (terms, notes) = std::mem::take(&mut findings.notes).into_iter().partition(|note| terms.contains(&note.0));
         findings.notes = notes;
-        let share = Proportion { successes: findings.successes, of: findings.trials };
         let Case { row, column, held_out } = case.clone();
-        let rate = findings.rate();
-        let interval = if rate.is_nan() { [f64::NAN; 2] } else { share.interval() };
-        Self { row, column, held_out, rate, interval, terms, findings }
+        Self { row, column, held_out, terms, findings }
     }
 
     /// Gets the case.
@@ -69,21 +62,25 @@ pub(crate) fn rows(protocol: &Protocol, found: &[CaseSummary]) -> (Vec<Vec<Strin
     let broken_down = found.iter().any(|case| case.findings.broken_down > 0);
     head.push("trials".into());
     head.extend(broken_down.then(|| "broken down".to_owned()));
-    head.extend(["success", "rate", "95 % interval", "fitness"].map(str::to_owned));
+    let has_success = found.iter().any(|case| case.findings.successes.is_some());
+    head.extend(["success", "rate", "95 % interval"].iter().filter(|_| has_success).map(|&name| name.to_owned()));
+    head.push("fitness".into());
     let names = means(found);
     head.extend(names.iter().map(|&name| name.to_owned()));
     let line = |case: &CaseSummary| {
         let mut line = vec![case.row.clone()];
         line.extend(columns.then(|| case.column.clone()));
         line.extend(held_out.then(|| if case.held_out { "held out" } else { "trained" }.to_owned()));
-        let Findings { trials, successes, fitness, .. } = &case.findings;
+        let Findings { trials, successes, rate, interval, fitness, .. } = &case.findings;
         line.push(trials.to_string());
         line.extend(broken_down.then(|| case.findings.broken_down.to_string()));
-        if case.rate.is_nan() {
-            line.extend(["–"; 3].map(str::to_owned));
-        } else {
-            let [low, high] = case.interval.map(|share| format!("{:.1}", 100.0 * share));
-            line.extend([successes.to_string(), format!("{:.1} %", 100.0 * case.rate), format!("{low} to {high} %")]);
+        match successes {
+            _ if !has_success => {}
+            Some(successes) if !rate.is_nan() => {
+                let [low, high] = interval.map(|share| format!("{:.1}", 100.0 * share));
+                line.extend([successes.to_string(), format!("{:.1} %", 100.0 * rate), format!("{low} to {high} %")]);
+            }
+            _ => line.extend(["–"; 3].map(str::to_owned)),
         }
         line.push(if fitness.is_finite() { significant(*fitness) } else { "–".into() });
         line.extend(names.iter().map(|&name| match case.means().find(|mean| mean.0 == name) {
@@ -108,14 +105,15 @@ fn means(found: &[CaseSummary]) -> Vec<&str> {
 pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
     let (rows, words) = rows(protocol, found);
     let mut text = text_table(&rows, words..usize::MAX);
-    if found.iter().any(|case| case.held_out) {
+    let has_success = found.iter().any(|case| case.findings.successes.is_some());
+    if has_success && found.iter().any(|case| case.held_out) {
         text.push('\n');
         for (held_out, kind) in [(false, "trained"), (true, "held out")] {
             let cases = found.iter().filter(|case| case.held_out == held_out);
             let total = cases.fold(Share::default(), |total, case| {
                 let Findings { trials, successes, broken_down, .. } = &case.findings;
                 Share {
-                    successes: total.successes + successes,
+                    successes: total.successes + successes.unwrap_or_default(),
                     of: total.of + trials,
                     broken_down: total.broken_down + broken_down,
                 }
@@ -137,6 +135,7 @@ pub(crate) fn text(protocol: &Protocol, found: &[CaseSummary]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::proportion::Proportion;
     use serde_json::Value;
     use std::path::Path;
 
@@ -152,8 +151,8 @@ mod tests {
     #[test]
     fn cases_have_rates_intervals_and_means() {
         let found = found(BODY);
-        assert_eq!((found[0].rate, found[1].rate), (1.0, 0.5));
-        assert_eq!(found[1].interval, Proportion { successes: 1, of: 2 }.interval());
+        assert_eq!([0, 1].map(|case| found[case].findings.rate), [1.0, 0.5]);
+        assert_eq!(found[1].findings.interval, Proportion { successes: 1, of: 2 }.interval());
         assert_eq!(found[0].terms, [("find".into(), Finding::Mean(0.75)), ("act".into(), Finding::Mean(0.25))]);
         assert_eq!((found[1].findings.fitness, found[1].findings.broken_down), (2.0, 1));
         let protocol = Protocol::new("x", "").with_axes("action", "object");
@@ -186,7 +185,14 @@ mod tests {
         let json = serde_json::to_value(&found[1]).unwrap();
         assert_eq!((&json["fitness"], &json["rate"], &json["broken_down"]), (&Value::Null, &Value::Null, &1.into()));
         let held_out = self::found("0,cut,,true,0,0,0,false,NaN,NaN,NaN,,\n0,cut,,true,1,1,0,false,NaN,NaN,NaN,,\n");
-        let text = text(&Protocol::new("x", ""), &held_out);
+        let text = self::text(&Protocol::new("x", ""), &held_out);
         assert!(text.ends_with("\nheld out: no value, all 2 trials broke down\n"), "{text}");
+        // A task without a criterion of success has no columns about it.
+        let without = self::found("0,cut,,true,0,0,6,,2.0,1.0,1.0,,far\n0,cut,,true,1,1,6,,4.0,1.0,1.0,,far\n");
+        let text = self::text(&Protocol::new("x", ""), &without);
+        assert_eq!(
+            text,
+            "case  kind      trials  fitness   find    act  way\ncut   held out       2    3.000  1.000  1.000    –\n"
+        );
     }
 }

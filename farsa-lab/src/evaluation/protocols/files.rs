@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::evaluation::protocols::case_summary::CaseSummary;
 use crate::evaluation::protocols::table::ProtocolTable;
 use crate::evaluation::recorded::{self, TableRecord};
 use crate::store::directory::Directory;
@@ -28,6 +29,14 @@ impl ProtocolRecord {
     pub(crate) fn same_test(&self, other: &Self) -> bool {
         *self == Self { table_crc: self.table_crc, ..other.clone() }
     }
+}
+
+/// Content of `protocols/NAME.json`: a record with the results of its test.
+#[derive(Serialize)]
+struct Recorded<'r> {
+    #[serde(flatten)]
+    record: ProtocolRecord,
+    cases: &'r [CaseSummary],
 }
 
 impl TableRecord for ProtocolRecord {
@@ -84,11 +93,11 @@ pub(crate) fn make_folder(directory: &Directory) -> Result<(), Error> {
 pub(crate) fn write(
     directory: &Directory,
     name: &str,
-    table: &ProtocolTable,
+    (table, cases): (&ProtocolTable, &[CaseSummary]),
     record: impl FnOnce(u32) -> ProtocolRecord,
 ) -> Result<(), Error> {
     make_folder(directory)?;
     let [path, json] = places(directory, name);
     let bytes = table.csv(&path)?;
-    recorded::write(directory.path(), (&path, &bytes), &json, record)
+    recorded::write(directory.path(), (&path, &bytes), &json, |crc| Recorded { record: record(crc), cases })
 }

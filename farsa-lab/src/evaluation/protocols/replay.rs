@@ -12,7 +12,7 @@ use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
-use crate::evaluation::trials::{came_to, facts, fitness, scored, why_failed};
+use crate::evaluation::trials::{came_to, facts, fitness, scored, success, why_failed};
 use crate::experiment::outcome::Outcome;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
@@ -41,7 +41,8 @@ struct ReplayedCase {
     steps: u32,
     /// Fitness of the trial. Null in JSON if it failed.
     fitness: f64,
-    success: bool,
+    /// `None` for a task without a criterion of success.
+    success: Option<bool>,
     /// Why it failed, if it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     failure: Option<String>,
@@ -60,7 +61,7 @@ impl CasesSummary {
                 held_out: case.held_out,
                 steps: outcome.steps,
                 fitness: fitness(trials.evaluator(), std::slice::from_ref(outcome)),
-                success: outcome.success,
+                success: success(trials.evaluator(), outcome),
                 failure: why_failed(trials.evaluator(), outcome),
             }
         });
@@ -85,10 +86,10 @@ impl InWords for CasesSummary {
     fn text(&self) -> String {
         let mut text = self.caption.clone();
         for ReplayedCase { name, steps, fitness, success, failure, .. } in &self.cases {
-            let came = if *success { "success" } else { "no success" };
+            let came = success.map_or("", |success| if success { "success, " } else { "no success, " });
             // Writing into a string cannot fail.
             let _ = match failure {
-                None => write!(text, "\n{name}: {came}, {steps} steps, {}", scored(*fitness)),
+                None => write!(text, "\n{name}: {came}{steps} steps, {}", scored(*fitness)),
                 Some(why) => write!(text, "\n{name}: broken down after {steps} steps: {why}"),
             };
         }

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::test::Subject;
-use crate::evaluation::trials::why_failed;
+use crate::evaluation::trials::{success, why_failed};
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::svg::{FONT, INK, MARGIN, OUTLINE, PAPER};
 use crate::run::plan::Plan;
@@ -58,7 +58,8 @@ struct DrawnCase {
     row: String,
     column: String,
     held_out: bool,
-    success: bool,
+    /// `None` for a task without a criterion of success.
+    success: Option<bool>,
     broken_down: bool,
     #[serde(skip)]
     picture: Picture,
@@ -123,7 +124,7 @@ fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, 
             .ok_or_else(|| Error::Usage(format!("trials of `{}` have no bodies to draw", plan.name())))?;
         let Case { row, column, held_out } = trials.case(number);
         let broken_down = why_failed(trials.evaluator(), &outcome).is_some();
-        let success = outcome.success && !broken_down;
+        let success = success(trials.evaluator(), &outcome);
         cases.push(DrawnCase { row, column, held_out, success, broken_down, picture });
     }
     let corners: Vec<[f64; 3]> = cases.iter().flat_map(|case| case.picture.extent()).collect();
@@ -144,14 +145,15 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
         let [x, y] = [(number % columns) as u32, (number / columns) as u32];
         let [x, y] = [margin + x * (width + GAP), HEAD + LABEL + y * (height + LABEL + GAP)];
         let result = match (case.success, case.broken_down) {
-            (true, _) => "success",
-            (_, true) => "broken down",
-            _ => "no success",
+            (_, true) => ": broken down",
+            (Some(true), _) => ": success",
+            (Some(false), _) => ": no success",
+            (None, _) => "",
         };
         let name = if case.column.is_empty() { case.row.clone() } else { format!("{} {}", case.row, case.column) };
         let held_out = if case.held_out { ", held out" } else { "" };
         html! {
-            text x=(x) y=(y - 8) fill=(INK) { (name) (held_out) ": " (result) }
+            text x=(x) y=(y - 8) fill=(INK) { (name) (held_out) (result) }
             g transform=(format!("translate({x} {y})")) {
                 (PreEscaped(case.picture.svg(camera, [width, height], &format!("c{number}-"))))
                 @if case.held_out {

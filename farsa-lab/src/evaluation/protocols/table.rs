@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::evaluation::test_table::{Table, TrialResult};
+use crate::evaluation::test_table::{Columns, Table, TrialResult};
 use crate::experiment::protocol::{Case, Protocol};
 
 /// Columns of the case. The columns of a test follow, and their index counts the trials of the case.
@@ -16,16 +16,10 @@ pub(crate) struct ProtocolTable {
 }
 
 impl ProtocolTable {
-    /// Builds the table of a number of trials of each case. `others` holds the names of all populations but the first.
-    pub(crate) fn new(
-        cases: &[Case],
-        trials: usize,
-        terms: &[String],
-        others: &[String],
-        results: &[TrialResult],
-    ) -> Self {
+    /// Builds the table of a number of trials of each case.
+    pub(crate) fn new(cases: &[Case], trials: usize, columns: &Columns<'_>, results: &[TrialResult]) -> Self {
         // One table first, so that all cases have the same columns.
-        let tables = Table::new(terms, others, results).divided(trials);
+        let tables = Table::new(columns, results).divided(trials);
         Self { cases: cases.iter().cloned().zip(tables).collect() }
     }
 
@@ -131,7 +125,8 @@ mod tests {
             result(1, 2.0, outcome(true, 1.0)),
         ];
         let cases = [Case::new("TOUCH, softly", "red"), Case { held_out: true, ..Case::new("MOVE", "red") }];
-        let table = ProtocolTable::new(&cases, 2, &["fitness".into()], &[], &results);
+        let columns = Columns { terms: &["fitness".into()], others: &[], has_success: true };
+        let table = ProtocolTable::new(&cases, 2, &columns, &results);
         let path = Path::new("x.csv");
         assert_eq!(String::from_utf8(table.csv(path).unwrap()).unwrap(), CASES);
         assert_eq!(ProtocolTable::from_text(path, CASES).unwrap(), table);

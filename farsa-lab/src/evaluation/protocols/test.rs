@@ -11,6 +11,7 @@ use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
 use crate::evaluation::replay::parts;
 use crate::evaluation::test::{Subject, TRIALS, TrialCondition, Trials, failure, run_trials, whose};
+use crate::evaluation::test_table::Columns;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::LaneRequest;
 use crate::experiment::protocol::{CaseId, Protocol};
@@ -111,7 +112,7 @@ pub(crate) fn test(
         let protocol = protocol.name.clone();
         ProtocolRecord { protocol, generation, individual, trials, seed, table_crc }
     };
-    files::write(directory, &protocol.name, &table, record)?;
+    files::write(directory, &protocol.name, (&table, &found.cases), record)?;
     if let Some(states) = &states {
         states.write(directory, &protocol.name, record)?;
     }
@@ -194,9 +195,9 @@ fn run(
     let results = run_trials(pool, subject.tested(), fresh, &progress);
     drop(progress);
     let results = results?;
-    let (terms, names) = (&pool.info().terms, &pool.info().populations);
-    let others = names.get(1..subject.count()).unwrap_or(&[]);
-    let table = ProtocolTable::new(&protocol.cases, trials, terms, others, &results);
+    let terms = &pool.info().terms;
+    let columns = Columns::new(pool.info(), subject.count());
+    let table = ProtocolTable::new(&protocol.cases, trials, &columns, &results);
     let run = ProtocolRun {
         directory: directory.path().display().to_string(),
         generation: subject.generation,
