@@ -118,6 +118,19 @@ fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
     let listed = list.split(',').filter_map(|number| number.trim().parse::<f32>().ok());
     assert!(listed.eq(parameters.iter().copied()));
 
+    let source = String::from_utf8(written("c")).expect("text");
+    let header = fs::read_to_string(here.join("c.h")).expect("the header");
+    assert!(source.contains("int c_selftest(void)") && header.contains("#define C_INPUTS 29"), "{header}");
+    assert!(header.contains(" *   28 ") && header.contains("void c_step("), "{header}");
+    ok(farsa(), here, "export controller r --format c-integers --out integers");
+    assert!(fs::read_to_string(here.join("integers.c")).expect("the source").contains("STORED int16_t"));
+    for (out, word) in
+        [("c.cpp", "for example c.c"), ("3.c", "for example controller_3"), ("c.h", "there is one already")]
+    {
+        let said = say(farsa(), here, &format!("export controller r --format c --out {out}"));
+        assert!(said.code == Some(2) && said.err.contains(word), "{out}: {said:?}");
+    }
+
     let tables = written("safetensors");
     let (_, head) = SafeTensors::read_metadata(&tables).expect("tables");
     let about = head.metadata().as_ref().and_then(|texts| texts.get("farsa")).expect("what it is");
