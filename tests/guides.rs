@@ -452,7 +452,11 @@ fn follow(name: &str, builder: Builder) {
     for part in guide(name).split("](../pictures/guide-").skip(1).filter(|_| !checked) {
         let picture = part.split(')').next().expect("a picture");
         let drawn = fs::read(project.join(picture)).unwrap_or_else(|error| panic!("{name}: {picture}: {error}"));
-        let shown = fs::read(root().join("docs/pictures").join(format!("guide-{picture}"))).expect("the picture shown");
+        let place = root().join("docs/pictures").join(format!("guide-{picture}"));
+        if std::env::var_os("FARSA_WRITE_REFERENCE").is_some() {
+            fs::write(&place, &drawn).expect("a writable picture");
+        }
+        let shown = fs::read(place).expect("the picture shown");
         assert!(drawn == shown, "{name}: docs/pictures/guide-{picture} is not what the guide draws");
     }
     fs::remove_dir_all(&place).expect("no more needed");

@@ -123,22 +123,3 @@ fn every_part_of_the_libraries_has_a_name_or_a_reason() {
         assert!(list.is_empty() || kinds(&schema, list).iter().any(|kind| kind == word), "{name}: no `{word}`");
     }
 }
-
-/// The guide lists all kinds, and no others.
-#[test]
-fn the_guide_lists_every_kind() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/experiment-file.md");
-    let guide = std::fs::read_to_string(path).expect("the guide");
-    let schema = farsa_compose::schema();
-    let definitions = schema["$defs"].as_object().expect("definitions");
-    for (name, definition) in definitions {
-        let branches = definition["oneOf"].as_array().into_iter().flatten();
-        let word = |branch: &Value| {
-            let tag = ["kind", "at"].iter().find_map(|tag| branch.pointer(&format!("/properties/{tag}/const")));
-            tag.and_then(Value::as_str).map(str::to_owned)
-        };
-        for word in branches.filter_map(word) {
-            assert!(guide.contains(&format!("`{word}`")), "{name}: `{word}` is not listed");
-        }
-    }
-}

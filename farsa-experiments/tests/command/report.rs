@@ -153,7 +153,7 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     let short = "run reach-grasp-lift --population 4 --set evolution.parents=2 --set trial.steps=10 --generations 1";
     ok(farsa(), &here, &format!("{short} --out arm --quiet"));
     let output = ok(farsa(), &here, "draw arm --trial 1 --time 0.05 --camera top --size 320x200 --out moment.svg");
-    assert!(output.contains("trial 1, 0.05 s, camera top: 320x200"), "{output}");
+    assert!(output.contains("trial 1, 0.05 s, reach, camera top: 320x200"), "{output}");
     assert!(fs::read_to_string(here.join("moment.svg")).expect("the picture").starts_with("<svg"));
     assert!(ok(farsa(), &here, "draw arm --size 64x48 --out end.png --quiet").is_empty());
     assert!(fs::read(here.join("end.png")).expect("the picture").starts_with(b"\x89PNG"));
