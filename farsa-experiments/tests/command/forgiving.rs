@@ -165,7 +165,7 @@ fn a_setting_of_another_strategy_names_both() {
     let here = scratch("other-strategy");
     let grid = "[grid]\nstrategy.name = [\"truncation\", \"cma-es\"]\nevolution.mutation_rate = [0.01, 0.05]\n";
     fs::write(here.join("my.toml"), format!("experiment = \"discrimination\"\n{grid}")).expect("a file");
-    let truncation = "`evolution.mutation_rate`: is a setting of `truncation`";
+    let truncation = "`evolution.mutation_rate`: a setting of `truncation`";
     for (line, place) in [
         ("sweep my.toml", "my.toml line 4: "),
         ("run discrimination --strategy cma-es --set evolution.mutation_rate=0.1", "--set: "),

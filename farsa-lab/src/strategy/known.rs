@@ -82,7 +82,7 @@ pub(crate) fn check_key(
     let own = strategy.settings();
     let keys = list(&own.iter().map(Setting::key).collect::<Vec<_>>());
     let (listed, name) = (list(listed), Quoted(strategy.name()));
-    let why = format!("is a setting of {listed}{more}, not of {name}; the settings of {name} are {keys}");
+    let why = format!("a setting of {listed}{more}, not of {name}; the settings of {name} are {keys}");
     Err(Error::Setting { place: place.into(), key: key.into(), why })
 }
 

@@ -334,9 +334,8 @@ fn the_name_of_a_strategy_is_part_of_a_run() {
         Plan::from_file(&Laboratory::new(&[&alone]), &file).map(|_| ()).unwrap_err().to_string()
     };
     assert_eq!(wrong("[strategy]\nname = \"cma\""), "my.toml line 3: unknown strategy `cma`; the nearest is `cma-es`");
-    assert_eq!(
-        wrong("[strategy]\nname = \"ars\"\nactive = true"),
-        "my.toml line 4: unknown key `strategy.active`; the nearest is `strategy.name`"
-    );
+    let other = wrong("[strategy]\nname = \"ars\"\nactive = true");
+    let start = "my.toml line 4: `strategy.active`: a setting of `cma-es`, `cholesky-cma-es`, not of `ars`; the settings of";
+    assert!(other.starts_with(start), "{other}");
     fs::remove_dir_all(root).unwrap();
 }
