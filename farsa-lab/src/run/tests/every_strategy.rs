@@ -335,7 +335,8 @@ fn the_name_of_a_strategy_is_part_of_a_run() {
     };
     assert_eq!(wrong("[strategy]\nname = \"cma\""), "my.toml line 3: unknown strategy `cma`; the nearest is `cma-es`");
     let other = wrong("[strategy]\nname = \"ars\"\nactive = true");
-    let start = "my.toml line 4: `strategy.active`: a setting of `cma-es`, `cholesky-cma-es`, not of `ars`; the settings of";
+    let start =
+        "my.toml line 4: `strategy.active`: a setting of `cma-es`, `cholesky-cma-es`, not of `ars`; the settings of";
     assert!(other.starts_with(start), "{other}");
     fs::remove_dir_all(root).unwrap();
 }
