@@ -342,7 +342,7 @@ async function handled(browser, url, trial) {
   const back = await seen();
   check("c brings the camera back", Math.hypot(back.x - views[0].x, back.y - views[0].y) < 1);
   await looked(browser, scene);
-  await browser.run(() => farsa.seek(farsa.ticks - 150));
+  await browser.run(() => farsa.seek(farsa.ticks - 60));
   await click("#record");
   check("a film begins", await browser.run(() => farsa.playing && document.querySelector("#record").ariaPressed === "true"));
   check("at the end it is a file", (await browser.until(() => farsa.filmed)) > 1000);
@@ -628,7 +628,7 @@ async function filmed(browser) {
   await browser.run((p) => document.querySelector(".scene").dispatchEvent(new MouseEvent("dblclick", { clientX: p.x, clientY: p.y })), await at());
   await settled(browser);
   check("a double click brings a thing into the middle", before > 40 && away(await at()) < 40, `${before} ${away(await at())}`);
-  await browser.run(() => farsa.seek(farsa.ticks - 60));
+  await browser.run(() => farsa.seek(farsa.ticks - 20));
   await browser.run(() => document.querySelector("#record").click());
   check("a film is a file", (await browser.until(() => farsa.filmed)) > 1000);
   await silent(browser, "filmed");
