@@ -125,7 +125,7 @@ export class Browser {
 
   // Waits until the function gives something true.
   async until(script, ...args) {
-    const end = Date.now() + 60_000;
+    const end = Date.now() + 120_000;
     for (;;) {
       const value = await this.run(script, ...args);
       if (value) return value;
