@@ -28,23 +28,23 @@ async function linked(browser, { check, write, opened, settled, silent }) {
     const { nodes, links } = farsa.trials[0].network;
     const canvas = document.querySelector("#graph");
     const box = canvas.getBoundingClientRect();
-    const told = links.map((link) => {
+    const described = links.map((link) => {
       const [x0, y0, x1, y1, x2, y2, x3, y3] = link.curve;
       const [x, y] = [(x0 + 3 * x1 + 3 * x2 + x3) / 8, (y0 + 3 * y1 + 3 * y2 + y3) / 8];
       canvas.dispatchEvent(new PointerEvent("pointermove", { pointerType: "mouse", clientX: box.left + x, clientY: box.top + y }));
       return [link.from.name, link.to.name, canvas.title, document.querySelector("#about").textContent];
     });
-    return { told, in: nodes.map((node) => node.links.length), values: nodes.map((node) => farsa.trials[0].channels[node.channel].values[farsa.tick]) };
+    return { described, in: nodes.map((node) => node.links.length), values: nodes.map((node) => farsa.trials[0].channels[node.channel].values[farsa.tick]) };
   });
-  check("direct inputs have lines", found.in.join() === "1,1,2,2,2" && found.told.length === 4, JSON.stringify(found));
+  check("direct inputs have lines", found.in.join() === "1,1,2,2,2" && found.described.length === 4, JSON.stringify(found));
   const sign = (x) => (x < 0 ? "" : "+") + x.toFixed(3);
   const values = { left: found.values[0], right: found.values[1], "of left": found.values[2], "of right": found.values[3] };
   const weights = { "of left": -2, "of right": 0.5 };
-  const wrong = found.told.filter(([from, to, title, about]) => {
+  const wrong = found.described.filter(([from, to, title, about]) => {
     const product = from in weights ? `${sign(weights[from])} × ${values[from].toFixed(3)} = ${sign(weights[from] * values[from])}` : `direct × ${values[from].toFixed(3)} = ${sign(values[from])}`;
     return title !== `${from} → ${to}: ${product}` || !about.includes(product);
   });
-  check("a link under the pointer tells weight times activation", wrong.length === 0, JSON.stringify(wrong));
+  check("a link under the pointer shows weight times activation", wrong.length === 0, JSON.stringify(wrong));
   await silent(browser, "direct inputs");
 }
 
@@ -63,8 +63,8 @@ async function moments(browser, { check, write, opened, silent }) {
   check("the address names the moment that is shown", true);
   await browser.run(() => (location.hash = "#trial=7&t=1"));
   await browser.until(() => !document.querySelector("#message").hidden);
-  const told = await browser.run(() => document.querySelector("#message").textContent);
-  check("a trial that the page does not hold is named", /trial 7/.test(told), told);
+  const message = await browser.run(() => document.querySelector("#message").textContent);
+  check("a trial that the page does not hold is named", /trial 7/.test(message), message);
   await silent(browser, "moments");
 }
 

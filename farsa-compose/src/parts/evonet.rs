@@ -45,7 +45,7 @@ impl EvonetNetwork {
         };
         if let Some(flag) = flags(evonet).into_iter().find_map(|(flag, set)| set.then_some(flag)) {
             return Err(
-                source.wrong(&format!("/network/{flag}"), format!("says nothing beside `file`: {name} says it"))
+                source.wrong(&format!("/network/{flag}"), format!("has no effect with `file`: {name} defines it"))
             );
         }
         let wrong = |why: &dyn std::fmt::Display| source.wrong("/network/file", format!("{name}: {why}"));

@@ -336,7 +336,7 @@ fn files_that_are_no_network_of_the_robot_are_refused() {
         net.replace("nblocks 6", "nblocks 1007").replace("1 10 2", &format!("{}1 10 2", "2 0 1 0 0 0\n".repeat(1001)));
     assert!(refused(&with_file("", &many)).contains("has 1007 blocks; at most 1000"));
     let found = refused(&with_file("hidden = 3", &net));
-    assert!(found.starts_with("own.toml line 19: network.hidden: says nothing beside file"), "{found}");
+    assert!(found.starts_with("own.toml line 19: network.hidden: has no effect with file"), "{found}");
     let found = refused(&with_file("output_biases = false", &net));
     assert!(found.starts_with("own.toml line 19: network.output_biases: says nothing"), "{found}");
     let found = refused(&with_file("", &net).replace("file = \"own.net\"", "file = \"won.net\""));

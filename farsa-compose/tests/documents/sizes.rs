@@ -200,7 +200,7 @@ fn network_files_are_limited() {
     ] {
         let (key, _) = flag.split_once(' ').expect("a key");
         let error = with(&format!("{flag}\n"), &net(2, 5)).expect("an error");
-        assert!(error.contains(&format!("network.{key}: says nothing beside file: own.net says it")), "{error}");
+        assert!(error.contains(&format!("network.{key}: has no effect with file: own.net defines it")), "{error}");
     }
 }
 

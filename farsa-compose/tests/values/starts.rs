@@ -214,7 +214,7 @@ fn areas_without_room_are_in_the_middle() {
 /// Two discs of 0.9 m that keep 0.5 m apart need 2.3 m between centers. The centers are at most sqrt(1.2^2 + 0.2^2) m
 /// apart.
 #[test]
-fn the_missing_room_is_told() {
+fn missing_room_is_an_error() {
     let text = file(
         "[robot]\nkind = \"e-puck\"\n[[objects]]\nname = \"spots\"\nkind = \"disc\"\nradius = 0.9\ncount = 2\ncolor = [0, 0, 0]\n\
          [[start]]\nplace = \"spots\"\nat = \"anywhere\"\napart = 0.5\n",

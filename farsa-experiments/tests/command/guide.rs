@@ -73,9 +73,9 @@ fn commands_of_the_champion_s_analysis_run() {
     }
 }
 
-/// With `FARSA_PYTHON`, any Python 3: `./ci guides` brings one.
+/// With `FARSA_PYTHON`, any Python 3: `./ci test` brings one.
 #[test]
-#[ignore = "needs FARSA_PYTHON, a Python 3: ./ci guides"]
+#[ignore = "needs FARSA_PYTHON, a Python 3: ./ci test"]
 fn the_guide_s_program_of_python_computes_the_network() {
     let here = scratch("python-guide");
     let python = std::env::var_os("FARSA_PYTHON").expect("FARSA_PYTHON names a Python 3");

@@ -149,10 +149,10 @@ fn the_main_experiment() {
     let best = log.lines().last().and_then(|line| line.split(',').nth(1)).expect("the best");
     let said = say(farsa, &here, "replay one");
     // Four digits of it are printed.
-    let told = said.err.split("fitness ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
-    let told = told.expect("a fitness");
+    let fitness = said.err.split("fitness ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    let fitness = fitness.expect("a fitness");
     let best: f64 = best.parse().expect("a number");
-    assert!((told - best).abs() <= 5e-4 * best.abs() && said.err.contains("fitness"), "{best}: {}", said.err);
+    assert!((fitness - best).abs() <= 5e-4 * best.abs() && said.err.contains("fitness"), "{best}: {}", said.err);
     assert_eq!(said.out.lines().count(), 1 + 4 * 30);
     ok(farsa, &here, "test one --trials 4");
 }

@@ -70,7 +70,7 @@ function survey(trial, fromAbove) {
 		return way > 1e-3 ? [{name, body, path, way, top: 2*max(...balls.filter((b) => b.body === body).map((b) => b.radius)), thing: role === "thing", tint: own(body)}] : [];
 	});
 	const robot = moving.filter((m) => !m.thing).sort((a, b) => b.way - a.way);
-	// Robots of one color are told apart by others.
+	// Robots of one color get different trails.
 	if (new Set(robot.map(({tint}) => tint)).size < robot.length) for (const one of robot) one.tint = WORDS[one.body%WORDS.length];
 	const trails = [...moving.filter((m) => m.thing), ...robot.slice(0, fromAbove ? 24 : robot.length > 6 ? 1 : 6)];
 	const forces = list(ticks, (t) => trial.contacts(t).map((c) => hypot(...c.force))).flat().sort((a, b) => a - b);
