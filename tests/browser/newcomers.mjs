@@ -59,8 +59,8 @@ async function moments(browser, { check, write, opened, silent }) {
   await browser.until(() => farsa.time.toFixed(2) === "1.50");
   check("it follows another address", (await at()) === "generation 9, individual 3, trial 4; 1.50; false", await at());
   await browser.run(() => document.querySelector("#forward").click());
+  // The address names the moment that is shown.
   await browser.until(() => location.hash === "#trial=4&t=1.51");
-  check("the address names the moment that is shown", true);
   await browser.run(() => (location.hash = "#trial=7&t=1"));
   await browser.until(() => !document.querySelector("#message").hidden);
   const message = await browser.run(() => document.querySelector("#message").textContent);

@@ -84,7 +84,7 @@ pub struct Document {
     /// Combination of the terms into one number.
     #[serde(default)]
     pub fitness: Fitness,
-    /// Conditions of success. A trial succeeds if all of them hold at its end. Without conditions it never does.
+    /// Conditions of success. A trial succeeds if all of them hold at its end. Without conditions there is no criterion.
     #[serde(default)]
     pub success: Vec<Condition>,
     /// Conditions that end a trial. It ends if any of them holds after a step.

@@ -197,15 +197,19 @@ fn rows_have_kind_range_unit_and_default() {
     }
     // Every kind and every key of every table has a row.
     let schema = farsa_compose::schema();
+    let inlined = ["Camera", "Blocks", "Evonet"];
     for (name, part) in schema["$defs"].as_object().expect("definitions") {
         let fields = part.as_object().expect("a schema");
         let branches = list(fields, "oneOf").iter();
         for (key, word) in branches.clone().filter_map(tag) {
             assert!(text.contains(&format!(",{word},{key},{word},")), "{name}: no kind {word}");
         }
-        for keys in branches.chain([part]).filter_map(|part| part["properties"].as_object()) {
-            for (key, _) in keys.iter().filter(|(_, value)| value.get("const").is_none()) {
-                assert!(text.contains(&format!(",{key},")), "{name}: no key {key}");
+        for branch in branches.chain([part]).filter(|_| !inlined.contains(&name.as_str())) {
+            let word = tag(branch).map_or("", |(_, word)| word);
+            let fields = resolved(&schema, branch).0;
+            let keys = fields.get("properties").and_then(Value::as_object).into_iter().flatten();
+            for (key, _) in keys.filter(|(_, value)| value.get("const").is_none()) {
+                assert!(text.contains(&format!(",{word},{key},")), "{name} {word}: no key {key}");
             }
         }
     }

@@ -338,7 +338,7 @@ fn files_that_are_no_network_of_the_robot_are_refused() {
     let found = refused(&with_file("hidden = 3", &net));
     assert!(found.starts_with("own.toml line 19: network.hidden: has no effect with file"), "{found}");
     let found = refused(&with_file("output_biases = false", &net));
-    assert!(found.starts_with("own.toml line 19: network.output_biases: says nothing"), "{found}");
+    assert!(found.starts_with("own.toml line 19: network.output_biases: has no effect with file"), "{found}");
     let found = refused(&with_file("", &net).replace("file = \"own.net\"", "file = \"won.net\""));
     assert!(found.contains("unknown file won.net; the nearest is own.net"), "{found}");
 }

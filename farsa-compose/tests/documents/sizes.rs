@@ -68,33 +68,25 @@ fn networks_have_at_most_the_given_numbers_of_values() {
     }
 }
 
-/// The state has the neurons of blocks, and the values of links with a delay.
+/// The state has six values per neuron, and for a link with a delay one and the delayed values of its sources.
 #[test]
 fn blocks_keep_their_neurons_and_delays() {
-    for network in [
-        "kind = \"feed-forward\"\nhidden = 4\n",
-        "kind = \"elman\"\nhidden = 4\n",
-        "kind = \"jordan\"\nhidden = 4\n",
-        "kind = \"fully-recurrent\"\nhidden = 4\n",
-        "kind = \"evonet\"\nhidden = 4\nweights = [5.0, -5.0]\n",
-        "kind = \"blocks\"\nclusters = [{ name = \"a\", neurons = 4 }]\nlinks = [{ from = \"sensors\", to = \"a\" }, { from = \"a\", to = \"motors\", delay = 3 }]\n",
+    let neurons = 6 * (3 + 4 + 2);
+    for (network, state) in [
+        ("kind = \"feed-forward\"\nhidden = 4\n", neurons),
+        ("kind = \"elman\"\nhidden = 4\n", neurons),
+        ("kind = \"jordan\"\nhidden = 4\n", neurons),
+        (
+            "kind = \"blocks\"\nclusters = [{ name = \"a\", neurons = 4 }]\nlinks = [{ from = \"sensors\", to = \"a\" }, { from = \"a\", to = \"motors\", delay = 3 }]\n",
+            neurons + 1 + 3 * 4,
+        ),
     ] {
         let text = format!("{REST}[network]\n{network}");
-        let free = made(&text).unwrap_or_else(|error| panic!("{error}"));
-        let settings = Settings::new(free.settings("")).expect("settings");
-        let parameters = free.prepare("", &settings).expect("an evaluator").info().parameters.len();
-        let fits = |limit: usize| made_within(values(limit), &text);
-        let least = (1..500).find(|limit| fits(*limit).is_ok()).expect("a limit");
-        let error = fits(least - 1).err().expect("an error");
-        let what = if error.contains("values to remember") { "values to remember" } else { "parameters" };
-        assert!(
-            error.contains(&format!("has {least} {what}; at most {} make a network", least - 1)),
-            "{network}: {error}"
-        );
-        assert!(
-            least >= parameters && (least == parameters || what != "parameters"),
-            "{network}: {least} {parameters}"
-        );
+        let refused = |limit: usize| made_within(values(limit), &text).err();
+        assert_eq!(refused(state), None, "{network}");
+        let error = refused(state - 1).expect("an error");
+        let message = format!("has {state} values to remember; at most {} make a network", state - 1);
+        assert!(error.contains(&message), "{network}: {error}");
     }
 }
 

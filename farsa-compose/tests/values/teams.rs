@@ -257,14 +257,13 @@ fn terms_name_robots_that_there_are() {
     assert_eq!(Trial::new(&term("robot = 3")).outcome.steps, 24);
     for (keys, why) in [
         ("robot = 4", "`reward.1.robot`: is robot 4 of 3"),
-        ("robot = 9", "`reward.1.robot`: is robot 9 of 3"),
-        ("of = \"robots\"", "`reward.1.of`"),
+        ("of = \"robots\"", "unknown group of robots `robots`; the nearest is `robot`"),
         ("object = \"yart\"", "unknown object `yart`; the nearest is `yard`"),
         ("object = \"robot-4\"", "unknown object `robot-4`; the nearest is `robot-1`"),
     ] {
         let text = if keys.starts_with("object") { term("").replace("object = \"yard\"", keys) } else { term(keys) };
         let found = refused(&text);
-        assert!(found.contains(why) || why.ends_with("of`") && found.contains("unknown group of robots"), "{found}");
+        assert!(found.contains(why), "{found}");
     }
     // A robot alone is not a thing for its own measures.
     let alone = crate::wheels::file(
@@ -272,5 +271,6 @@ fn terms_name_robots_that_there_are() {
         crate::wheels::NOTHING,
         "[[reward]]\nkind = \"moved\"\nobject = \"robot-2\"\n",
     );
-    assert!(!refused(&alone).contains("robot-1"), "{}", refused(&alone));
+    let found = refused(&alone);
+    assert!(found.contains("unknown object `robot-2`") && !found.contains("robot-1"), "{found}");
 }

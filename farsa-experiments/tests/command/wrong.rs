@@ -6,13 +6,14 @@ use std::path::Path;
 use crate::tool::{farsa, ok, say, scratch};
 
 /// Refuses a command with exit code 2 and these words, and writes nothing.
-fn refused(here: &Path, arguments: &str, words: &[&str]) {
+fn refused(here: &Path, arguments: &str, words: &[&str]) -> String {
     let said = say(farsa(), here, arguments);
     assert_eq!(said.code, Some(2), "{arguments}: {said:?}");
     for word in words {
         assert!(said.err.contains(word), "{arguments}: no {word:?} in {said:?}");
     }
     assert!(said.out.is_empty() && !here.join("runs").exists() && !here.join("o").exists(), "{arguments}: {said:?}");
+    said.err
 }
 
 /// Writes an experiment of the guide whose strategy is chosen in line 1.
@@ -162,7 +163,8 @@ fn files_of_the_command_line_are_missing_or_damaged() {
     ];
     for arguments in reads.into_iter().chain(writes).chain(others.map(str::to_owned)) {
         let more = if arguments.starts_with("import") && !arguments.contains(".ini") { " --out o" } else { "" };
-        refused(&here, &format!("{arguments}{more}"), &["error: "]);
+        let text = refused(&here, &format!("{arguments}{more}"), &["error: "]);
+        assert!(!text.contains("Usage: "), "{arguments}: {text}");
     }
 }
 
