@@ -84,7 +84,8 @@ struct Counts {
     /// Trials that were not interrupted, and their steps.
     trials: AtomicU64,
     steps: AtomicU64,
-    /// Steps of interrupted trials.
+    /// Interrupted trials, and their steps.
+    interrupted: AtomicU64,
     cut: AtomicU64,
     /// Finished generations.
     rounds: u32,
@@ -134,10 +135,23 @@ impl Counts {
         let Some(outcome) = outcome else { return };
         let steps = u64::from(outcome.steps);
         if outcome.failure == Some(Failure::Interrupted) {
+            self.interrupted.fetch_add(1, Ordering::Relaxed);
             self.cut.fetch_add(steps, Ordering::Relaxed);
         } else {
             self.trials.fetch_add(1, Ordering::Relaxed);
             self.steps.fetch_add(steps, Ordering::Relaxed);
+        }
+    }
+
+    /// Computes the mean number of steps of a trial. The trials that end before a cut are the short ones, so without a
+    /// complete generation it is the largest number of steps, if there is one.
+    fn mean_steps(&self, longest: usize) -> f64 {
+        let [trials, steps, interrupted, cut] =
+            [&self.trials, &self.steps, &self.interrupted, &self.cut].map(|count| count.load(Ordering::Relaxed) as f64);
+        match (self.rounds, longest) {
+            (0, 0) => (steps + cut) / (trials + interrupted),
+            (0, longest) => longest as f64,
+            _ => steps / trials,
         }
     }
 }
@@ -145,7 +159,7 @@ impl Counts {
 /// Evaluates complete generations, as a run does, for some seconds. A first generation that takes longer is cut.
 ///
 /// # Errors
-/// [`Error::Other`], and [`Error::Other`] if no step was evaluated.
+/// [`Error::Other`], also if no step was evaluated.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
     let Sample { parameters, generation, run, .. } = sample;
     let (started, used) = (Instant::now(), processor_seconds());
@@ -153,18 +167,12 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
     let elapsed = started.elapsed().as_secs_f64();
     let used = used.zip(processor_seconds()).map(|(before, after)| after - before);
 
-    let Counts { trials, steps: whole, cut, rounds } = counts;
-    let [trials, whole, cut] = [trials, whole, cut].map(AtomicU64::into_inner);
-    let steps = whole + cut;
+    let mean = counts.mean_steps(pool.info().description.steps);
+    let Counts { trials, steps, cut, rounds, .. } = counts;
+    let (trials, steps) = (trials.into_inner(), steps.into_inner() + cut.into_inner());
     if steps == 0 {
         return Err(Error::Other(format!("{}: none of {trials} trials had a step", plan.experiment.name())));
     }
-    let longest = pool.info().description.steps;
-    let mean = match (trials, longest) {
-        (0, 0) => cut as f64,
-        (0, longest) => longest as f64,
-        _ => whole as f64 / trials as f64,
-    };
     let machine = Machine::here();
     let (threads, cores) = (pool.threads(), machine.cores());
     let had = threads.min(cores);
@@ -324,9 +332,7 @@ mod tests {
     use farsa_view::Schema;
 
     /// Trials of 7 steps of at most 10. Individual 1 fails in its first trial.
-    struct Toy {
-        most: usize,
-    }
+    struct Toy(usize);
 
     impl Experiment for Toy {
         fn name(&self) -> &'static str {
@@ -339,14 +345,14 @@ mod tests {
             vec![Setting::whole(POPULATION, 20, 1..=100)]
         }
         fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-            Ok(Box::new(Toy { most: self.most }))
+            Ok(Box::new(Toy(self.0)))
         }
     }
 
     impl Task for Toy {
         fn info(&self) -> TaskInfo {
             TaskInfo {
-                description: Description { steps: self.most, ..Description::default() },
+                description: Description { steps: self.0, ..Description::default() },
                 trials: 3,
                 ..TaskInfo::new(vec![Parameter::new("none", [0.0, 1.0])], Schema::default())
             }
@@ -371,10 +377,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_counted_is_what_was_lived() {
+    fn counts_and_rates_are_those_of_the_trials() {
         for threads in [1, 3] {
             // On a busy machine a round may take longer than expected.
-            let patience = [0.05, 1.0, 60.0].map(|seconds| move || benched(&Toy { most: 10 }, threads, seconds));
+            let patience = [0.05, 1.0, 60.0].map(|seconds| move || benched(&Toy(10), threads, seconds));
             let found = patience.iter().map(|bench| bench()).find(|found| found.rounds > 0).unwrap();
             let rounds = u64::from(found.rounds);
             assert!(found.seconds >= 0.05, "{found:?}");
@@ -397,10 +403,26 @@ mod tests {
 
     #[test]
     fn a_first_generation_that_takes_too_long_is_cut_short() {
-        let found = benched(&Toy { most: 0 }, 1, 0.001);
-        assert!(found.rounds == 0 && (1..58).contains(&found.trials), "{found:?}");
+        let [open, limited] = [0, 10].map(|most| benched(&Toy(most), 1, 0.001));
+        for bench in [&open, &limited] {
+            assert!(bench.rounds == 0 && (1..58).contains(&bench.trials), "{bench:?}");
+        }
         // Without a limit of the experiment, trials are as long as measured.
-        assert_eq!(found.study.steps, found.steps as f64 / found.trials as f64);
+        assert_eq!(open.study.steps, open.steps as f64 / open.trials as f64);
+        assert_eq!(limited.trials_per_second_and_core, limited.steps_per_second_and_core / 10.0);
+    }
+
+    #[test]
+    fn interrupted_trials_have_a_part_in_the_mean() {
+        let mut counts = Counts::default();
+        for (steps, is_cut) in [(3, false), (4, false), (10, true), (20, true), (30, true)] {
+            let failure = is_cut.then_some(Failure::Interrupted);
+            counts.add(Some(&Outcome { steps, failure, ..Outcome::default() }));
+        }
+        // (3 + 4 + 10 + 20 + 30) / 5, and (3 + 4) / 2 for complete generations.
+        assert_eq!([0, 100].map(|longest| counts.mean_steps(longest)), [13.4, 100.0]);
+        counts.rounds = 1;
+        assert_eq!([0, 100].map(|longest| counts.mean_steps(longest)), [3.5, 3.5]);
     }
 
     /// An episode that ends long after every other test.
@@ -458,8 +480,8 @@ mod tests {
         let found = bench(&plan, &Sample::random(&plan).unwrap(), pool, 0.02).unwrap();
         assert_eq!((found.rounds, found.trials), (0, 0));
         assert!((1..LONG).contains(&found.steps), "{found:?}");
-        // The steps of the interrupted trials are a least length.
-        assert_eq!(found.study.steps, found.steps as f64);
+        // The mean of one or two interrupted trials is a least length.
+        assert!([1.0, 2.0].contains(&(found.steps as f64 / found.study.steps)), "{found:?}");
     }
 
     #[test]
