@@ -53,12 +53,15 @@ impl Limits {
         (value * self.part - self.low) / (self.high - self.low)
     }
 
+    /// Computes the least step between about `count` ticks, and the exponent of its power of ten.
+    fn least_step(&self, count: usize) -> (f64, i32) {
+        let least = (self.high - self.low) / count as f64 / self.part;
+        (least, exponent(least))
+    }
+
     /// Returns about `count` multiples of 1, 2 or 5 times a power of ten.
     pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
-        let least = (self.high - self.low) / count as f64 / self.part;
-        // The exponent is read from text, because logarithms differ between platforms.
-        let scientific = format!("{least:e}");
-        let exponent = scientific.split_once('e').map_or("0", |(_, exponent)| exponent);
+        let (least, exponent) = self.least_step(count);
         let power: f64 = format!("1e{exponent}").parse().unwrap_or(1.0);
         let step = [1.0, 2.0, 5.0].map(|m| m * power).into_iter().find(|step| *step >= 0.999 * least);
         let step = step.unwrap_or(10.0 * power);
@@ -67,20 +70,31 @@ impl Limits {
         ticks.take(2 * count).filter(|tick| tick.is_finite()).collect()
     }
 
-    /// Returns ticks with their labels, each label once.
+    /// Returns ticks with their labels.
     pub(crate) fn labels(&self, count: usize) -> Vec<(f64, String)> {
-        let mut labels: Vec<(f64, String)> = self.ticks(count).into_iter().map(|tick| (tick, label(tick))).collect();
-        labels.dedup_by(|next, last| next.1 == last.1);
-        labels
+        let (_, exponent) = self.least_step(count);
+        self.ticks(count).into_iter().map(|tick| (tick, label(tick, exponent))).collect()
     }
 }
 
-/// Formats a value of an axis with at most six decimals, or six digits of a large number.
-pub(crate) fn label(y: f64) -> String {
-    if y.abs() < 1e15 {
-        return ((y * 1e6).round() / 1e6 + 0.0).to_string();
+/// Reads the exponent of a number from its text, because logarithms differ between platforms.
+fn exponent(x: f64) -> i32 {
+    format!("{x:e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
+}
+
+/// Formats a number alone with six decimals, or six digits if it is large or small.
+pub(crate) fn number(x: f64) -> String {
+    label(x, if (1e-4..1e15).contains(&x.abs()) { -6 } else { exponent(x) - 5 })
+}
+
+/// Formats a tick with the digits up to a power of ten, without zeros at the end.
+fn label(tick: f64, least: i32) -> String {
+    let places = |largest: i32| usize::try_from(largest - least).unwrap_or(0);
+    let parsed = |text: String| text.parse::<f64>().map_or(tick, |rounded| rounded + 0.0);
+    if tick == 0.0 || (1e-4..1e15).contains(&tick.abs()) || tick.abs() < 1e15 && least >= -6 {
+        return parsed(format!("{tick:.*}", places(0))).to_string();
     }
-    format!("{y:.5e}").parse::<f64>().map_or_else(|_| y.to_string(), |rounded| format!("{rounded:e}"))
+    format!("{:e}", parsed(format!("{tick:.*e}", places(exponent(tick)))))
 }
 
 /// A rectangle of a figure with the ranges of its axes.
@@ -148,12 +162,23 @@ mod tests {
     fn labels_of_a_flat_curve_differ() {
         for value in [0.0, 1.0, -3.5, 1e9, 1e-7, 1.7e308, 5e-324] {
             let labels = Limits::of([value, value].into_iter()).labels(LABELS);
-            for (number, (_, label)) in labels.iter().enumerate() {
-                assert!(labels[..number].iter().all(|(_, other)| other != label), "{value}: {labels:?}");
+            assert!(labels.len() >= 3, "{value}: {labels:?}");
+            let step = labels[1].0 - labels[0].0;
+            for (tick, label) in &labels {
+                assert!((label.parse::<f64>().unwrap() - tick).abs() <= 1e-3 * step, "{value}: {labels:?}");
+                assert!(label.len() < 12, "{value}: {labels:?}");
             }
         }
-        let labels = Limits::of([1.0, 1.0].into_iter()).labels(LABELS);
-        let labels: Vec<&str> = labels.iter().map(|(_, label)| label.as_str()).collect();
-        assert_eq!(labels, ["0.96", "0.98", "1", "1.02", "1.04"]);
+        let labels = |value| {
+            let labels = Limits::of([value, value].into_iter()).labels(LABELS);
+            labels.into_iter().map(|(_, label)| label).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(labels(1.0), "0.96 0.98 1 1.02 1.04");
+        assert_eq!(labels(1e-7), "9.6e-8 9.8e-8 1e-7 1.02e-7 1.04e-7");
+        let numbers = [0.0, 1.0 / 3.0, 123.4567891, -1e15, 1.23456789e-7].map(number);
+        assert_eq!(numbers, ["0", "0.333333", "123.456789", "-1e15", "1.23457e-7"]);
+        // A nearly flat curve needs more digits.
+        let nearly = Limits::of([1.0, 1.0 + 2e-8].into_iter()).labels(LABELS);
+        assert_eq!(nearly[1].1, "1.000000005");
     }
 }

@@ -2,7 +2,7 @@
 
 use maud::html;
 
-use crate::figures::plane::{FOOT, LABELS, Limits, Plane, label};
+use crate::figures::plane::{FOOT, LABELS, Limits, Plane, number};
 use crate::figures::svg::{INK, MARGIN, WIDTH, at, figure, title};
 
 /// Number of points above which only every k-th is drawn.
@@ -33,7 +33,7 @@ impl Scatter<'_> {
     pub(crate) fn draw(&self) -> String {
         let finite = || self.points.iter().map(|(_, value)| *value).filter(|x| x.is_finite());
         let ends = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
-        let [low, high] = ends.map(label);
+        let [low, high] = ends.map(number);
         let shade = Limits::of(finite());
         let [across, up] = [0, 1].map(|axis| {
             let values = self.points.iter().map(|(place, _)| place[axis]);
