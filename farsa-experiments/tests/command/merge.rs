@@ -147,6 +147,10 @@ fn what_cannot_be_merged_writes_nothing() {
         2,
         &["other/cart-rough-1: holds 3 generations of the run that has 5 in node2/sweep/friction=2.0/cart-rough-1"],
     );
+    // Two tables in one file.
+    let said = say(own(), &here, "merge node1 --csv one.csv --curves ./one.csv");
+    assert!(said.code == Some(2) && said.err.contains("--curves ./one.csv: two tables need two files"), "{said:?}");
+    assert!(!here.join("one.csv").exists());
     // Runs of experiments that this program does not have.
     let said = say(farsa(), &here, "merge node1");
     assert!(said.code == Some(2) && said.err.contains("unknown experiment `cart`"), "{said:?}");

@@ -1,5 +1,6 @@
 //! `farsa merge`: copies runs and makes a table of them.
 
+use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +13,7 @@ use crate::merge::gather::{Gathered, Gathering};
 use crate::merge::run_table;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::{create_results, refuse_existing};
+use crate::store::temporary_file;
 
 /// Options of the command.
 pub(crate) struct Merge<'a> {
@@ -59,6 +61,10 @@ impl Merge<'_> {
             apart(out, self.directories)?;
         }
         self.csv.into_iter().chain(self.curves).try_for_each(refuse_existing)?;
+        if let Some((csv, curves)) = self.csv.zip(self.curves).filter(|(csv, curves)| place(csv) == place(curves)) {
+            let (csv, curves) = (csv.display(), curves.display());
+            return Err(Error::Usage(format!("--csv {csv} and --curves {curves}: two tables need two files")));
+        }
         let Gathering { runs, twins } = Gathering::new(laboratory, self.directories)?;
         let finished = runs.iter().filter(|run| run.is_finished());
         let copies = self.out.map_or(Ok(Vec::new()), |out| Copy::all(finished, out, laboratory))?;
@@ -98,6 +104,11 @@ impl Merge<'_> {
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// Returns the real folder of a new file with its name.
+fn place(path: &Path) -> Option<(PathBuf, &OsStr)> {
+    Some((temporary_file::parent(path).canonicalize().ok()?, path.file_name()?))
 }
 
 /// Refuses a destination within a searched directory, where the copies would be found again.

@@ -22,9 +22,8 @@ pub(crate) fn curves(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> 
     writer.write_record(head).map_err(|error| refused(&error))?;
     for (run, place) in runs {
         let (start, names) = (labels(run, place, &keys), names(run)?);
-        let [mut evaluations, mut failed] = [0_u64; 2];
         for (generation, line) in run.lines.iter().enumerate() {
-            (evaluations, failed) = (evaluations + line.evaluations, failed + line.failed);
+            let Line { evaluations, failed, .. } = line;
             let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
             for (population, row) in rows.iter().enumerate() {
                 let name = names.get(population).cloned().unwrap_or_default();
