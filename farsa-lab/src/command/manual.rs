@@ -60,8 +60,11 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
 
 /// Rewrites `help SUBCOMMAND` as `SUBCOMMAND --help`. A subcommand `help` would take a line of the tour.
 pub(crate) fn help_last(mut words: Vec<OsString>) -> Vec<OsString> {
-    if words.get(1).is_some_and(|word| word == "help") {
-        words.remove(1);
+    let is_option = |word: &OsString| word.as_encoded_bytes().starts_with(b"-");
+    let first = words.iter().skip(1).take_while(|word| is_option(word)).count() + 1;
+    let helps = words.iter().skip(first).take_while(|word| *word == "help").count();
+    if helps > 0 {
+        words.drain(first..first + helps);
         words.push("--help".into());
     }
     words
